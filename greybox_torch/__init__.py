@@ -1,0 +1,52 @@
+"""Grey-box models of machines: estimate them, find what physics they leave out, name it, and model it.
+
+The public names are loaded on first use, so that `import greybox_torch` (and `greybox --help`) waits for neither torch nor
+pandas.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from greybox_torch.data import load_dataset
+    from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "Balance",
+    "Body",
+    "Coupling",
+    "GreyBoxModel",
+    "Input",
+    "Output",
+    "Parameter",
+    "State",
+    "load_dataset",
+]
+
+_HOME_OF = {
+    "Balance": "greybox_torch.model",
+    "Body": "greybox_torch.model",
+    "Coupling": "greybox_torch.model",
+    "GreyBoxModel": "greybox_torch.model",
+    "Input": "greybox_torch.model",
+    "Output": "greybox_torch.model",
+    "Parameter": "greybox_torch.model",
+    "State": "greybox_torch.model",
+    "load_dataset": "greybox_torch.data",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(importlib.import_module(_HOME_OF[name]), name)
+    globals()[name] = value  # the next use finds it without coming here
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOME_OF})
