@@ -1,0 +1,191 @@
+"""C++ source for a model's stepper: Runge-Kutta 4 with forward sensitivities, many windows side by side in vector lanes.
+
+Every scalar of the model becomes a vector of lanes (8 double or 16 single precision numbers), one lane a window. Terms that depend on
+parameters alone are computed once. Within a step the four stages of the states come first, with their sparse Jacobians; then each
+tangent direction runs through all four stages in registers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from greybox_torch.codegen.derive import Partials
+from greybox_torch.codegen.expression import ARITHMETIC, COMPARISONS, FUNCTIONS, LOGIC
+from greybox_torch.codegen.lower import Equations
+from greybox_torch.codegen.template import PROGRAM
+
+_VECTOR_FUNCTIONS = {
+    "tan",
+    "asin",
+    "acos",
+    "atan",
+    "sinh",
+    "cosh",
+    "tanh",
+    "exp",
+    "log",
+    "sin",
+    "cos",
+    "erf",
+    "log1p",
+    "expm1",
+}
+
+
+def emit(equations: Equations, precision: str) -> str:
+    """The complete C++ source for ``equations`` in ``"double"`` or ``"float"``."""
+    body = _Body(equations)
+    n_x, n_y, n_p = equations.n_states, equations.n_outputs, len(equations.sensitive)
+    rate_rows = [(f"dx[{i}]", node) for i, node in enumerate(equations.rates)]
+    state_entries = _entries(equations.rates_by_state)
+    parameter_entries = _entries(equations.rates_by_parameter)
+    output_rows = [(f"y[{i}]", node) for i, node in enumerate(equations.outputs)]
+    output_states = _entries(equations.outputs_by_state)
+    output_parameters = _entries(equations.outputs_by_parameter)
+    column = {equations.graph.leaf("p", p): k for k, p in enumerate(equations.sensitive)}
+    row_of_state = {equations.graph.leaf("x", i): i for i in range(n_x)}
+
+    stored_a = [(f"A[{k}]", node) for k, (_, _, node) in enumerate(state_entries)]
+    stored_b = [(f"B[{column[leaf]}][{i}]", node) for i, leaf, node in parameter_entries]
+    stored_c = [(f"C[{k}]", node) for k, (_, _, node) in enumerate(output_states)]
+    stored_d = [(f"D[{column[leaf]}][{i}]", node) for i, leaf, node in output_parameters]
+    functions = {
+        "RATES": body.statements(rate_rows),
+        "RATES_JACOBIAN": body.statements(rate_rows + stored_a + stored_b),
+        "OUTPUTS": body.statements(output_rows),
+        "OUTPUTS_JACOBIAN": body.statements(output_rows + stored_c + stored_d),
+        "TANGENT": _products("k", n_x, state_entries, row_of_state, "A", "b", body),
+        "TANGENT_OUTPUT": _products("s", n_y, output_states, row_of_state, "C", "d", body),
+    }
+    text = PROGRAM
+    for name, code in {**functions, "PROLOGUE": body.prologue()}.items():
+        text = text.replace(f"/*{name}*/", code)
+    sizes = {
+        "NX": n_x,
+        "NU": max(equations.n_inputs, 1),
+        "NY": n_y,
+        "NP": max(equations.n_parameters, 1),
+        "NS": n_p,
+        "NA": max(len(state_entries), 1),
+        "NC": max(len(output_states), 1),
+        "NH": max(body.hoisted_count, 1),
+    }
+    header = "".join(f"#define {name} {value}\n" for name, value in sizes.items())
+    return f"typedef {precision} real;\n{header}{text}"
+
+
+def _entries(rows: list[Partials]) -> list[tuple[int, int, int]]:
+    return [(i, leaf, node) for i, row in enumerate(rows) for leaf, node in sorted(row.items())]
+
+
+class _Body:
+    """Turns nodes into statements; nodes that depend on parameters alone go to a prologue, run once per call."""
+
+    def __init__(self, equations: Equations) -> None:
+        self.graph = equations.graph
+        self._hoisted: dict[str, int] = {}
+        self._prologue_roots: list[tuple[int, int]] = []
+
+    @property
+    def hoisted_count(self) -> int:
+        return len(self._hoisted)
+
+    def statements(self, targets: Iterable[tuple[str, int]]) -> str:
+        targets = list(targets)
+        varies = self.graph.depends_on(frozenset({"x", "u"}))
+        lines = []
+        for index in self.graph.needed(node for _, node in targets):
+            node = self.graph.nodes[index]
+            if node.operation in ("constant", "leaf") or not varies[index]:
+                continue
+            lines.append(f"{self._type(index)} t{index} = {self._expression(index, varies)};")
+        lines += [f"{target} = {self._reference(node, varies)};" for target, node in targets]
+        return "\n".join(lines)
+
+    def prologue(self) -> str:
+        """Statements that fill ``h``, the values that depend on parameters alone."""
+        nothing = [True] * len(self.graph.nodes)
+        lines = []
+        for index in self.graph.needed(node for node, _ in self._prologue_roots):
+            node = self.graph.nodes[index]
+            if node.operation not in ("constant", "leaf"):
+                lines.append(f"{self._type(index)} t{index} = {self._expression(index, nothing)};")
+        for key, slot in self._hoisted.items():
+            kind, node = key.split(":")
+            value = self._reference(int(node), nothing)
+            lines.append(f"h[{slot}] = {f'splat(1)/{value}' if kind == 'inverse' else value};")
+        return "\n".join(lines)
+
+    def is_constant(self, index: int) -> float | None:
+        return self.graph.value_of(index)
+
+    def _type(self, index: int) -> str:
+        node = self.graph.nodes[index]
+        return "mask" if node.operation in COMPARISONS or node.operation in LOGIC or node.operation == "not" else "vec"
+
+    def _hoist(self, kind: str, index: int) -> str:
+        key = f"{kind}:{index}"
+        if key not in self._hoisted:
+            self._hoisted[key] = len(self._hoisted)
+            self._prologue_roots.append((index, self._hoisted[key]))
+        return f"h[{self._hoisted[key]}]"
+
+    def _reference(self, index: int, varies: list[bool]) -> str:
+        node = self.graph.nodes[index]
+        if node.operation == "constant":
+            return (
+                f"splat({node.value!r})"
+                if abs(node.value) != float("inf")
+                else f"splat({'-' * (node.value < 0)}__builtin_inf())"
+            )
+        if node.operation == "leaf":
+            return f"{node.leaf}[{int(node.value)}]"
+        if index < len(varies) and not varies[index] and self._type(index) == "vec":
+            return self._hoist("value", index)
+        return f"t{index}"
+
+    def _expression(self, index: int, varies: list[bool]) -> str:
+        node = self.graph.nodes[index]
+        if node.operation == "div" and not all(varies):
+            numerator, denominator = node.arguments
+            if not varies[denominator] and self.graph.value_of(denominator) is None:
+                return f"{self._reference(numerator, varies)} * {self._hoist('inverse', denominator)}"
+        arguments = [self._reference(a, varies) for a in node.arguments]
+        operation = node.operation
+        table = {**ARITHMETIC, **COMPARISONS, **LOGIC}
+        if operation in table:
+            return f"{arguments[0]} {table[operation]} {arguments[1]}"
+        if operation == "neg":
+            return f"-{arguments[0]}"
+        if operation == "not":
+            return f"~{arguments[0]}"
+        if operation == "where":
+            return f"choose({self._condition(node.arguments[0], arguments[0])}, {arguments[1]}, {arguments[2]})"
+        if operation in FUNCTIONS or operation in ("min", "max", "pow", "atan2"):
+            return f"v_{operation}({', '.join(arguments)})"
+        raise AssertionError(f"no C++ form of '{operation}'")
+
+    def _condition(self, index: int, text: str) -> str:
+        return text if self._type(index) == "mask" else f"({text} != splat(0))"
+
+
+def _products(
+    result: str,
+    rows: int,
+    entries: list[tuple[int, int, int]],
+    row_of_state: dict[int, int],
+    matrix: str,
+    forcing: str,
+    body: _Body,
+) -> str:
+    """Statements of ``result = matrix · s + forcing`` with a sparse matrix whose constant entries are written out."""
+    lines = []
+    for row in range(rows):
+        terms = [f"{forcing}[{row}]"]
+        for k, (i, leaf, node) in enumerate(entries):
+            if i != row:
+                continue
+            value, source = body.is_constant(node), f"z[{row_of_state[leaf]}]"
+            terms.append(source if value == 1.0 else f"-{source}" if value == -1.0 else f"{matrix}[{k}] * {source}")
+        lines.append(f"{result}[{row}] = {' + '.join(terms)};".replace("+ -", "- "))
+    return "\n".join(lines)

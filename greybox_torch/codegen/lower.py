@@ -1,0 +1,99 @@
+"""From a model to the expressions of its rates, outputs and their sparse Jacobians."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import torch
+
+from greybox_torch.codegen.derive import Partials, jacobian
+from greybox_torch.codegen.expression import Graph
+from greybox_torch.codegen.trace import symbols
+from greybox_torch.model import GreyBoxModel, Signals
+
+
+@dataclass(frozen=True)
+class Equations:
+    """A model's equations as one expression graph.
+
+    ``rates`` and ``outputs`` are root nodes; the Jacobians map leaf nodes to partial derivatives; ``sensitive`` names the parameters
+    that the Jacobians cover, in the order of their columns.
+    """
+
+    graph: Graph
+    n_states: int
+    n_inputs: int
+    n_outputs: int
+    n_parameters: int
+    sensitive: tuple[int, ...]
+    rates: tuple[int, ...]
+    outputs: tuple[int, ...]
+    rates_by_state: list[Partials]
+    rates_by_parameter: list[Partials]
+    outputs_by_state: list[Partials]
+    outputs_by_parameter: list[Partials]
+
+
+def lower(model: GreyBoxModel, sensitive: Sequence[str], at_zero: Sequence[str] = ()) -> Equations:
+    """Trace ``model`` and differentiate with respect to its states and the parameters named in ``sensitive``.
+
+    Parameters in ``at_zero`` are differentiated and then set to zero everywhere: the form of a screen, in which amplitudes of effects
+    that are not there ask what the output would do if they were.
+
+    Raises:
+        UnsupportedOperation: the equations use a torch operation that has no scalar form here.
+        UserError: the equations branch on a signal's value, or do not return what the model declares.
+    """
+    graph = Graph()
+    names = [p.name for p in model.declared_parameters]
+    x = symbols(graph, "x", len(model.states))
+    u = symbols(graph, "u", len(model.inputs))
+    values = symbols(graph, "p", len(names))
+    p = Signals("parameter", {name: values[i] for i, name in enumerate(names)})
+    with torch.no_grad():
+        rates = tuple(int(n) for n in model.rates(x, u, p).nodes)  # type: ignore[attr-defined]
+        outputs = tuple(int(n) for n in model.measured(x, u, p).nodes)  # type: ignore[attr-defined]
+    leaves_x = [graph.leaf("x", i) for i in range(len(model.states))]
+    leaves_p = [graph.leaf("p", names.index(name)) for name in sensitive]
+    pieces = [jacobian(graph, roots, leaves) for roots in (rates, outputs) for leaves in (leaves_x, leaves_p)]
+    zeros = {graph.leaf("p", names.index(name)) for name in at_zero}
+    if zeros:
+        place = _Substitution(graph, zeros)
+        rates, outputs = tuple(map(place, rates)), tuple(map(place, outputs))
+        pieces = [
+            [{v: n for v, n in ((v, place(n)) for v, n in row.items()) if graph.value_of(n) != 0.0} for row in piece]
+            for piece in pieces
+        ]
+    return Equations(
+        graph,
+        len(model.states),
+        len(model.inputs),
+        len(model.outputs),
+        len(names),
+        tuple(names.index(name) for name in sensitive),
+        rates,
+        outputs,
+        pieces[0],
+        pieces[1],
+        pieces[2],
+        pieces[3],
+    )
+
+
+class _Substitution:
+    """Rebuilds expressions with some leaves replaced by zero, simplifying on the way."""
+
+    def __init__(self, graph: Graph, zeros: set[int]) -> None:
+        self._graph = graph
+        self._done = {leaf: graph.constant(0.0) for leaf in zeros}
+
+    def __call__(self, root: int) -> int:
+        graph = self._graph
+        for index in graph.needed([root]):
+            if index in self._done:
+                continue
+            node = graph.nodes[index]
+            arguments = tuple(self._done[a] for a in node.arguments)
+            self._done[index] = index if arguments == node.arguments else graph.apply(node.operation, *arguments)
+        return self._done[root]

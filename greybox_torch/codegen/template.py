@@ -1,0 +1,155 @@
+"""The fixed part of the emitted C++ program."""
+
+PROGRAM = r"""
+#define LANES (64 / (long)sizeof(real))
+typedef real vec __attribute__((vector_size(64)));
+typedef decltype(vec() < vec()) mask;
+#define INLINE static inline __attribute__((always_inline))
+
+#ifdef VECTOR_MATH
+#define SIMD __attribute__((simd("notinbranch")))
+#else
+#define SIMD
+#endif
+extern "C" {
+SIMD double exp(double); SIMD double log(double); SIMD double sin(double); SIMD double cos(double); SIMD double tan(double);
+SIMD double asin(double); SIMD double acos(double); SIMD double atan(double); SIMD double sinh(double); SIMD double cosh(double);
+SIMD double tanh(double); SIMD double erf(double); SIMD double log1p(double); SIMD double expm1(double); SIMD double pow(double, double);
+SIMD double atan2(double, double);
+SIMD float expf(float); SIMD float logf(float); SIMD float sinf(float); SIMD float cosf(float); SIMD float tanf(float);
+SIMD float asinf(float); SIMD float acosf(float); SIMD float atanf(float); SIMD float sinhf(float); SIMD float coshf(float);
+SIMD float tanhf(float); SIMD float erff(float); SIMD float log1pf(float); SIMD float expm1f(float); SIMD float powf(float, float);
+SIMD float atan2f(float, float);
+double sqrt(double); float sqrtf(float); double floor(double); float floorf(float);
+void *malloc(unsigned long); void free(void *);
+}
+#define LIFT(name) \
+  INLINE double s_##name(double a) { return name(a); } INLINE float s_##name(float a) { return name##f(a); } \
+  INLINE vec v_##name(vec a) { vec r; for (int l = 0; l < LANES; l++) r[l] = s_##name((real)a[l]); return r; }
+LIFT(exp) LIFT(log) LIFT(sin) LIFT(cos) LIFT(tan) LIFT(asin) LIFT(acos) LIFT(atan) LIFT(sinh) LIFT(cosh) LIFT(tanh) LIFT(erf)
+LIFT(log1p) LIFT(expm1) LIFT(sqrt) LIFT(floor)
+#define LIFT2(name) \
+  INLINE double s_##name(double a, double b) { return name(a, b); } INLINE float s_##name(float a, float b) { return name##f(a, b); } \
+  INLINE vec v_##name(vec a, vec b) { vec r; for (int l = 0; l < LANES; l++) r[l] = s_##name((real)a[l], (real)b[l]); return r; }
+LIFT2(pow) LIFT2(atan2)
+INLINE vec splat(double a) { return (real)a - vec{}; }
+INLINE vec choose(mask m, vec a, vec b) { return m ? a : b; }
+INLINE vec v_abs(vec a) { return a < 0 ? -a : a; }
+INLINE vec v_sign(vec a) { return (a > 0 ? splat(1) : splat(0)) - (a < 0 ? splat(1) : splat(0)); }
+INLINE vec v_min(vec a, vec b) { return a < b ? a : b; }
+INLINE vec v_max(vec a, vec b) { return a > b ? a : b; }
+
+INLINE void prologue(const vec *p, vec *h) {
+/*PROLOGUE*/
+}
+INLINE void rates(const vec *x, const vec *u, const vec *p, const vec *h, vec *dx) {
+/*RATES*/
+}
+INLINE void rates_jacobian(const vec *x, const vec *u, const vec *p, const vec *h, vec *dx, vec *A, vec (*B)[NX]) {
+/*RATES_JACOBIAN*/
+}
+INLINE void outputs(const vec *x, const vec *u, const vec *p, const vec *h, vec *y) {
+/*OUTPUTS*/
+}
+INLINE void outputs_jacobian(const vec *x, const vec *u, const vec *p, const vec *h, vec *y, vec *C, vec (*D)[NY]) {
+/*OUTPUTS_JACOBIAN*/
+}
+INLINE void tangent(const vec *A, const vec *b, const vec *z, vec *k) {
+/*TANGENT*/
+}
+INLINE void tangent_output(const vec *C, const vec *d, const vec *z, vec *s) {
+/*TANGENT_OUTPUT*/
+}
+
+struct Job {
+  long groups, steps, substeps, foh, samples, directions, threads;
+  const real *u;           // [NU][samples]   recorded inputs, all experiments one after another
+  const real *dt;          // [samples]       time to the next sample
+  const long *start;       // [groups][LANES] first sample of each window
+  const long *last;        // [groups][LANES] last sample that the window may read
+  const long *column;      // [directions]    parameter column, or NS for a start-state direction
+  const real *p;           // [groups][NP][LANES]
+  real *x;                 // [groups][NX][LANES]              in: start states, out: states after the last step
+  real *dx;                // [groups][directions][NX][LANES]  likewise for the tangents
+  real *y;                 // [groups][steps][NY][LANES]
+  real *dy;                // [groups][steps][NY][directions][LANES] or null
+  real *trace;             // [groups][steps][NX][LANES] or null: states at the samples
+};
+
+INLINE vec gather(const real *data, const long *index) {
+  vec r;
+  for (int l = 0; l < LANES; l++) r[l] = data[index[l]];
+  return r;
+}
+
+template <bool TANGENTS> static void run_group(const Job &job, long g) {
+  vec x[NX], y[NY], u0[NU], u1[NU], uh[NU], h[NH];
+  vec A[4][NA], C[NC];
+  static thread_local vec B[4][NS + 1][NX], D[NS + 1][NY];
+  const long nd = job.directions;
+  const vec *p = (const vec *)job.p + g * NP;
+  vec *gx = (vec *)job.x + g * NX, *gdx = (vec *)job.dx + g * nd * NX;
+  vec *gy = (vec *)job.y + g * job.steps * NY;
+  vec *gdy = (vec *)job.dy + g * job.steps * NY * nd;
+  vec *gtrace = job.trace ? (vec *)job.trace + g * job.steps * NX : 0;
+  prologue(p, h);
+  for (int s = 0; s < 4; s++) for (int k = 0; k <= NS; k++) for (int i = 0; i < NX; i++) B[s][k][i] = vec{};
+  for (int k = 0; k <= NS; k++) for (int i = 0; i < NY; i++) D[k][i] = vec{};
+  for (int i = 0; i < NX; i++) x[i] = gx[i];
+  for (long n = 0; n < job.steps; n++) {
+    long now[LANES], next[LANES];
+    for (int l = 0; l < LANES; l++) {
+      long at = job.start[g * LANES + l] + n, end = job.last[g * LANES + l];
+      now[l] = at < end ? at : end;
+      next[l] = at + 1 < end ? at + 1 : end;
+    }
+    for (int i = 0; i < NU; i++) u0[i] = gather(job.u + i * job.samples, now);
+    for (int i = 0; i < NU; i++) u1[i] = job.foh ? gather(job.u + i * job.samples, next) : u0[i];
+    if (TANGENTS) outputs_jacobian(x, u0, p, h, y, C, D); else outputs(x, u0, p, h, y);
+    for (int i = 0; i < NY; i++) gy[n * NY + i] = y[i];
+    if (gtrace) for (int i = 0; i < NX; i++) gtrace[n * NX + i] = x[i];
+    if (TANGENTS) for (long d = 0; d < nd; d++) {
+      vec s[NY];
+      tangent_output(C, D[job.column[d]], gdx + d * NX, s);
+      for (int i = 0; i < NY; i++) gdy[(n * NY + i) * nd + d] = s[i];
+    }
+    const vec H = gather(job.dt, now) / (real)job.substeps;
+    for (long m = 0; m < job.substeps; m++) {
+      vec a[NU], b[NU], k1[NX], k2[NX], k3[NX], k4[NX], z[NX];
+      const real from = (real)m / job.substeps, middle = ((real)m + (real)0.5) / job.substeps, to = (real)(m + 1) / job.substeps;
+      for (int i = 0; i < NU; i++) {
+        a[i] = u0[i] + from * (u1[i] - u0[i]);
+        uh[i] = u0[i] + middle * (u1[i] - u0[i]);
+        b[i] = u0[i] + to * (u1[i] - u0[i]);
+      }
+      if (TANGENTS) rates_jacobian(x, a, p, h, k1, A[0], B[0]); else rates(x, a, p, h, k1);
+      for (int i = 0; i < NX; i++) z[i] = x[i] + (real)0.5 * H * k1[i];
+      if (TANGENTS) rates_jacobian(z, uh, p, h, k2, A[1], B[1]); else rates(z, uh, p, h, k2);
+      for (int i = 0; i < NX; i++) z[i] = x[i] + (real)0.5 * H * k2[i];
+      if (TANGENTS) rates_jacobian(z, uh, p, h, k3, A[2], B[2]); else rates(z, uh, p, h, k3);
+      for (int i = 0; i < NX; i++) z[i] = x[i] + H * k3[i];
+      if (TANGENTS) rates_jacobian(z, b, p, h, k4, A[3], B[3]); else rates(z, b, p, h, k4);
+      for (int i = 0; i < NX; i++) x[i] += H / (real)6 * (k1[i] + (real)2 * (k2[i] + k3[i]) + k4[i]);
+      if (TANGENTS) for (long d = 0; d < nd; d++) {
+        vec *q = gdx + d * NX, w[NX];
+        const long c = job.column[d];
+        tangent(A[0], B[0][c], q, k1);
+        for (int i = 0; i < NX; i++) w[i] = q[i] + (real)0.5 * H * k1[i];
+        tangent(A[1], B[1][c], w, k2);
+        for (int i = 0; i < NX; i++) w[i] = q[i] + (real)0.5 * H * k2[i];
+        tangent(A[2], B[2][c], w, k3);
+        for (int i = 0; i < NX; i++) w[i] = q[i] + H * k3[i];
+        tangent(A[3], B[3][c], w, k4);
+        for (int i = 0; i < NX; i++) q[i] += H / (real)6 * (k1[i] + (real)2 * (k2[i] + k3[i]) + k4[i]);
+      }
+    }
+  }
+  for (int i = 0; i < NX; i++) gx[i] = x[i];
+}
+
+extern "C" void run(const Job *job) {
+#pragma omp parallel for schedule(dynamic) num_threads(job->threads)
+  for (long g = 0; g < job->groups; g++)
+    if (job->directions) run_group<true>(*job, g); else run_group<false>(*job, g);
+}
+"""

@@ -1,0 +1,257 @@
+"""Tracing: run a model's equations once on symbols and record the scalar operations that they perform.
+
+The symbols are tensors to the user's code (a wrapper subclass that intercepts every aten operation), each holding an array of
+expression nodes, so that stacking, reshaping and small matrix products work as well as elementwise mathematics.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import torch
+from torch.utils._pytree import tree_map
+
+from greybox_torch.codegen.expression import FUNCTIONS, Graph
+from greybox_torch.errors import UserError
+
+
+class UnsupportedOperation(Exception):
+    """The model uses a torch operation that the compiled route does not know; the eager route still does."""
+
+
+class Symbol(torch.Tensor):
+    """A tensor of expression nodes."""
+
+    nodes: np.ndarray
+    graph: Graph
+
+    @staticmethod
+    def of(graph: Graph, nodes: np.ndarray) -> Symbol:
+        symbol = torch.Tensor._make_wrapper_subclass(Symbol, nodes.shape, dtype=torch.float64)  # type: ignore[attr-defined]
+        symbol.nodes, symbol.graph = nodes, graph
+        return symbol
+
+    @classmethod
+    def __torch_dispatch__(cls, func: Any, types: Any, args: Any = (), kwargs: Any = None) -> Any:
+        kwargs = kwargs or {}
+        graph = _graph_of(args, kwargs)
+        name = func._schema.name.removeprefix("aten::").rstrip("_") if not func._schema.name.endswith("__") else ""
+        handler = _HANDLERS.get(name)
+        if handler is None:
+            if name == "_local_scalar_dense":
+                raise UserError(
+                    "the model's equations branch on the value of a signal (a Python `if`, `float()` or `.item()` on a tensor); "
+                    "write torch.where(condition, yes, no) instead, so that all samples can be computed side by side"
+                )
+            raise UnsupportedOperation(f"torch operation '{func._schema.name}'")
+        result = handler(graph, *tree_map(lambda a: _nodes_of(graph, a), args), **kwargs)
+        return Symbol.of(graph, np.asarray(result, dtype=object))
+
+
+def symbols(graph: Graph, kind: str, count: int) -> Symbol:
+    """A vector of ``count`` leaves of one kind (``x``, ``u`` or ``p``)."""
+    nodes = np.empty(count, dtype=object)
+    nodes[:] = [graph.leaf(kind, i) for i in range(count)]
+    return Symbol.of(graph, nodes)
+
+
+def _graph_of(args: Any, kwargs: Any) -> Graph:
+    found: list[Graph] = []
+    tree_map(lambda a: found.append(a.graph) if isinstance(a, Symbol) else None, (args, kwargs))
+    return found[0]
+
+
+class _Array(np.ndarray):
+    """Marks an array of nodes, apart from plain Python arguments."""
+
+
+def _nodes_of(graph: Graph, value: Any) -> Any:
+    if isinstance(value, Symbol):
+        return value.nodes.view(_Array)
+    if isinstance(value, torch.Tensor):
+        array = value.detach().cpu().numpy()
+        return _map(lambda v: graph.constant(float(v)), array)
+    return value
+
+
+def _operand(graph: Graph, value: Any) -> np.ndarray:
+    if isinstance(value, _Array):
+        return value
+    return _map(lambda v: graph.constant(float(v)), np.asarray(value))
+
+
+def _map(function: Callable[..., Any], *arrays: np.ndarray) -> np.ndarray:
+    """Apply ``function`` over broadcast arrays of objects."""
+    pieces = np.broadcast_arrays(*[np.asarray(a, dtype=object) for a in arrays])
+    result = np.empty(pieces[0].shape, dtype=object)
+    for index in np.ndindex(result.shape):
+        result[index] = function(*[piece[index] for piece in pieces])
+    return result.view(_Array)
+
+
+def _elementwise(operation: str) -> Callable[..., np.ndarray]:
+    def handler(graph: Graph, *operands: Any, **_: Any) -> np.ndarray:
+        return _map(lambda *n: graph.apply(operation, *n), *[_operand(graph, o) for o in operands])
+
+    return handler
+
+
+def _added(sign: str, swap: bool = False) -> Callable[..., np.ndarray]:
+    def handler(graph: Graph, left: Any, right: Any, alpha: float = 1) -> np.ndarray:
+        left, right = (right, left) if swap else (left, right)
+        scaled = _operand(graph, right) if alpha == 1 else _elementwise("mul")(graph, right, float(alpha))
+        return _elementwise(sign)(graph, left, scaled)
+
+    return handler
+
+
+def _power(graph: Graph, base: Any, exponent: Any) -> np.ndarray:
+    def power(b: int, e: int) -> int:
+        constant = graph.value_of(e)
+        return graph.apply("pow", b, e) if constant is None else graph.power(b, constant)
+
+    return _map(power, _operand(graph, base), _operand(graph, exponent))
+
+
+def _clamped(graph: Graph, value: Any, low: Any = None, high: Any = None, **named: Any) -> np.ndarray:
+    low, high = named.get("min", low), named.get("max", high)
+    if low is not None:
+        value = _elementwise("max")(graph, value, _nodes_of(graph, low))
+    return value if high is None else _elementwise("min")(graph, value, _nodes_of(graph, high))
+
+
+def _sigmoid(graph: Graph, value: Any) -> np.ndarray:
+    half = _elementwise("mul")(graph, value, 0.5)
+    return _elementwise("mul")(graph, _elementwise("add")(graph, _elementwise("tanh")(graph, half), 1.0), 0.5)
+
+
+def _reciprocal(graph: Graph, value: Any, power: float = 1.0) -> np.ndarray:
+    return _power(graph, value, -power)
+
+
+def _remainder(graph: Graph, value: Any, period: Any) -> np.ndarray:
+    turns = _elementwise("floor")(graph, _elementwise("div")(graph, value, period))
+    return _elementwise("sub")(graph, value, _elementwise("mul")(graph, turns, period))
+
+
+def _summed(graph: Graph, value: np.ndarray, dims: Any = None, keepdim: bool = False, **_: Any) -> np.ndarray:
+    axes = tuple(np.atleast_1d(dims)) if dims not in (None, []) else tuple(range(value.ndim))
+    moved = np.moveaxis(value, [int(a) for a in axes], range(len(axes)))
+    flat = moved.reshape(-1, *moved.shape[len(axes) :])
+    total = _operand(graph, np.zeros(flat.shape[1:]))
+    for row in flat:
+        total = _elementwise("add")(graph, total, np.asarray(row, dtype=object).view(_Array))
+    return np.expand_dims(total, tuple(int(a) for a in axes)) if keepdim else total
+
+
+def _product(graph: Graph, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    a = left if left.ndim == 2 else left[None, :]
+    b = right if right.ndim == 2 else right[:, None]
+    terms = _elementwise("mul")(graph, a[:, :, None].view(_Array), b[None, :, :].view(_Array))
+    result = _summed(graph, terms, [1])
+    if left.ndim == 1:
+        result = result[0]
+    return result[..., 0] if right.ndim == 1 else result
+
+
+def _affine(graph: Graph, bias: Any, left: Any, right: Any, **_: Any) -> np.ndarray:
+    return _elementwise("add")(graph, _product(graph, left, right), bias)
+
+
+def _indexed(graph: Graph, value: np.ndarray, dim: int, index: int) -> np.ndarray:
+    return np.asarray(np.take(value, index, axis=dim), dtype=object)
+
+
+def _sliced(
+    graph: Graph, value: np.ndarray, dim: int = 0, start: Any = None, stop: Any = None, step: int = 1
+) -> np.ndarray:
+    keys: list[Any] = [slice(None)] * value.ndim
+    keys[dim] = slice(start, None if stop is not None and stop > value.shape[dim] else stop, step)
+    return value[tuple(keys)]
+
+
+def _stacked(graph: Graph, pieces: Any, dim: int = 0) -> np.ndarray:
+    return np.stack([np.asarray(_nodes_of(graph, p), dtype=object) for p in pieces], axis=dim)
+
+
+def _joined(graph: Graph, pieces: Any, dim: int = 0) -> np.ndarray:
+    return np.concatenate([np.asarray(_nodes_of(graph, p), dtype=object) for p in pieces], axis=dim)
+
+
+def _full(value: float) -> Callable[..., np.ndarray]:
+    return lambda graph, like, *_, **__: _operand(graph, np.full(np.shape(like), value))
+
+
+def _same(graph: Graph, value: Any, *_: Any, **__: Any) -> Any:
+    return value
+
+
+_HANDLERS: dict[str, Callable[..., Any]] = {
+    "add": _added("add"),
+    "sub": _added("sub"),
+    "rsub": _added("sub", swap=True),
+    "mul": _elementwise("mul"),
+    "div": lambda g, a, b, rounding_mode=None: (
+        _elementwise("div")(g, a, b)
+        if rounding_mode is None
+        else _elementwise("floor")(g, _elementwise("div")(g, a, b))
+    ),
+    "pow": _power,
+    "square": lambda g, a: _power(g, a, 2.0),
+    "reciprocal": _reciprocal,
+    "rsqrt": lambda g, a: _power(g, _elementwise("sqrt")(g, a), -1.0),
+    "maximum": _elementwise("max"),
+    "minimum": _elementwise("min"),
+    "clamp": _clamped,
+    "clamp_min": lambda g, a, low: _clamped(g, a, low, None),
+    "clamp_max": lambda g, a, high: _clamped(g, a, None, high),
+    "relu": lambda g, a: _clamped(g, a, 0.0, None),
+    "sigmoid": _sigmoid,
+    "silu": lambda g, a: _elementwise("mul")(g, a, _sigmoid(g, a)),
+    "softplus": lambda g, a, *_: _elementwise("log1p")(g, _elementwise("exp")(g, a)),
+    "sgn": _elementwise("sign"),
+    "neg": _elementwise("neg"),
+    "remainder": _remainder,
+    "heaviside": lambda g, a, at_zero: _elementwise("where")(
+        g, _elementwise("eq")(g, a, 0.0), at_zero, _elementwise("where")(g, _elementwise("gt")(g, a, 0.0), 1.0, 0.0)
+    ),
+    "where": _elementwise("where"),
+    "logical_and": _elementwise("and"),
+    "logical_or": _elementwise("or"),
+    "logical_not": _elementwise("not"),
+    "bitwise_and": _elementwise("and"),
+    "bitwise_or": _elementwise("or"),
+    "bitwise_not": _elementwise("not"),
+    "sum": _summed,
+    "mm": _product,
+    "mv": _product,
+    "dot": _product,
+    "addmm": _affine,
+    "addmv": _affine,
+    "select": _indexed,
+    "slice": _sliced,
+    "stack": _stacked,
+    "cat": _joined,
+    "t": lambda g, a: a.T,
+    "transpose": lambda g, a, i, j: np.swapaxes(a, i, j),
+    "unsqueeze": lambda g, a, dim: np.expand_dims(a, dim if dim >= 0 else a.ndim + 1 + dim),
+    "squeeze": lambda g, a, dim=None: np.squeeze(a, axis=dim),
+    "view": lambda g, a, shape: np.reshape(a, shape),
+    "_unsafe_view": lambda g, a, shape: np.reshape(a, shape),
+    "reshape": lambda g, a, shape: np.reshape(a, shape),
+    "expand": lambda g, a, shape, **_: np.broadcast_to(a, [n if n >= 0 else a.shape[i] for i, n in enumerate(shape)]),
+    "detach": _same,
+    "clone": _same,
+    "alias": _same,
+    "_to_copy": _same,
+    "lift_fresh": _same,
+    "zeros_like": _full(0.0),
+    "ones_like": _full(1.0),
+    "new_zeros": lambda g, like, shape, **_: _operand(g, np.zeros(shape)),
+    "new_ones": lambda g, like, shape, **_: _operand(g, np.ones(shape)),
+    "full_like": lambda g, like, value, **_: _operand(g, np.full(np.shape(like), value)),
+    **{name: _elementwise(name) for name in ("lt", "le", "gt", "ge", "eq", "ne")},
+    **{name: _elementwise(name) for name in ((*FUNCTIONS, "atan2"))},
+}

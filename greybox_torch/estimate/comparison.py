@@ -1,0 +1,68 @@
+"""Simulated against measured, experiment by experiment."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.data import Recording
+from greybox_torch.estimate.free_run import simulate
+from greybox_torch.estimate.initial import estimate_initial
+from greybox_torch.estimate.metrics import fit_percent, root_mean_square
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.simulate.stepper import Stepper
+
+
+@dataclass(frozen=True)
+class Score:
+    """Fit in % and root mean square error (in the output's unit) of one output in one experiment."""
+
+    experiment: str
+    role: str
+    output: str
+    fit: float
+    rmse: float
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Scores, and the simulated outputs (N_e, n_y) of every experiment."""
+
+    scores: tuple[Score, ...]
+    simulated: tuple[np.ndarray, ...]
+
+
+def compare(
+    problem: Problem,
+    recordings: Sequence[Recording],
+    stepper: Stepper,
+    *,
+    substeps: int = 1,
+    estimate_starts: bool = True,
+) -> Comparison:
+    """Free-run simulation of every experiment of ``problem`` against its measurement.
+
+    Args:
+        recordings: the recordings that the problem's tape was made of, for names and roles.
+        estimate_starts: estimate the free start states on the first tenth of each experiment before.
+    """
+    if estimate_starts:
+        problem = estimate_initial(problem, stepper, substeps=substeps)
+    simulated = simulate(problem, stepper, substeps=substeps)
+    scores = []
+    for e, recording in enumerate(recordings):
+        for k, output in enumerate(problem.model.outputs):
+            measured = problem.tape.y[k, problem.tape.span(e)]
+            values = simulated[e][:, k]
+            scores.append(
+                Score(
+                    recording.name,
+                    recording.role,
+                    output.name,
+                    fit_percent(measured, values),
+                    root_mean_square(measured, values),
+                )
+            )
+    return Comparison(tuple(scores), tuple(simulated))

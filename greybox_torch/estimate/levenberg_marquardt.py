@@ -1,0 +1,141 @@
+"""Levenberg-Marquardt on normal equations, with bounds and with trial steps that may fail."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from greybox_torch.estimate.termination import Termination
+
+Extra = TypeVar("Extra")
+
+
+@dataclass(frozen=True)
+class Quadratic(Generic[Extra]):
+    """The cost ½‖r‖² at a point, its gradient (d,) and its Gauss-Newton Hessian JᵀJ (d, d), and whatever the caller wants back."""
+
+    cost: float
+    gradient: np.ndarray
+    hessian: np.ndarray
+    extra: Extra
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Limits of the iteration. ``tolerance`` is the relative change of the cost that counts as none."""
+
+    iterations: int = 60
+    tolerance: float = 1e-10
+    damping: float = 1e-3
+    trials: int = 14
+
+
+DEFAULT = Settings()
+"""To the optimum."""
+
+ROUGH = Settings(iterations=25, tolerance=1e-4)
+"""To its neighbourhood."""
+
+
+@dataclass(frozen=True)
+class Optimum(Generic[Extra]):
+    """Where the iteration ended."""
+
+    point: np.ndarray
+    model: Quadratic[Extra]
+    iterations: int
+    evaluations: int
+    termination: Termination
+
+
+def minimise(
+    evaluate: Callable[[np.ndarray], Quadratic[Extra] | None],
+    start: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    *,
+    settings: Settings = DEFAULT,
+    admissible: Callable[[np.ndarray], bool] = lambda point: True,
+    on_iteration: Callable[[int, float, float], None] | None = None,
+) -> Optimum[Extra] | None:
+    """Minimise a sum of squares from ``start`` (d,) within [lower, upper].
+
+    Args:
+        evaluate: cost, gradient and Hessian at a point, or None where the simulation fails there (a rejected step).
+        admissible: constraints beyond the bounds; steps are shortened until they hold.
+        on_iteration: called with iteration, cost and damping after every accepted step.
+
+    Returns:
+        The optimum, or None where ``evaluate`` fails at the start already.
+
+    Source: D. W. Marquardt (1963); damping after H. B. Nielsen, "Damping parameter in Marquardt's method", 1999; bounds by an active
+    set of variables whose gradient points outwards.
+    """
+    point = np.clip(start, lower, upper)
+    here = evaluate(point)
+    if here is None:
+        return None
+    evaluations, growth, damping = 1, 2.0, settings.damping
+    diagonal = _diagonal(here.hessian, None)
+    for iteration in range(1, settings.iterations + 1):
+        free = ~(((point <= lower) & (here.gradient > 0)) | ((point >= upper) & (here.gradient < 0)))
+        if not free.any():
+            return Optimum(point, here, iteration - 1, evaluations, Termination.converged)
+        diagonal = _diagonal(here.hessian, diagonal)
+        moved = False
+        for _ in range(settings.trials):
+            step = _step(here, diagonal, damping, free)
+            trial = _shortened(point, step, lower, upper, admissible)
+            taken = trial - point
+            predicted = -(here.gradient @ taken) - 0.5 * taken @ here.hessian @ taken
+            if not taken.any() or 0.0 <= predicted <= 1e-2 * settings.tolerance * here.cost:
+                return Optimum(point, here, iteration, evaluations, Termination.small_step)
+            there = evaluate(trial) if predicted > 0 else None
+            evaluations += 1
+            gain = -1.0 if there is None else float((here.cost - there.cost) / predicted)
+            if there is not None and gain > 1e-4:
+                change = (here.cost - there.cost) / here.cost
+                point, here, moved = trial, there, True
+                damping *= max(0.1, 1.0 - (2.0 * gain - 1.0) ** 3) if gain < 1.0 else 0.1
+                growth = 2.0
+                break
+            damping, growth = damping * growth, growth * 2.0
+        if on_iteration is not None:
+            on_iteration(iteration, here.cost, damping)
+        if not moved:
+            return Optimum(point, here, iteration, evaluations, Termination.stalled)
+        if change < settings.tolerance:
+            return Optimum(point, here, iteration, evaluations, Termination.converged)
+    return Optimum(point, here, settings.iterations, evaluations, Termination.iteration_limit)
+
+
+def _diagonal(hessian: np.ndarray, before: np.ndarray | None) -> np.ndarray:
+    """Scales of the unknowns: the largest curvature seen so far, as MINPACK does, never zero."""
+    now = np.diag(hessian)
+    largest = now if before is None else np.maximum(now, before)
+    return np.maximum(largest, 1e-14 * max(float(largest.max()), 1e-300))
+
+
+def _step(here: Quadratic, diagonal: np.ndarray, damping: float, free: np.ndarray) -> np.ndarray:
+    scale = 1.0 / np.sqrt(diagonal[free])
+    matrix = here.hessian[np.ix_(free, free)] * scale[:, None] * scale[None, :]
+    matrix[np.diag_indices_from(matrix)] += damping
+    right = -here.gradient[free] * scale
+    step = np.zeros(len(free))
+    step[free] = scale * np.linalg.lstsq(matrix, right, rcond=1e-15)[0]
+    return step
+
+
+def _shortened(
+    point: np.ndarray, step: np.ndarray, lower: np.ndarray, upper: np.ndarray, admissible: Callable[[np.ndarray], bool]
+) -> np.ndarray:
+    """The projected step, halved until the joint constraints hold (not at all where they never do)."""
+    for _ in range(30):
+        trial = np.clip(point + step, lower, upper)
+        if admissible(trial):
+            return trial
+        step = 0.5 * step
+    return point

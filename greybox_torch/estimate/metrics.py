@@ -1,0 +1,25 @@
+"""How well a simulation matches a measurement."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def fit_percent(measured: np.ndarray, simulated: np.ndarray) -> float:
+    """100 (1 − ‖y − ŷ‖ / ‖y − ȳ‖) over the samples (N,) that are not missing; −inf where the simulation is not finite.
+
+    Source: L. Ljung, "System Identification Toolbox: User's Guide", normalised root mean square error fit.
+    """
+    known = ~np.isnan(measured)
+    y, s = measured[known], simulated[known]
+    if not np.isfinite(s).all():
+        return float("-inf")
+    spread = np.linalg.norm(y - y.mean())
+    return float(100.0 * (1.0 - np.linalg.norm(y - s) / spread)) if spread > 0 else float("-inf")
+
+
+def root_mean_square(measured: np.ndarray, simulated: np.ndarray) -> float:
+    """Root mean square error over the samples (N,) that are not missing, in the signal's unit; inf where not finite."""
+    known = ~np.isnan(measured)
+    error = measured[known] - simulated[known]
+    return float(np.sqrt(np.mean(error**2))) if np.isfinite(error).all() else float("inf")

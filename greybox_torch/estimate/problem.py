@@ -1,0 +1,179 @@
+"""An estimation problem: a model, recordings, and which numbers are free."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import torch
+
+from greybox_torch.data import DataSet, Recording
+from greybox_torch.errors import UserError
+from greybox_torch.model import GreyBoxModel, Parameter, Signals, State
+from greybox_torch.simulate.tape import Tape, make_tape
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A model on some recordings.
+
+    ``values`` (n_p,) and ``lower``, ``upper`` in physical units, in the order of the model's parameters; ``free`` (n_p,) says which
+    are estimated. ``initial`` (E, n_x) start states per experiment, ``initial_free`` (n_x,) which are estimated. ``weights`` (n_y,)
+    multiply the errors of the outputs.
+    """
+
+    model: GreyBoxModel
+    tape: Tape
+    names: tuple[str, ...]
+    values: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    free: np.ndarray
+    initial: np.ndarray
+    initial_free: np.ndarray
+    weights: np.ndarray
+
+    @property
+    def free_names(self) -> tuple[str, ...]:
+        return tuple(n for n, f in zip(self.names, self.free, strict=True) if f)
+
+    @property
+    def free_states(self) -> np.ndarray:
+        """Indices of the states whose start value is estimated."""
+        return np.flatnonzero(self.initial_free)
+
+    def with_values(self, values: np.ndarray, initial: np.ndarray | None = None) -> Problem:
+        return replace(self, values=values, initial=self.initial if initial is None else initial)
+
+    def with_initial_fixed(self) -> Problem:
+        return replace(self, initial_free=np.zeros_like(self.initial_free))
+
+    def admissible(self, values: np.ndarray) -> bool:
+        """Whether the model's joint constraints hold at ``values`` (n_p,)."""
+        p = Signals(
+            "parameter",
+            {n: torch.tensor(float(v), dtype=torch.float64) for n, v in zip(self.names, values, strict=True)},
+        )
+        return all(float(quantity) > 0 for quantity in self.model.admissible(p).values())
+
+
+def make_problem(
+    dataset: DataSet,
+    model: GreyBoxModel,
+    recordings: Sequence[Recording],
+    *,
+    values: Mapping[str, float] | None = None,
+) -> Problem:
+    """The problem that a card states: start values, bounds and what is fixed from the model, overridden by the card.
+
+    Args:
+        values: parameter values that replace the card's (for example those of an earlier fit).
+
+    Raises:
+        UserError: a name in the card that the model does not have, a start value outside its bounds or constraints, channels that
+            do not match.
+    """
+    tape = make_tape(dataset, model, recordings)
+    parameters = [_from_card(p, dataset) for p in model.declared_parameters]
+    _check_names(dataset, "parameters", dataset.parameters, [p.name for p in parameters], model)
+    _check_names(dataset, "initial", dataset.initial, [s.name for s in model.states], model)
+    numbers = {p.name: p.value for p in parameters} | dict(values or {})
+    problem = Problem(
+        model=model,
+        tape=tape,
+        names=tuple(p.name for p in parameters),
+        values=np.array([numbers[p.name] for p in parameters], dtype=float),
+        lower=np.array([p.bounds[0] for p in parameters]),
+        upper=np.array([p.bounds[1] for p in parameters]),
+        free=np.array([not p.fixed for p in parameters], dtype=bool),
+        initial=_start_states(dataset, model, tape),
+        initial_free=np.array([not _initial_fixed(s, dataset) for s in model.states], dtype=bool),
+        weights=_weights(tape),
+    )
+    if not problem.admissible(problem.values):
+        broken = ", ".join(model.admissible(_tensors(problem)))
+        raise UserError(
+            f"{dataset.path}: [model.parameters] break a constraint of {model.title}: these must be positive: {broken}"
+        )
+    return problem
+
+
+def _tensors(problem: Problem) -> Signals:
+    pairs = zip(problem.names, problem.values, strict=True)
+    return Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in pairs})
+
+
+def _from_card(parameter: Parameter, dataset: DataSet) -> Parameter:
+    entry = dataset.parameters.get(parameter.name)
+    if entry is None:
+        return parameter
+    given = {k: v for k in ("value", "lower", "upper", "fixed") if (v := getattr(entry, k)) is not None}
+    try:
+        return replace(parameter, **given)
+    except UserError as error:
+        raise UserError(f"{dataset.path}: [model.parameters] {error}") from None
+
+
+def _check_names(
+    dataset: DataSet, table: str, given: Mapping[str, object], known: list[str], model: GreyBoxModel
+) -> None:
+    for name in given:
+        if name not in known:
+            close = difflib.get_close_matches(name, known, n=1)
+            hint = f"; did you mean '{close[0]}'?" if close else ""
+            raise UserError(
+                f"{dataset.path}: [model.{table}] {name}: model {model.title} has no such name; expected one of {', '.join(known)}{hint}"
+            )
+
+
+def _initial_fixed(state: State, dataset: DataSet) -> bool:
+    entry = dataset.initial.get(state.name)
+    return state.fixed if entry is None or entry.fixed is None else bool(entry.fixed)
+
+
+def _start_states(dataset: DataSet, model: GreyBoxModel, tape: Tape) -> np.ndarray:
+    """Start states (E, n_x): the card's, else the model's, measured where the model says so."""
+    rows = np.zeros((len(tape.first), len(model.states)))
+    for i, state in enumerate(model.states):
+        entry = dataset.initial.get(state.name)
+        if entry is not None and entry.value is not None:
+            rows[:, i] = entry.value
+        elif state.initial == "measured":
+            rows[:, i] = [first_known(tape, measuring_output(model, state), e) for e in range(len(rows))]
+        else:
+            rows[:, i] = float(state.initial)
+    return rows
+
+
+def measuring_output(model: GreyBoxModel, state: State) -> int:
+    """The output that measures a state: the one of the same name, else the only one in the same unit.
+
+    Raises:
+        UserError: there is none, or more than one in that unit.
+    """
+    names = [o.name for o in model.outputs]
+    if state.name in names:
+        return names.index(state.name)
+    same = [i for i, o in enumerate(model.outputs) if o.unit == state.unit]
+    if len(same) != 1:
+        raise UserError(
+            f"model {model.title}, state '{state.name}': initial is 'measured', but {len(same)} outputs are in '{state.unit}'; "
+            "expected an output of the same name, or exactly one in the same unit"
+        )
+    return same[0]
+
+
+def first_known(tape: Tape, output: int, experiment: int) -> float:
+    """The first sample of an output that is not missing."""
+    values = tape.y[output, tape.span(experiment)]
+    return float(values[int(np.argmax(~np.isnan(values)))])
+
+
+def _weights(tape: Tape) -> np.ndarray:
+    """Unit weight for a single output; otherwise the inverse spread of each, so that outputs in different units count alike."""
+    if len(tape.y) == 1:
+        return np.ones(1)
+    spread = np.nanstd(tape.y, axis=1)
+    return 1.0 / np.where(spread > 0, spread, 1.0)

@@ -1,0 +1,164 @@
+"""The base class of every grey-box model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
+
+import torch
+
+from greybox_torch.errors import UserError
+from greybox_torch.model.constraints import parameter_scale, project
+from greybox_torch.model.declarations import Input, Output, Parameter, State
+from greybox_torch.model.ports import Port, actuators, sensors
+from greybox_torch.model.signals import Signals
+
+
+class GreyBoxModel(torch.nn.Module):
+    """A physical model dx/dt = f(x, u, p), y = g(x, u, p) with named, constrained, learnable parameters.
+
+    A subclass declares ``states``, ``inputs``, ``outputs``, ``parameters`` and ``ports`` as class attributes and defines
+    :meth:`derivative` and :meth:`output` in elementwise torch operations. The declared list of parameters is kept as
+    ``declared_parameters``; ``parameters()`` stays what it is on every :class:`torch.nn.Module`.
+
+    Raises:
+        UserError: a declaration is missing, empty, or names something twice.
+    """
+
+    states: Sequence[State] = ()
+    inputs: Sequence[Input] = ()
+    outputs: Sequence[Output] = ()
+    ports: Sequence[Port] = ()
+    declared_parameters: Sequence[Parameter] = ()
+    parameters: Any  # a subclass assigns its list; read `declared_parameters`, since torch's method keeps the name
+    name: ClassVar[str] = ""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        declared = cls.__dict__.get("parameters")
+        if isinstance(declared, list | tuple):
+            cls.declared_parameters = tuple(declared)
+            del cls.parameters
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._check_declarations()
+        self._scales = {p.name: parameter_scale(p.value, *p.bounds) for p in self.declared_parameters}
+        self.raw = torch.nn.ParameterDict()
+        for parameter in self.declared_parameters:
+            start = torch.tensor(parameter.value / self._scales[parameter.name], dtype=torch.float64)
+            self.raw[_key(parameter.name)] = torch.nn.Parameter(start, requires_grad=not parameter.fixed)
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        """Rates of all states by name, in state unit per second."""
+        raise NotImplementedError(f"{type(self).__name__} does not define derivative(x, u, p, port)")
+
+    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+        """Outputs by name."""
+        raise NotImplementedError(f"{type(self).__name__} does not define output(x, u, p)")
+
+    def admissible(self, p: Any) -> dict[str, Any]:
+        """Quantities that must stay positive, by a name for messages (for constraints that join several parameters)."""
+        return {}
+
+    @property
+    def title(self) -> str:
+        """The model's name for reports."""
+        return self.name or type(self).__name__
+
+    @property
+    def all_ports(self) -> tuple[Port, ...]:
+        """Declared ports, then the actuators of the inputs and the sensors of the outputs."""
+        return (
+            *self.ports,
+            *actuators(tuple(i.name for i in self.inputs)),
+            *sensors(tuple(o.name for o in self.outputs)),
+        )
+
+    def values(self) -> dict[str, float]:
+        """The present parameter values in physical units."""
+        with torch.no_grad():
+            return {name: float(value) for name, value in self.physical().items()}
+
+    def set_values(self, values: Mapping[str, float]) -> None:
+        """Set parameter values in physical units.
+
+        Raises:
+            UserError: an unknown name, or a value outside its bounds.
+        """
+        declared = {p.name: p for p in self.declared_parameters}
+        for name, value in values.items():
+            if name not in declared:
+                raise UserError(f"model {self.title} has no parameter '{name}' (it has: {', '.join(declared)})")
+            low, high = declared[name].bounds
+            if not low <= value <= high:
+                raise UserError(
+                    f"parameter '{name}' of model {self.title}: {value:g} lies outside its bounds [{low:g}, {high:g}]"
+                )
+            with torch.no_grad():
+                self.raw[_key(name)].fill_(value / self._scales[name])
+
+    def physical(self) -> Signals:
+        """The parameters as differentiable tensors in physical units, held within their bounds."""
+        values = {}
+        for parameter in self.declared_parameters:
+            scale = self._scales[parameter.name]
+            low, high = parameter.bounds
+            values[parameter.name] = project(self.raw[_key(parameter.name)], low / scale, high / scale) * scale
+        return Signals("parameter", values)
+
+    def project_(self) -> None:
+        """Bring the raw parameters back into their bounds, after an optimiser's step."""
+        with torch.no_grad():
+            for parameter in self.declared_parameters:
+                scale = self._scales[parameter.name]
+                low, high = parameter.bounds
+                self.raw[_key(parameter.name)].clamp_(low / scale, high / scale)
+
+    def rates(self, x: torch.Tensor, u: torch.Tensor, p: Any) -> torch.Tensor:
+        """The right-hand side on stacked tensors: x (n_x, *batch), u (n_u, *batch) -> (n_x, *batch)."""
+        xs, us = self._named(x, u)
+        ports = Signals("port", {port.name: x.new_zeros(()) for port in self.all_ports})
+        rates = self.derivative(xs, us, p, ports)
+        return _stacked(rates, [s.name for s in self.states], x, f"{self.title}.derivative()")
+
+    def measured(self, x: torch.Tensor, u: torch.Tensor, p: Any) -> torch.Tensor:
+        """The outputs on stacked tensors: x (n_x, *batch), u (n_u, *batch) -> (n_y, *batch)."""
+        xs, us = self._named(x, u)
+        return _stacked(self.output(xs, us, p), [o.name for o in self.outputs], x, f"{self.title}.output()")
+
+    def _named(self, x: torch.Tensor, u: torch.Tensor) -> tuple[Signals, Signals]:
+        xs = Signals("state", {s.name: x[i] for i, s in enumerate(self.states)})
+        us = Signals("input", {s.name: u[i] for i, s in enumerate(self.inputs)})
+        return xs, us
+
+    def _check_declarations(self) -> None:
+        for kind in ("states", "outputs"):
+            if not getattr(self, kind):
+                raise UserError(f"model {self.title}: '{kind}' is empty, expected at least one")
+        for kind in ("states", "inputs", "outputs", "declared_parameters", "ports"):
+            names = [item.name for item in getattr(self, kind)]
+            twice = sorted({n for n in names if names.count(n) > 1})
+            if twice:
+                raise UserError(
+                    f"model {self.title}: '{kind.removeprefix('declared_')}' names {', '.join(twice)} twice"
+                )
+
+
+def _key(name: str) -> str:
+    """A parameter's name as a key of torch.nn.ParameterDict, which reserves the dot."""
+    return name.replace(".", "/")
+
+
+def _stacked(values: Mapping[str, Any], names: list[str], like: torch.Tensor, where: str) -> torch.Tensor:
+    if not isinstance(values, Mapping):
+        raise UserError(
+            f"{where} returned {type(values).__name__}, expected a dictionary with the keys {', '.join(names)}"
+        )
+    missing = [n for n in names if n not in values]
+    extra = [n for n in values if n not in names]
+    if missing or extra:
+        found = ", ".join(values) or "nothing"
+        raise UserError(f"{where} returned {found}; expected {', '.join(names)}")
+    rows = [torch.as_tensor(values[n], dtype=like.dtype, device=like.device) for n in names]
+    return torch.stack(torch.broadcast_tensors(*rows, like[0])[:-1])

@@ -1,0 +1,112 @@
+"""Ports: the places of a model where physics may be missing.
+
+A port accepts an extra generalised force (N or N m), zero while nothing is attached. Positive pushes a body forward and adds to a
+coupling's restoring force. Besides the declared ports every input has a port ``actuator`` and every output a port ``sensor``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+Signal = str | Callable[[Any, Any, Any], Any]
+"""A state's name, or a function ``(x, u, p) -> tensor``."""
+
+
+@dataclass(frozen=True)
+class Body:
+    """One mass: its speed, its position where the model has one, and the load it carries where that is known."""
+
+    name: str
+    speed: Signal
+    position: Signal | None = None
+    load: Signal | None = None
+
+    @property
+    def kind(self) -> str:
+        return "body"
+
+    @property
+    def signals(self) -> dict[str, Signal]:
+        pairs = {"speed": self.speed, "position": self.position, "load": self.load}
+        return {name: signal for name, signal in pairs.items() if signal is not None}
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """A connection between two masses: its deflection and the deflection's rate."""
+
+    name: str
+    deflection: Signal
+    rate: Signal
+
+    @property
+    def kind(self) -> str:
+        return "coupling"
+
+    @property
+    def signals(self) -> dict[str, Signal]:
+        return {"deflection": self.deflection, "rate": self.rate}
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Anything else that is a rate equation, with the level that it balances."""
+
+    name: str
+    level: Signal
+
+    @property
+    def kind(self) -> str:
+        return "balance"
+
+    @property
+    def signals(self) -> dict[str, Signal]:
+        return {"level": self.level}
+
+
+@dataclass(frozen=True)
+class Actuator:
+    """The way from a recorded input to the input that acts."""
+
+    name: str
+    input: str
+
+    @property
+    def kind(self) -> str:
+        return "actuator"
+
+    @property
+    def signals(self) -> dict[str, Signal]:
+        name = self.input
+        return {"input": lambda x, u, p: u[name]}
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """The way from a true output to the recorded one."""
+
+    name: str
+    output: str
+
+    @property
+    def kind(self) -> str:
+        return "sensor"
+
+    @property
+    def signals(self) -> dict[str, Signal]:
+        return {}
+
+
+Port = Body | Coupling | Balance | Actuator | Sensor
+
+
+def actuators(inputs: tuple[str, ...]) -> tuple[Actuator, ...]:
+    """The actuator ports of a model with these inputs: ``actuator``, or ``actuator.NAME`` where there are several."""
+    return tuple(Actuator("actuator" if len(inputs) == 1 else f"actuator.{name}", name) for name in inputs)
+
+
+def sensors(outputs: tuple[str, ...]) -> tuple[Sensor, ...]:
+    """The sensor ports of a model with these outputs: ``sensor``, or ``sensor.NAME`` where there are several."""
+    return tuple(Sensor("sensor" if len(outputs) == 1 else f"sensor.{name}", name) for name in outputs)

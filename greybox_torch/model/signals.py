@@ -1,0 +1,48 @@
+"""Tensors by name: what a model's ``derivative`` and ``output`` are handed."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from greybox_torch.errors import UserError
+
+
+class Signals(Mapping[str, Any]):
+    """A read-only namespace of tensors, by attribute or by item; an unknown name is an error that lists the known ones."""
+
+    __slots__ = ("_kind", "_values")
+
+    def __init__(self, kind: str, values: Mapping[str, Any]) -> None:
+        self._kind = kind
+        self._values = dict(values)
+
+    def __getitem__(self, name: str) -> Any:
+        try:
+            return self._values[name]
+        except KeyError:
+            raise self._unknown(name) from None
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return self[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def replaced(self, **values: Any) -> Signals:
+        """The same namespace with some values replaced."""
+        return Signals(self._kind, {**self._values, **values})
+
+    def _unknown(self, name: str) -> UserError:
+        known = ", ".join(self._values) or "none"
+        close = difflib.get_close_matches(name, self._values, n=1)
+        hint = f"; did you mean '{close[0]}'?" if close else ""
+        return UserError(
+            f"the model asks for the {self._kind} '{name}', which it does not declare (declared: {known}){hint}"
+        )

@@ -1,0 +1,124 @@
+"""The compiled stepper: packs windows into vector lanes and calls the machine code made for the model."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.codegen.build import library
+from greybox_torch.codegen.emit import emit
+from greybox_torch.codegen.lower import Equations
+from greybox_torch.simulate.stepper import Run, Windows
+from greybox_torch.simulate.tape import Tape
+
+_LONG, _POINTER = ctypes.c_long, ctypes.c_void_p
+
+
+class _Job(ctypes.Structure):
+    """Mirrors ``struct Job`` of the emitted program."""
+
+    _fields_ = [
+        *[(n, _LONG) for n in ("groups", "steps", "substeps", "foh", "samples", "directions", "threads")],
+        *[(n, _POINTER) for n in ("u", "dt", "start", "last", "column", "p", "x", "dx", "y", "dy", "trace")],
+    ]
+
+
+def native_stepper(equations: Equations, sensitive: tuple[str, ...], precision: str) -> NativeStepper | None:
+    """A compiled stepper, None where no compiler works."""
+    loaded = library(emit(equations, precision))
+    return None if loaded is None else NativeStepper(equations, sensitive, precision, loaded)
+
+
+@dataclass(frozen=True)
+class NativeStepper:
+    """See :class:`greybox_torch.simulate.stepper.Stepper`."""
+
+    equations: Equations
+    sensitive: tuple[str, ...]
+    precision: str
+    loaded: ctypes.CDLL
+
+    def run(
+        self,
+        tape: Tape,
+        windows: Windows,
+        p: np.ndarray,
+        x0: np.ndarray,
+        *,
+        tangents: bool = False,
+        start_directions: np.ndarray | None = None,
+        tangents0: np.ndarray | None = None,
+        substeps: int = 1,
+        keep_states: bool = False,
+    ) -> Run:
+        real = np.float64 if self.precision == "double" else np.float32
+        lanes = 64 // np.dtype(real).itemsize
+        count, n_x, n_y = len(windows.start), self.equations.n_states, self.equations.n_outputs
+        groups = -(-count // lanes)
+        n_p = len(self.sensitive) if tangents else 0
+        n_s = 0 if start_directions is None else start_directions.shape[1]
+        n_d = n_p + n_s
+
+        rows = np.broadcast_to(np.atleast_2d(p), (count, self.equations.n_parameters))
+        dx0 = np.zeros((count, n_d, n_x))
+        if n_p and tangents0 is not None:
+            dx0[:, :n_p] = tangents0
+        if start_directions is not None:
+            dx0[:, n_p:] = start_directions
+        packed = {
+            "u": _aligned(np.atleast_2d(tape.u) if len(tape.u) else np.zeros((1, len(tape.dt))), real),
+            "dt": _aligned(tape.dt, real),
+            "start": _lanes(windows.start, lanes, np.int64),
+            "last": _lanes(windows.last, lanes, np.int64),
+            "column": np.array([*range(n_p), *([len(self.sensitive)] * n_s)], dtype=np.int64),
+            "p": _lanes(rows if rows.shape[1] else np.zeros((count, 1)), lanes, real),
+            "x": _lanes(x0, lanes, real),
+            "dx": _lanes(dx0, lanes, real),
+            "y": _empty((groups, windows.steps, n_y, lanes), real),
+            "dy": _empty((groups, windows.steps, n_y, n_d, lanes), real) if n_d else None,
+            "trace": _empty((groups, windows.steps, n_x, lanes), real) if keep_states else None,
+        }
+        threads = min(groups, int(os.environ.get("OMP_NUM_THREADS", os.cpu_count() or 1)))
+        sizes = (groups, windows.steps, substeps, int(tape.hold == "foh"), len(tape.dt), n_d, threads)
+        pointers = [None if a is None else a.ctypes.data for a in packed.values()]
+        self.loaded.run(ctypes.byref(_Job(*sizes, *pointers)))
+        dy = packed["dy"]
+        return Run(
+            y=_windows(packed["y"], count),
+            dy=None if dy is None else _windows(dy, count),
+            x_end=_windows(packed["x"], count),
+            dx_end=_windows(packed["dx"], count) if n_d else None,
+            states=_windows(packed["trace"], count) if keep_states else None,
+        )
+
+
+def _empty(shape: tuple[int, ...], real: type) -> np.ndarray:
+    """An uninitialised array whose data begin on a cache line, as vector loads need."""
+    size = int(np.prod(shape)) * np.dtype(real).itemsize
+    raw = np.empty(size + 64, dtype=np.uint8)
+    offset = -raw.ctypes.data % 64
+    return raw[offset : offset + size].view(real).reshape(shape)
+
+
+def _aligned(values: np.ndarray, real: type) -> np.ndarray:
+    result = _empty(values.shape, real)
+    result[...] = values
+    return result
+
+
+def _lanes(values: np.ndarray, lanes: int, real: type) -> np.ndarray:
+    """(W, ...) -> (groups, ..., lanes); the last group is filled up with copies of the last window."""
+    values = np.asarray(values)
+    groups = -(-len(values) // lanes)
+    index = np.minimum(np.arange(groups * lanes), len(values) - 1)
+    shaped = values[index].reshape(groups, lanes, *values.shape[1:])
+    return _aligned(np.moveaxis(shaped, 1, -1), real)
+
+
+def _windows(packed: np.ndarray, count: int) -> np.ndarray:
+    """(groups, ..., lanes) -> (W, ...), a view where there is one group."""
+    moved = np.moveaxis(packed, -1, 1)
+    return moved.reshape(-1, *moved.shape[2:])[:count] if len(packed) > 1 else moved[0, :count]

@@ -1,0 +1,134 @@
+"""The fixed-step stepper: windows side by side in one batch, with forward sensitivities.
+
+Runge-Kutta of order four, with the input held between samples as the data set says and as many sub-steps as asked for. A window is a
+stretch of a tape with its own start state and parameters; windows, experiments and hypotheses are all just lanes of the batch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from greybox_torch.codegen.lower import lower
+from greybox_torch.codegen.trace import UnsupportedOperation
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulate.tape import Tape
+
+
+@dataclass(frozen=True)
+class Windows:
+    """Which stretch of the tape each of W windows covers: first sample (W,), last sample it may read (W,), steps of the longest."""
+
+    start: np.ndarray
+    last: np.ndarray
+    steps: int
+
+
+@dataclass(frozen=True)
+class Run:
+    """Result of a pass over W windows of at most K steps.
+
+    ``y`` (W, K, n_y); ``dy`` (W, K, n_y, n_d) with the directions in the order sensitive parameters, then start-state directions;
+    ``x_end`` (W, n_x) and ``dx_end`` (W, n_d, n_x) after the last step; ``states`` (W, K, n_x) if they were asked for.
+    Samples beyond a window's end are meaningless.
+    """
+
+    y: np.ndarray
+    dy: np.ndarray | None
+    x_end: np.ndarray
+    dx_end: np.ndarray | None
+    states: np.ndarray | None
+
+
+class Stepper(Protocol):
+    """What advances windows: compiled code where there is a compiler, torch operations everywhere."""
+
+    @property
+    def sensitive(self) -> tuple[str, ...]:
+        """The parameters that tangents are propagated for, in the order of the directions."""
+        ...
+
+    def run(
+        self,
+        tape: Tape,
+        windows: Windows,
+        p: np.ndarray,
+        x0: np.ndarray,
+        *,
+        tangents: bool = False,
+        start_directions: np.ndarray | None = None,
+        tangents0: np.ndarray | None = None,
+        substeps: int = 1,
+        keep_states: bool = False,
+    ) -> Run:
+        """Advance all windows.
+
+        Args:
+            p: parameters (n_p,) or one row per window (W, n_p).
+            x0: start states (W, n_x).
+            tangents: also propagate the derivative of the output with respect to the sensitive parameters.
+            start_directions: further tangents (W, n_s, n_x), directions in which the start state varies.
+            tangents0: start values (W, n_sensitive, n_x) of the parameter tangents, zero by default (a record continued in chunks).
+            substeps: Runge-Kutta steps per sample.
+            keep_states: also return the states at the samples.
+        """
+        ...
+
+
+def make_stepper(
+    model: GreyBoxModel,
+    sensitive: Sequence[str],
+    *,
+    at_zero: Sequence[str] = (),
+    device: str = "cpu",
+    precision: str = "double",
+) -> Stepper:
+    """The fastest stepper for a model: compiled for the CPU, else torch operations on any device.
+
+    Args:
+        sensitive: names of the parameters that tangents are wanted for, in the order of the directions.
+        at_zero: parameters (amplitudes of hypothetical effects) that are zero throughout; only their tangents are computed.
+
+    Raises:
+        UserError: the model's equations branch on a signal or do not return what the model declares.
+    """
+    from greybox_torch.simulate.eager import EagerStepper
+    from greybox_torch.simulate.native import native_stepper
+
+    eager = EagerStepper.of(model, sensitive, device, precision)
+    if device != "cpu":
+        return eager
+    try:
+        equations = lower(model, sensitive, at_zero)
+    except UnsupportedOperation:
+        return eager
+    return native_stepper(equations, tuple(sensitive), precision) or eager
+
+
+def whole_records(tape: Tape) -> Windows:
+    """One window per experiment: the free run."""
+    return Windows(tape.first, tape.last, int(tape.lengths.max()))
+
+
+def cut(tape: Tape, length: int) -> Windows:
+    """All experiments cut into windows of ``length`` samples; a remainder shorter than half of that joins no window of its own.
+
+    The last window of an experiment is moved back to end with the record, so that every window has the full length (unless the record
+    itself is shorter).
+    """
+    starts: list[int] = []
+    lasts: list[int] = []
+    for first, last in zip(tape.first, tape.last, strict=True):
+        total = int(last - first + 1)
+        count = max(1, round(total / length))
+        for k in range(count):
+            start = int(first) + min(k * length, max(total - length, 0))
+            starts.append(start)
+            lasts.append(min(start + length - 1, int(last)))
+    return Windows(np.array(starts), np.array(lasts), min(length, int(tape.lengths.max())))
+
+
+__all__ = ["Run", "Stepper", "Windows", "cut", "make_stepper", "whole_records"]
