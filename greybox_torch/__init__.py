@@ -1,7 +1,7 @@
 """Grey-box models of machines: estimate them, find what physics they leave out, name it, and model it.
 
-The public names are loaded on first use, so that `import greybox_torch` (and `greybox --help`) waits for neither torch nor
-pandas.
+The public names are loaded on first use, so that `import greybox_torch` (and `greybox --help`) does not wait for
+torch.
 """
 
 from __future__ import annotations

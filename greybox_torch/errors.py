@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 
 class GreyboxError(Exception):
     """Base of every error raised on purpose by this package."""
@@ -13,3 +15,12 @@ class UserError(GreyboxError):
 
 class NumericalError(GreyboxError):
     """The numbers failed: overflow, NaN, rank deficiency. The command line exits with 3."""
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """' (did you mean "…"?)' with the closest of the known names, to end a message; empty where none is close."""
+    from difflib import get_close_matches
+
+    by_lower_case = {candidate.lower(): candidate for candidate in known}
+    close = get_close_matches(name.lower(), by_lower_case, n=1)
+    return f' (did you mean "{by_lower_case[close[0]]}"?)' if close else ""

@@ -1,0 +1,98 @@
+"""Messages for cards that do not validate, in the words of the card instead of those of the validator."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from greybox_torch.errors import did_you_mean
+
+# What is expected, by the validator's type of error; {…} are filled from its context.
+_EXPECTED = {
+    "string_type": "text in quotes",
+    "string_too_short": "text that is not empty",
+    "float_type": "a number",
+    "finite_number": "a finite number",
+    "int_type": "a whole number",
+    "bool_type": "true or false",
+    "dict_type": "a table",
+    "model_type": "a table, like {{ key = value }}",
+    "list_type": "a list",
+    "too_short": "at least {min_length} entries",
+    "too_long": "at most {max_length} entries",
+    "literal_error": "{expected}",
+}
+
+# Places where the general words would not help.
+_EXPECTED_AT = {
+    ("channels",): "a table [channels] with an entry for every input and output",
+    ("experiment",): "one table [[experiment]], in double brackets, for every recording",
+    ("rows",): "two whole numbers, [start, stop]",
+}
+
+
+def describe(path: Path, error: ValidationError, content: dict[str, Any], card: type[BaseModel]) -> str:
+    """One message: the file, and for everything that is wrong the field, what was found and what is expected."""
+    problems = [_problem(details, content, card) for details in error.errors()]
+    if len(problems) == 1:
+        return f"{path}: {problems[0]}"
+    return f"{path}: {len(problems)} problems:\n" + "\n".join(f"  {problem}" for problem in problems)
+
+
+def _problem(details: Any, content: dict[str, Any], card: type[BaseModel]) -> str:
+    kind, location = details["type"], details["loc"]
+    if kind == "extra_forbidden":
+        allowed = _allowed_keys(card, location[:-1])
+        hint = did_you_mean(location[-1], allowed)
+        return _at(location[:-1], content) + f'unknown key "{location[-1]}"{hint}; expected {", ".join(allowed)}'
+    expected = _EXPECTED_AT.get(location[-1:]) or _EXPECTED.get(kind, "").format(**details.get("ctx", {}))
+    if kind == "missing":
+        return (
+            _at(location[:-1], content)
+            + f'"{location[-1]}" is missing'
+            + (f"; expected {expected}" if expected else "")
+        )
+    place = _at(location, content)
+    if kind == "value_error":
+        return place + str(details["ctx"]["error"])
+    return place + f"found {_quoted(details['input'])}, expected {expected or details['msg']}"
+
+
+def _at(location: Sequence[str | int], content: dict[str, Any]) -> str:
+    """The place in the card's own notation, with a colon after it; nothing for the top of the card."""
+    match list(location):
+        case []:
+            return ""
+        case ["channels", *rest]:
+            parts = ["[channels]", *rest]
+        case ["experiment", int(index), *rest]:
+            entry = content["experiment"][index]
+            name = entry.get("name") if isinstance(entry, dict) else None
+            parts = [f"[[experiment]] {index + 1}" + (f' "{name}"' if name else ""), *rest]
+        case ["model", "parameters" | "initial" as table, *rest]:
+            parts = [f"[model.{table}]", *rest]
+        case ["model", *rest]:
+            parts = ["[model]", *rest]
+        case rest:
+            parts = rest
+    return ", ".join(str(part) for part in parts) + ": "
+
+
+def _allowed_keys(card: type[BaseModel], location: Sequence[str | int]) -> list[str]:
+    """The keys of the table at this location, found by walking the types of the card's fields."""
+    table: Any = card
+    for step in location:
+        if isinstance(table, type) and issubclass(table, BaseModel):
+            table = table.model_fields[str(step)].annotation
+        else:
+            table = table.__args__[-1]  # of dict[str, Entry] or list[Entry]
+    return list(table.model_fields)
+
+
+def _quoted(value: Any) -> str:
+    text = json.dumps(value, default=str, ensure_ascii=False)
+    return text if len(text) <= 60 else text[:59] + "…"

@@ -1,0 +1,59 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import settings
+
+settings.register_profile("greybox", deadline=None, max_examples=30)
+settings.load_profile("greybox")
+
+CARD = """\
+name = "Bench motor"
+sample_time = 0.01
+hold = "zoh"
+
+[channels]
+voltage = { column = "u", unit = "V" }
+speed = { column = "y", unit = "rad/s", scale = 2.0 }
+
+[[experiment]]
+name = "Steps"
+file = "steps.csv"
+role = "estimation"
+
+[[experiment]]
+name = "Sweep"
+file = "sweep.npz"
+role = "validation"
+columns = { voltage = "u_val" }
+
+[model.parameters]
+J = { value = 0.5, lower = 0.0, upper = 1.0 }
+"""
+
+
+@pytest.fixture
+def bench(tmp_path: Path) -> Path:
+    """A folder `bench` with a sound data set: 40 samples of CSV with time stamps and one gap, 20 samples of npz."""
+    folder = tmp_path / "bench"
+    folder.mkdir()
+    (folder / "dataset.toml").write_text(CARD)
+    lines = [f"{0.01 * k:.2f},{k % 5},{'' if k == 7 else k / 4}" for k in range(40)]
+    (folder / "steps.csv").write_text("\n".join(["t,u,y", *lines]) + "\n")
+    np.savez(folder / "sweep.npz", u_val=np.arange(20.0), y=np.linspace(-1, 1, 20), t=np.arange(20) * 0.02)
+    return folder
+
+
+@pytest.fixture
+def edit() -> Callable[[Path, str, str], None]:
+    """Replaces text in a file, where it stands exactly once."""
+
+    def replace_once(path: Path, old: str, new: str) -> None:
+        text = path.read_text()
+        assert text.count(old) == 1, f"{old!r} stands {text.count(old)} times in {path}"
+        path.write_text(text.replace(old, new))
+
+    return replace_once

@@ -1,0 +1,136 @@
+"""Every way to get a card wrong is answered in the card's own words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from greybox_torch.data.card import read_card
+from greybox_torch.errors import UserError
+
+TOP = 'sample_time = 0.01\nhold = "foh"\n'
+CHANNELS = '[channels]\nu = { column = "U", unit = "V" }\n'
+EXPERIMENT = '[[experiment]]\nname = "A"\nfile = "a.csv"\n'
+
+
+def message_of(tmp_path: Path, card: str) -> str:
+    path = tmp_path / "dataset.toml"
+    path.write_text(card)
+    with pytest.raises(UserError) as error:
+        read_card(path)
+    message = str(error.value)
+    assert message.startswith(f"{path}: ")
+    return message.removeprefix(f"{path}: ")
+
+
+def test_defaults(tmp_path: Path) -> None:
+    path = tmp_path / "dataset.toml"
+    path.write_text("sample_time = 1\n" + CHANNELS + EXPERIMENT)
+    card = read_card(path)
+    assert (card.sample_time, card.hold, card.name, card.model.name) == (1.0, "zoh", None, None)
+    assert card.channels["u"].scale == 1.0
+    assert (card.experiment[0].role, card.experiment[0].rows) == ("estimation", None)
+
+
+@pytest.mark.parametrize(
+    ("card", "message"),
+    [
+        ("a = [\n", "not valid TOML: "),
+        ("name = 'x'\nsample_time 3\n", "at line 2"),
+        (
+            TOP + 'hol = "x"\n' + CHANNELS + EXPERIMENT,
+            'unknown key "hol" (did you mean "hold"?); expected name, sample_time',
+        ),
+        (
+            TOP + '[channels]\nu = { colum = "U" }\n' + EXPERIMENT,
+            '[channels], u: unknown key "colum" (did you mean "column"?)',
+        ),
+        (TOP + '[channels]\nu = { unit = "V" }\n' + EXPERIMENT, '[channels], u: "column" is missing'),
+        (
+            TOP + '[channels]\nu = "U"\n' + EXPERIMENT,
+            '[channels], u: found "U", expected a table, like { key = value }',
+        ),
+        (TOP + "[channels]\n" + EXPERIMENT, "expected a table [channels] with an entry for every input and output"),
+        (TOP + EXPERIMENT, '"channels" is missing; expected a table [channels]'),
+        (TOP + CHANNELS, '"experiment" is missing; expected one table [[experiment]]'),
+        (TOP + CHANNELS + '[experiment]\nname = "A"\nfile = "a.csv"\n', "expected one table [[experiment]]"),
+        (
+            TOP + CHANNELS + EXPERIMENT + 'role = "test"\n',
+            "[[experiment]] 1 \"A\", role: found \"test\", expected 'estimation' or 'validation'",
+        ),
+        (TOP + CHANNELS + EXPERIMENT + "rows = [1]\n", "rows: found [1], expected two whole numbers, [start, stop]"),
+        (TOP + CHANNELS + EXPERIMENT + "rows = [1.5, 3]\n", "found 1.5, expected a whole number"),
+        (TOP + CHANNELS + EXPERIMENT + 'row = "x"\n', '[[experiment]] 1 "A": unknown key "row" (did you mean "rows"?)'),
+        (TOP + CHANNELS + '[[experiment]]\nfile = "a.csv"\n', '[[experiment]] 1: "name" is missing'),
+        (TOP + CHANNELS + EXPERIMENT + EXPERIMENT, '2 experiments are named "A"; expected different names'),
+        (
+            TOP + CHANNELS + EXPERIMENT + 'columns = { uu = "x" }\n',
+            '[[experiment]] "A", columns: no channel is named "uu" (did you mean "u"?); expected u, time',
+        ),
+        (TOP + CHANNELS + EXPERIMENT + 'columns = { time = "x" }\n', '"time" needs time = '),
+        (
+            "sample_time = 0\n" + CHANNELS + EXPERIMENT,
+            "sample_time: 0 is not a sample time; expected a number above zero",
+        ),
+        ("sample_time = -0.1\n" + CHANNELS + EXPERIMENT, "sample_time: -0.1 is not a sample time"),
+        ("sample_time = nan\n" + CHANNELS + EXPERIMENT, "sample_time: found NaN, expected a finite number"),
+        ("sample_time = '1 ms'\n" + CHANNELS + EXPERIMENT, 'sample_time: found "1 ms", expected a number'),
+        ("sample_time = true\n" + CHANNELS + EXPERIMENT, "sample_time: found true, expected a number"),
+        (CHANNELS + EXPERIMENT, '"sample_time" is missing'),
+        ('time = "t"\n' + TOP + CHANNELS + EXPERIMENT, 'both "sample_time" and "time" are given'),
+        (TOP + '[channels]\ntime = { column = "t" }\n' + EXPERIMENT, '"time" cannot name a channel'),
+        (TOP + '[channels]\nu = { column = "U", scale = 0 }\n' + EXPERIMENT, "[channels], u, scale: a scale of zero"),
+        (
+            TOP + CHANNELS + EXPERIMENT + "[model.parameters]\nJ = { valu = 1 }\n",
+            '[model.parameters], J: unknown key "valu" (did you mean "value"?); expected value, lower, upper, fixed',
+        ),
+        (
+            TOP + CHANNELS + EXPERIMENT + "[model.parameters]\nJ = { fixed = 1 }\n",
+            "J, fixed: found 1, expected true or false",
+        ),
+        (TOP + CHANNELS + EXPERIMENT + "[model.parameters]\nJ = { lower = nan }\n", "J, lower: nan is not a bound"),
+        (
+            TOP + CHANNELS + EXPERIMENT + "[model.parameters]\nJ = { value = inf }\n",
+            "J, value: found Infinity, expected a finite",
+        ),
+        (
+            TOP + CHANNELS + EXPERIMENT + "[model.parameters]\nJ = { value = 2, lower = 0, upper = 1 }\n",
+            "[model.parameters], J: value = 2 lies outside its bounds [0, 1]",
+        ),
+        (
+            TOP + CHANNELS + EXPERIMENT + "[model.parameters]\nJ = { lower = 1, upper = 1 }\n",
+            "[model.parameters], J: lower = 1 is not below upper = 1",
+        ),
+        (
+            TOP + CHANNELS + EXPERIMENT + "[model.initial]\nw = { lower = 1 }\n",
+            '[model.initial], w: unknown key "lower"',
+        ),
+        (TOP + CHANNELS + EXPERIMENT + '[model]\nnam = "x"\n', '[model]: unknown key "nam" (did you mean "name"?)'),
+    ],
+)
+def test_message(tmp_path: Path, card: str, message: str) -> None:
+    assert message in message_of(tmp_path, card)
+
+
+def test_several_problems_are_all_listed(tmp_path: Path) -> None:
+    message = message_of(tmp_path, "sample_time = 0\n" + CHANNELS + EXPERIMENT + 'role = "x"\nfoo = 1\n')
+    first, *problems = message.splitlines()
+    assert first == "3 problems:"
+    assert len(problems) == 3
+
+
+def test_infinite_bounds_are_bounds(tmp_path: Path) -> None:
+    path = tmp_path / "dataset.toml"
+    path.write_text(TOP + CHANNELS + EXPERIMENT + "[model.parameters]\nJ = { value = 1, lower = -inf, upper = inf }\n")
+    assert read_card(path).model.parameters["J"].upper == float("inf")
+
+
+def test_not_a_card(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"nowhere.toml: no such file; expected a data card"):
+        read_card(tmp_path / "nowhere.toml")
+    with pytest.raises(UserError, match="cannot be read: Is a directory"):
+        read_card(tmp_path)
+    (tmp_path / "latin.toml").write_bytes("name = 'Prüfstand'".encode("latin-1"))
+    with pytest.raises(UserError, match="not UTF-8 text"):
+        read_card(tmp_path / "latin.toml")
