@@ -1,0 +1,95 @@
+"""The command line: parses, calls the command's `run`, and turns errors into exit codes. Nothing else.
+
+Modules that take long to import (torch, matplotlib, …) are imported by the commands when they run, so that `--help`
+answers at once.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from greybox_torch import __version__
+from greybox_torch.commands.options import Options
+from greybox_torch.errors import NumericalError, UserError
+
+
+class Commands(TyperGroup):
+    """Exit codes, in one place: 2 the user's input is at fault, 3 the numbers failed, 130 interrupted."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except UserError as error:
+            raise _stop(f"error: {error}", 2) from None
+        except NumericalError as error:
+            raise _stop(f"the numbers failed: {error}", 3) from None
+        except KeyboardInterrupt:
+            raise _stop("interrupted", 130) from None
+
+
+def _stop(message: str, code: int) -> typer.Exit:
+    typer.echo(message, err=True)
+    return typer.Exit(code)
+
+
+app = typer.Typer(
+    cls=Commands,
+    help="Find, name and model the physics that a simulation of a machine leaves out, from recordings of the real one.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+DataSetFile = Annotated[Path, typer.Argument(metavar="DATASET.toml", help="The data card beside the recordings.")]
+Model = Annotated[
+    str | None,
+    typer.Option(metavar="NAME", help='A built-in system, or "my_motor.py:Motor"; wins over the model in the card.'),
+]
+Out = Annotated[
+    Path | None,
+    typer.Option(metavar="DIR", help="Where to write results.", show_default="results/<folder of the card>"),
+]
+Seed = Annotated[int, typer.Option(help="Start of everything that is drawn at random.")]
+Device = Annotated[str, typer.Option(help='Where to compute: "cpu", "cuda", "cuda:1".')]
+Json = Annotated[
+    bool, typer.Option("--json", help="The result as JSON on standard output, all else on standard error.")
+]
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(__version__)
+        raise typer.Exit
+
+
+@app.callback()
+def greybox(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
+    ] = False,
+) -> None:
+    pass
+
+
+@app.command()
+def inspect(
+    dataset: DataSetFile,
+    model: Model = None,
+    out: Out = None,
+    seed: Seed = 0,
+    device: Device = "cpu",
+    json: Json = False,
+) -> None:
+    """Read and check the data, tabulate and plot every channel."""
+    from greybox_torch.commands import inspect
+
+    inspect.run(dataset, Options(model, out, seed, device, json))
+
+
+def main() -> None:
+    """The command `greybox`."""
+    app()

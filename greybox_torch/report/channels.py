@@ -1,0 +1,70 @@
+"""The figure of a data set: every channel of every experiment over time."""
+
+from __future__ import annotations
+
+from textwrap import fill
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from greybox_torch.data import Channel, DataSet, Recording
+
+_MOST_COLUMNS = 3
+_STYLE: dict[Any, Any] = {
+    "text.parse_math": False,  # a name may hold dollar signs
+    "agg.path.chunksize": 20000,  # long records overflow the renderer otherwise
+    "axes.grid": True,
+    "grid.alpha": 0.3,
+    "font.size": 9,
+}
+
+
+def plot_channels(data: DataSet) -> Figure:
+    """An experiment a column, a channel a row; after three experiments the columns go on in another band of rows.
+
+    The channels of an experiment share the time axis, in seconds. A channel has the same vertical axis, in its unit,
+    in all experiments. Missing samples leave a gap in the curve and a red mark at the foot of it.
+    """
+    channels = list(data.channels.values())
+    columns = min(len(data.recordings), _MOST_COLUMNS)
+    bands = -(-len(data.recordings) // columns)
+    size = (max(8.0, 4.5 * columns), 0.8 + bands * (0.6 + 1.8 * len(channels)))
+    dots_per_inch = min(120.0, 50000.0 / size[1])  # a picture ends at 65536 dots, reached by hundreds of experiments
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=size, dpi=dots_per_inch, layout="constrained")
+        figure.suptitle(data.name, fontweight="bold")
+        grid = figure.add_gridspec(bands * len(channels), columns)
+        same_channel: dict[str, Axes] = {}
+        for index, recording in enumerate(data.recordings):
+            band, column = divmod(index, columns)
+            top = None
+            for row, channel in enumerate(channels):
+                axes = figure.add_subplot(
+                    grid[band * len(channels) + row, column], sharex=top, sharey=same_channel.get(channel.name)
+                )
+                same_channel.setdefault(channel.name, axes)
+                top = top or axes
+                _plot(axes, recording, channel)
+                axes.tick_params(labelbottom=row == len(channels) - 1, labelleft=column == 0)
+                if column == 0:
+                    axes.set_ylabel(f"{channel.name} [{channel.unit}]" if channel.unit else channel.name)
+            if top is not None:
+                top.set_title(f"{fill(recording.name, 40)} ({recording.role})", fontsize=10)
+            axes.set_xlabel("time [s]")
+    return figure
+
+
+def _plot(axes: Axes, recording: Recording, channel: Channel) -> None:
+    values = recording.signals[channel.name]
+    axes.plot(recording.time, values, linewidth=0.7)
+    axes.margins(x=0)
+    missing = recording.time[np.isnan(values)]
+    if missing.size:
+        foot = axes.get_xaxis_transform()
+        axes.plot(missing, np.zeros_like(missing), "|", color="tab:red", markersize=8, transform=foot)
+        axes.text(
+            0.99, 0.95, f"{missing.size} missing", color="tab:red", ha="right", va="top", transform=axes.transAxes
+        )

@@ -1,0 +1,66 @@
+"""Exit codes and help, common to all commands."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+
+import pytest
+from typer.testing import CliRunner
+
+import greybox_torch
+from greybox_torch.cli import app
+from greybox_torch.commands import inspect
+from greybox_torch.errors import NumericalError, UserError
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "message"),
+    [
+        (UserError("[channels] u: found x"), 2, "error: [channels] u: found x\n"),
+        (NumericalError("the step size vanished"), 3, "the numbers failed: the step size vanished\n"),
+        (KeyboardInterrupt(), 130, "interrupted\n"),
+    ],
+)
+def test_exit_codes(monkeypatch: pytest.MonkeyPatch, error: BaseException, code: int, message: str) -> None:
+    def fail(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(inspect, "run", fail)
+    result = CliRunner().invoke(app, ["inspect", "dataset.toml"])
+    assert result.exit_code == code
+    assert result.stderr == message
+    assert result.stdout == ""
+
+
+def test_a_bug_is_not_dressed_up_as_a_user_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(inspect, "run", lambda *_: 1 / 0)
+    assert isinstance(CliRunner().invoke(app, ["inspect", "dataset.toml"]).exception, ZeroDivisionError)
+
+
+@pytest.mark.parametrize(
+    "arguments", [["inspect"], ["inspect", "a.toml", "--sed", "1"], ["inspct"], ["inspect", "a", "--seed", "x"]]
+)
+def test_wrong_usage(arguments: list[str]) -> None:
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+
+
+def test_version() -> None:
+    result = CliRunner().invoke(app, ["--version"])
+    assert (result.exit_code, result.stdout) == (0, greybox_torch.__version__ + "\n")
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["inspect", "--help"]])
+def test_help_answers_at_once(arguments: list[str]) -> None:
+    best = float("inf")
+    for _ in range(3):  # the best of three, as other tests run beside this one
+        start = time.perf_counter()
+        result = subprocess.run(
+            [sys.executable, "-m", "greybox_torch", *arguments], capture_output=True, text=True, check=True
+        )
+        best = min(best, time.perf_counter() - start)
+    assert "Usage" in result.stdout
+    assert best < 0.5

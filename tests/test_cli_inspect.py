@@ -1,0 +1,149 @@
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from greybox_torch.cli import app
+
+Edit = Callable[[Path, str, str], None]
+
+
+@pytest.fixture(autouse=True)
+def _work_beside_the_data(bench: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(bench.parent)
+    monkeypatch.setenv("COLUMNS", "100")
+
+
+def files(folder: Path) -> list[str]:
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
+
+
+def test_table_and_figure(bench: Path) -> None:
+    result = CliRunner().invoke(app, ["inspect", "bench/dataset.toml"])
+    assert (result.exit_code, result.stderr) == (0, "")
+    lines = [line.split() for line in result.stdout.splitlines()]
+    assert "Steps (estimation): steps.csv, rows = [0, 40], 0.39 s" in result.stdout
+    assert ["channel", "unit", "samples", "sample", "time", "[s]", "min", "max", "std", "missing"] in lines
+    assert ["voltage", "V", "40", "0.01", "0", "4", "1.414", "0"] in lines
+    assert ["speed", "rad/s", "20", "0.01", "-2", "2", "1.214", "0"] in lines
+    figure = Path("results/bench/channels.png")
+    assert str(figure) in result.stdout
+    assert figure.read_bytes().startswith(b"\x89PNG")
+    assert files(Path("results")) == ["bench", "bench/channels.png"]
+
+
+def test_json(bench: Path) -> None:
+    result = CliRunner().invoke(app, ["inspect", "bench/dataset.toml", "--json", "--out", "here"])
+    assert result.exit_code == 0
+    output = json.loads(result.stdout)
+    assert (output["schema"], output["dataset"]) == ("greybox-inspect/1", "Bench motor")
+    assert [(e["name"], e["role"]) for e in output["experiments"]] == [("Steps", "estimation"), ("Sweep", "validation")]
+    speed = 2.0 * np.delete(np.arange(40) / 4, 7)
+    assert output["experiments"][0]["channels"]["speed"] == {
+        "samples": 40,
+        "sample_time": 0.01,
+        "min": 0.0,
+        "max": 19.5,
+        "std": pytest.approx(speed.std()),
+        "missing": 1,
+        "unit": "rad/s",
+    }
+    assert Path(output["figure"]).exists()
+    assert "Steps (estimation)" in result.stderr
+
+
+def test_says_that_the_last_quarter_is_held_out(bench: Path, edit: Edit) -> None:
+    edit(bench / "dataset.toml", 'role = "validation"', "")
+    result = CliRunner().invoke(app, ["inspect", "bench/dataset.toml"])
+    assert "Steps (held out) (validation): steps.csv, rows = [30, 40]" in result.stdout
+    assert "the last quarter of each is held out" in result.stdout
+
+
+def test_out_that_is_a_file(bench: Path) -> None:
+    Path("taken").touch()
+    result = CliRunner().invoke(app, ["inspect", "bench/dataset.toml", "--out", "taken"])
+    assert result.exit_code == 2
+    assert "taken/channels.png: cannot be written" in result.stderr
+    assert result.stdout == ""
+
+
+BAD_INPUT = {
+    "malformed TOML": ("dataset.toml", 'hold = "zoh"', "hold zoh", ["dataset.toml: not valid TOML", "at line 3"]),
+    "unknown key": (
+        "dataset.toml",
+        "hold =",
+        "hols =",
+        ['unknown key "hols" (did you mean "hold"?)', "expected name, "],
+    ),
+    "missing file": ("dataset.toml", "steps.csv", "stops.csv", ["bench/stops.csv: no such file", "steps.csv"]),
+    "unknown format": (
+        "dataset.toml",
+        "steps.csv",
+        "steps.xls",
+        ['files ending in ".xls"', ".csv, .mat, .npz, .parquet"],
+    ),
+    "missing column": (
+        "dataset.toml",
+        '"y"',
+        '"Yy"',
+        ['steps.csv: no column "Yy" (did you mean "y"?)', "found t, u, y"],
+    ),
+    "text in a column": ("steps.csv", "\n0.19,4,", "\n0.19,four,", ['steps.csv, line 21, column "u": found "four"']),
+    "infinite value": ("steps.csv", "\n0.19,4,", "\n0.19,inf,", ['steps.csv, line 21, column "u"', "found inf"]),
+    "zero sample time": ("dataset.toml", "= 0.01", "= 0.0", ["sample_time: 0 is not a sample time"]),
+    "negative sample time": ("dataset.toml", "= 0.01", "= -1", ["sample_time: -1 is not a sample time"]),
+    "time going backwards": ("dataset.toml", "sample_time = 0.01", 'time = "u"', ["line 7", "found 0 s after 4 s"]),
+    "short experiment": (
+        "dataset.toml",
+        'role = "estimation"',
+        "rows = [0, 9]",
+        ['"Steps": has 9 samples', "at least 10"],
+    ),
+    "rows out of range": (
+        "dataset.toml",
+        'role = "estimation"',
+        "rows = [0, 99]",
+        ['"Steps", rows: found [0, 99]', "40"],
+    ),
+    "misspelt channel": ("dataset.toml", "{ voltage =", "{ volts =", ['"Sweep", columns: no channel is named "volts"']),
+    "repeated name": ("dataset.toml", '"Sweep"', '"Steps"', ['2 experiments are named "Steps"']),
+    "value outside its bounds": ("dataset.toml", "value = 0.5", "value = 1.5", ["J: value = 1.5", "bounds [0, 1]"]),
+}
+
+
+@pytest.mark.parametrize(("file", "old", "new", "expected"), BAD_INPUT.values(), ids=BAD_INPUT)
+@pytest.mark.parametrize("options", [[], ["--json"]], ids=["", "json"])
+def test_bad_input(
+    bench: Path, edit: Edit, file: str, old: str, new: str, expected: list[str], options: list[str]
+) -> None:
+    edit(bench / file, old, new)
+    check_refused(bench, options, expected)
+
+
+def test_all_nan_channel(bench: Path) -> None:
+    np.savez(bench / "sweep.npz", u_val=np.full(20, np.nan), y=np.arange(20.0))
+    check_refused(bench, [], ['"Sweep", channel "voltage": all 20 samples are missing (NaN)', "sweep.npz"])
+
+
+def test_missing_card(bench: Path) -> None:
+    (bench / "dataset.toml").unlink()
+    check_refused(bench, [], ["bench/dataset.toml: no such file"])
+
+
+def check_refused(bench: Path, options: list[str], expected: list[str]) -> None:
+    """Exit code 2, one message with all that is expected in it, no traceback, nothing printed or written."""
+    before = files(bench.parent)
+    result = CliRunner().invoke(app, ["inspect", "bench/dataset.toml", *options])
+    assert result.exit_code == 2
+    assert isinstance(result.exception, SystemExit)
+    assert result.stdout == ""
+    assert result.stderr.startswith("error: bench/")
+    assert result.stderr.count("\n") == 1
+    for text in expected:
+        assert text in result.stderr
+    assert files(bench.parent) == before

@@ -1,0 +1,33 @@
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+import greybox_torch
+
+
+def test_load_dataset_is_public() -> None:
+    from greybox_torch.data import load_dataset
+
+    assert greybox_torch.load_dataset is load_dataset
+
+
+@pytest.mark.parametrize("name", greybox_torch.__all__)
+def test_every_public_name_is_there(name: str) -> None:
+    assert getattr(greybox_torch, name).__name__ == name
+    assert name in dir(greybox_torch)
+
+
+def test_unknown_name() -> None:
+    with pytest.raises(AttributeError, match="has no attribute 'Motor'"):
+        _ = greybox_torch.Motor  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("module", ["greybox_torch", "greybox_torch.cli", "greybox_torch.data"])
+def test_import_is_light(module: str) -> None:
+    heavy = ("torch", "pandas", "matplotlib", "scipy", "h5py", "pyarrow")
+    program = f"import sys, {module}; print([name for name in {heavy} if name in sys.modules])"
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert result.stdout.strip() == "[]"
