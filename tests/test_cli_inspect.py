@@ -20,7 +20,9 @@ def _work_beside_the_data(bench: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def files(folder: Path) -> list[str]:
-    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
+    """All files and folders below; Python's own cache of a model file is not a result."""
+    paths = (path.relative_to(folder) for path in folder.rglob("*"))
+    return sorted(str(path) for path in paths if "__pycache__" not in path.parts)
 
 
 def test_table_and_figure(bench: Path) -> None:
@@ -62,6 +64,67 @@ def test_says_that_the_last_quarter_is_held_out(bench: Path, edit: Edit) -> None
     result = CliRunner().invoke(app, ["inspect", "bench/dataset.toml"])
     assert "Steps (held out) (validation): steps.csv, rows = [30, 40]" in result.stdout
     assert "the last quarter of each is held out" in result.stdout
+
+
+MOTOR = '''
+from greybox_torch import Body, GreyBoxModel, Input, Output, Parameter, State
+
+class Motor(GreyBoxModel):
+    """First-order motor: J dw/dt = k v - b w."""
+    states = [State("speed", "rad/s")]
+    inputs = [Input("voltage", "V")]
+    outputs = [Output("speed", "rad/s")]
+    parameters = [Parameter("J", 0.01, unit="kg m^2", lower=0.0)]
+    ports = [Body("rotor", speed="speed")]
+
+    def derivative(self, x, u, p, port):
+        return {"speed": (u.voltage - x.speed + port.rotor) / p.J}
+
+    def output(self, x, u, p):
+        return {"speed": x.speed}
+'''
+
+
+def test_checks_the_card_against_a_model(bench: Path, edit: Edit) -> None:
+    (bench / "my_motor.py").write_text(MOTOR)
+    result = CliRunner().invoke(app, ["inspect", "bench/dataset.toml", "--model", "bench/my_motor.py:Motor"])
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert "fit the model bench/my_motor.py:Motor." in result.stdout
+    edit(bench / "dataset.toml", "[model.parameters]", '[model]\nname = "my_motor.py:Motor"\n[model.parameters]')
+    result = CliRunner().invoke(app, ["inspect", "bench/dataset.toml", "--json"])
+    assert json.loads(result.stdout)["model"] == f"{bench.resolve()}/my_motor.py:Motor"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('speed = { column = "y", unit = "rad/s"', 'spede = { column = "y", unit = "rad/s"', ["[channels]", "'speed'"]),
+        ('unit = "V"', 'unit = "mV"', ["[channels]", "'V'", "mV"]),
+        ("J = {", "Jay = {", ["[model.parameters] Jay"]),
+        ("value = 0.5, lower = 0.0", "value = -0.5, lower = -1.0, upper = -0.6", ["J: value = -0.5", "[-1, -0.6]"]),
+        ("value = 0.5, lower = 0.0", "value = -0.5", ["J", "-0.5 lies outside its bounds"]),
+        ("[model.parameters]", "[model.initial]\nspin = { value = 0.0 }\n[model.parameters]", ["[model.initial] spin"]),
+    ],
+)
+def test_card_that_does_not_fit_the_model(bench: Path, edit: Edit, old: str, new: str, expected: list[str]) -> None:
+    (bench / "my_motor.py").write_text(MOTOR)
+    edit(bench / "dataset.toml", ", upper = 1.0", "")
+    edit(bench / "dataset.toml", old, new)
+    check_refused(bench, ["--model", "bench/my_motor.py:Motor"], expected)
+
+
+@pytest.mark.parametrize(
+    ("model", "content", "expected"),
+    [
+        ("no_such_system", "", "model 'no_such_system' is unknown"),
+        ("bench/nowhere.py:Motor", "", "bench/nowhere.py: no such file"),
+        ("bench/my_motor.py:Engine", MOTOR, "'Engine' is not defined"),
+        ("bench/my_motor.py:Motor", "1 / 0", "my_motor.py: running it raised ZeroDivisionError"),
+    ],
+)
+def test_model_that_cannot_be_loaded(bench: Path, model: str, content: str, expected: str) -> None:
+    (bench / "my_motor.py").write_text(content)
+    check_refused(bench, ["--model", model], [expected])
 
 
 def test_out_that_is_a_file(bench: Path) -> None:
@@ -142,7 +205,7 @@ def check_refused(bench: Path, options: list[str], expected: list[str]) -> None:
     assert result.exit_code == 2
     assert isinstance(result.exception, SystemExit)
     assert result.stdout == ""
-    assert result.stderr.startswith("error: bench/")
+    assert result.stderr.startswith("error: ")
     assert result.stderr.count("\n") == 1
     for text in expected:
         assert text in result.stderr

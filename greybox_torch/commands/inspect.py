@@ -18,13 +18,27 @@ FIGURE = "channels.png"
 
 
 def run(dataset: Path, options: Options) -> None:
-    """Prints a table or JSON of the channels, and writes their figure. Raises UserError where the data set is wrong."""
+    """Prints a table or JSON of the channels, and writes their figure.
+
+    Where the user or the card names a model, the card is checked against it. Raises UserError where anything is wrong.
+    """
     data = load_dataset(dataset)
-    result = summarize(data)
+    model = options.model or data.model
+    if model is not None:
+        _check_against(model, data)
+    result = {**summarize(data), "model": model}
     figure = options.folder(dataset) / FIGURE
     _write_figure(data, figure)
     _print_tables(data, result, figure, options)
     options.print_json({**result, "figure": str(figure)})
+
+
+def _check_against(model: str, data: DataSet) -> None:
+    """Raises UserError where the card's channels, parameters or start states are not the model's."""
+    from greybox_torch.estimate.problem import make_problem
+    from greybox_torch.systems import load_model
+
+    make_problem(data, load_model(model), data.recordings)
 
 
 def summarize(data: DataSet) -> dict[str, Any]:
@@ -75,6 +89,8 @@ def _print_tables(data: DataSet, result: dict[str, Any], figure: Path, options: 
         console.print(_table(experiment["channels"]))
     if data.held_out_by_default:
         console.print('The card gives no experiment the role "validation": the last quarter of each is held out.\n')
+    if result["model"] is not None:
+        console.print(Text(f"Channels, parameters and start states fit the model {result['model']}."), soft_wrap=True)
     console.print(Text(f"Figure: {figure}"), soft_wrap=True)
 
 

@@ -86,10 +86,8 @@ def _allowed_keys(card: type[BaseModel], location: Sequence[str | int]) -> list[
     """The keys of the table at this location, found by walking the types of the card's fields."""
     table: Any = card
     for step in location:
-        if isinstance(table, type) and issubclass(table, BaseModel):
-            table = table.model_fields[str(step)].annotation
-        else:
-            table = table.__args__[-1]  # of dict[str, Entry] or list[Entry]
+        is_entry = isinstance(table, type) and issubclass(table, BaseModel)
+        table = table.model_fields[str(step)].annotation if is_entry else table.__args__[-1]  # dict[str, …], list[…]
     return list(table.model_fields)
 
 
