@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
@@ -86,8 +86,8 @@ def _allowed_keys(card: type[BaseModel], location: Sequence[str | int]) -> list[
     """The keys of the table at this location, found by walking the types of the card's fields."""
     table: Any = card
     for step in location:
-        is_entry = isinstance(table, type) and issubclass(table, BaseModel)
-        table = table.model_fields[str(step)].annotation if is_entry else table.__args__[-1]  # dict[str, …], list[…]
+        inner = get_args(table)  # of dict[str, Entry] or list[Entry]; an Entry itself has none
+        table = inner[-1] if inner else table.model_fields[str(step)].annotation
     return list(table.model_fields)
 
 
