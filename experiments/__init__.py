@@ -1,0 +1,1 @@
+"""Experiments: they use the public surface of the package only."""
