@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 from experiments.concealed.effects import CATALOGUE, STRENGTHS, Effect, Surroundings
 from experiments.concealed.excitation import EXPERIMENTS, PRE_ROLL, Excitation, draw_excitation
 from experiments.concealed.laws import Law
-from experiments.concealed.plant_arm import NOMINAL, PARAMETERS, SAMPLE_TIME, ArmPlant, Drive, Recordings
+from experiments.concealed.plant_arm import (
+    NOMINAL,
+    PARAMETERS,
+    SAMPLE_TIME,
+    STEPS_PER_SAMPLE,
+    ArmPlant,
+    Drive,
+    Recordings,
+)
 
 Array = NDArray[np.float64]
 
@@ -80,7 +88,7 @@ def draw_case(
     case = Case(f"c{number:03d}", sample_time, seed, number, plan, strengths, truth, card, excitation, [])
     position = np.zeros((samples, len(EXPERIMENTS)))
     if any(name in NEEDS_POSITIONS for name in plan):
-        position = _simulate([case], [])[0].position
+        position = _simulate([case], [], steps_per_sample=1)[0].position
     surroundings = Surroundings(truth, position)
     for effect, word in zip(case.effects, strengths, strict=True):
         drawn = effect.draw(rng, STRENGTHS[word], surroundings)
@@ -117,10 +125,10 @@ def simulate_cases(cases: list[Case]) -> list[Recordings]:
     return _simulate(cases, laws)
 
 
-def _simulate(cases: list[Case], laws: list[Law]) -> list[Recordings]:
+def _simulate(cases: list[Case], laws: list[Law], steps_per_sample: int = STEPS_PER_SAMPLE) -> list[Recordings]:
     count, sample_time = len(EXPERIMENTS), cases[0].sample_time
     parameters = {name: np.repeat([case.truth[name] for case in cases], count) for name in PARAMETERS}
-    plant = ArmPlant(parameters, laws, sample_time=sample_time, start_time=-PRE_ROLL)
+    plant = ArmPlant(parameters, laws, sample_time=sample_time, steps_per_sample=steps_per_sample, start_time=-PRE_ROLL)
     drive = Drive(
         np.concatenate([case.excitation.feedforward for case in cases], axis=1),
         np.concatenate([case.excitation.reference for case in cases], axis=1),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,11 @@ from experiments.concealed.case import Case
 from experiments.concealed.excitation import EXPERIMENTS, SENSOR_NOISE
 from experiments.concealed.plant_arm import PARAMETERS, Recordings
 
+NAMES = {experiment: experiment for experiment in EXPERIMENTS}
 
-def card_text(case: Case, name: str = "Robot arm drive") -> str:
-    """The data set's card: what the tool is told."""
+
+def card_text(case: Case, name: str = "Robot arm drive", chosen: Mapping[str, str] = NAMES) -> str:
+    """The data set's card: what the tool is told. `chosen` gives the experiments written, and their names on the card."""
     lines = [
         f'name = "{name}"',
         f"sample_time = {case.sample_time}",
@@ -25,9 +28,9 @@ def card_text(case: Case, name: str = "Robot arm drive") -> str:
         'motor_speed = { column = "y", unit = "rad/s" }',
         "",
     ]
-    for experiment in EXPERIMENTS:
+    for experiment, title in chosen.items():
         role = "estimation" if experiment == "estimation" else "validation"
-        lines += ["[[experiment]]", f'name = "{experiment}"', f'file = "{experiment}.csv"', f'role = "{role}"', ""]
+        lines += ["[[experiment]]", f'name = "{title}"', f'file = "{experiment}.csv"', f'role = "{role}"', ""]
     lines += ["[model]", 'name = "robot_arm"', "", "[model.parameters]"]
     for parameter in PARAMETERS:
         fixed = ", fixed = true" if parameter == "J" else ""
@@ -57,11 +60,19 @@ def key(case: Case) -> dict[str, Any]:
     }
 
 
-def write_case(folder: Path, case: Case, recordings: Recordings) -> None:
+def write_case(
+    folder: Path,
+    case: Case,
+    recordings: Recordings,
+    *,
+    name: str = "Robot arm drive",
+    chosen: Mapping[str, str] = NAMES,
+) -> None:
     """Write the folder; numbers in the recordings have five significant digits."""
     folder.mkdir(parents=True, exist_ok=True)
-    for i, experiment in enumerate(EXPERIMENTS):
+    for experiment in chosen:
+        i = EXPERIMENTS.index(experiment)
         table = np.stack([recordings.torque[:, i], recordings.speed[:, i]], axis=1)
         np.savetxt(folder / f"{experiment}.csv", table, fmt="%.5g", delimiter=",", header="u,y", comments="")
-    (folder / "dataset.toml").write_text(card_text(case))
+    (folder / "dataset.toml").write_text(card_text(case, name, chosen))
     (folder / "key.json").write_text(json.dumps(key(case), indent=1) + "\n")

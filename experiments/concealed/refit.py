@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -27,10 +28,10 @@ STATE_STEPS = np.array([1e-3, 1e-3, 0.05, 0.05, 0.05])
 LARGEST_STEPS = np.array([0.1, 0.1, 3.0, 3.0, 3.0])
 
 
-def simulate(truth: dict[str, Array], states: Array, torque: Array) -> Array:
+def simulate(truth: dict[str, Array], states: Array, torque: Array, sample_time: float) -> Array:
     """Motor speed of the plain plant on recorded torque; two integration steps a sample."""
     lanes = states.shape[1]
-    plant = ArmPlant(truth, steps_per_sample=2)
+    plant = ArmPlant(truth, sample_time=sample_time, steps_per_sample=2)
     start = plant.initial_state(states[2:])
     start[:2] = states[:2]
     nothing, zero = np.zeros((len(torque), 1)), np.zeros(lanes)
@@ -38,9 +39,13 @@ def simulate(truth: dict[str, Array], states: Array, torque: Array) -> Array:
 
 
 class Refit:
-    """All cases side by side: torque and speed (samples, cases, 4), parameters {name: (cases,)}, states (5, cases, 4)."""
+    """All cases, of one sample time, side by side.
+
+    Torque and speed (samples, cases, 4), parameters {name: (cases,)}, start states (5, cases, 4).
+    """
 
     def __init__(self, folders: list[Path]) -> None:
+        self.sample_time: float = tomllib.loads((folders[0] / "dataset.toml").read_text())["sample_time"]
         keys = [json.loads((folder / "key.json").read_text()) for folder in folders]
         tables = [
             [np.loadtxt(folder / f"{name}.csv", delimiter=",", skiprows=1) for name in EXPERIMENTS]
@@ -68,7 +73,7 @@ class Refit:
         for i in range(5):
             first = lanes * (1 + len(names) + i)
             starts[i, first : first + lanes] += STATE_STEPS[i]
-        simulated = simulate(values, starts, np.tile(torque, copies)).reshape(samples, copies, lanes)
+        simulated = simulate(values, starts, np.tile(torque, copies), self.sample_time).reshape(samples, copies, lanes)
         steps = np.concatenate([np.full(len(names), 1e-4), STATE_STEPS])
         return speed - simulated[:, 0], (simulated[:, 1:] - simulated[:, :1]) / steps[:, None]
 
@@ -125,9 +130,10 @@ class Refit:
         self.settle_states(slice(1, 4), samples // 10)
         width = self.states.shape[2]
         values = {name: np.repeat(self.parameters[name], width) for name in PARAMETERS}
-        simulated = simulate(values, self.states.reshape(5, -1), self.torque.reshape(samples, -1))
+        simulated = simulate(values, self.states.reshape(5, -1), self.torque.reshape(samples, -1), self.sample_time)
         error = self.speed.reshape(samples, -1) - simulated
-        return np.asarray(np.sqrt((error**2).mean(axis=0)), np.float64).reshape(self.cases, width)
+        mean_square: Array = np.einsum("ij,ij->j", error, error) / samples
+        return np.asarray(np.sqrt(mean_square), dtype=float).reshape(self.cases, width)
 
 
 def _solve(columns: Array, residual: Array) -> Array:
