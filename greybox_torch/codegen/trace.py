@@ -15,6 +15,7 @@ from torch.utils._pytree import tree_map
 
 from greybox_torch.codegen.expression import FUNCTIONS, Graph
 from greybox_torch.errors import UserError
+from greybox_torch.model.check import BRANCHES_ON_SIGNAL
 
 
 class UnsupportedOperation(Exception):
@@ -41,10 +42,7 @@ class Symbol(torch.Tensor):
         handler = _HANDLERS.get(name)
         if handler is None:
             if name == "_local_scalar_dense":
-                raise UserError(
-                    "the model's equations branch on the value of a signal (a Python `if`, `float()` or `.item()` on a tensor); "
-                    "write torch.where(condition, yes, no) instead, so that all samples can be computed side by side"
-                )
+                raise UserError(BRANCHES_ON_SIGNAL)
             raise UnsupportedOperation(f"torch operation '{func._schema.name}'")
         result = handler(graph, *tree_map(lambda a: _nodes_of(graph, a), args), **kwargs)
         return Symbol.of(graph, np.asarray(result, dtype=object))

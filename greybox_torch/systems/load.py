@@ -10,6 +10,7 @@ from types import ModuleType
 
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.check import check_equations
 from greybox_torch.systems.robot_arm import RobotArm
 
 BUILT_IN: dict[str, type[GreyBoxModel]] = {RobotArm.name: RobotArm}
@@ -19,7 +20,8 @@ def load_model(name: str) -> GreyBoxModel:
     """The model called ``name``, with its declared values.
 
     Raises:
-        UserError: no such built-in system, no such file, the file raises, or does not define the class.
+        UserError: no such built-in system, no such file, the file raises or does not define the class, or the equations of the
+            class raise.
     """
     if name in BUILT_IN:
         return BUILT_IN[name]()
@@ -41,7 +43,9 @@ def load_model(name: str) -> GreyBoxModel:
         what = "is not a GreyBoxModel" if found is not None else "is not defined"
         raise UserError(f"model file {file}: class '{class_name}' {what}; {have}")
     try:
-        return found()
+        model = found()
+        check_equations(model)
+        return model
     except UserError as error:
         raise UserError(f"model file {file}, class {class_name}: {error}") from None
     except Exception as error:
