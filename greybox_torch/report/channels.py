@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from textwrap import fill
-from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -11,15 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from greybox_torch.data import Channel, DataSet, Recording
+from greybox_torch.report.style import STYLE, dots_within, with_unit
 
 _MOST_COLUMNS = 3
-_STYLE: dict[Any, Any] = {
-    "text.parse_math": False,  # a name may hold dollar signs
-    "agg.path.chunksize": 20000,  # long records overflow the renderer otherwise
-    "axes.grid": True,
-    "grid.alpha": 0.3,
-    "font.size": 9,
-}
 
 
 def plot_channels(data: DataSet) -> Figure:
@@ -32,8 +25,8 @@ def plot_channels(data: DataSet) -> Figure:
     columns = min(len(data.recordings), _MOST_COLUMNS)
     bands = -(-len(data.recordings) // columns)
     size = (max(8.0, 4.5 * columns), 0.8 + bands * (0.6 + 1.8 * len(channels)))
-    dots_per_inch = min(120.0, 50000.0 / size[1])  # a picture ends at 65536 dots, reached by hundreds of experiments
-    with mpl.rc_context(_STYLE):
+    dots_per_inch = dots_within(size[1])
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=size, dpi=dots_per_inch, layout="constrained")
         figure.suptitle(data.name, fontweight="bold")
         grid = figure.add_gridspec(bands * len(channels), columns)
@@ -50,7 +43,7 @@ def plot_channels(data: DataSet) -> Figure:
                 _plot(axes, recording, channel)
                 axes.tick_params(labelbottom=row == len(channels) - 1, labelleft=column == 0)
                 if column == 0:
-                    axes.set_ylabel(f"{channel.name} [{channel.unit}]" if channel.unit else channel.name)
+                    axes.set_ylabel(with_unit(channel.name, channel.unit))
             if top is not None:
                 top.set_title(f"{fill(recording.name, 40)} ({recording.role})", fontsize=10)
             axes.set_xlabel("time [s]")

@@ -1,0 +1,24 @@
+"""What all figures have in common."""
+
+from __future__ import annotations
+
+from typing import Any
+
+STYLE: dict[Any, Any] = {
+    "text.parse_math": False,  # a name may hold dollar signs
+    "agg.path.chunksize": 20000,  # long records overflow the renderer otherwise
+    "axes.grid": True,
+    "grid.alpha": 0.3,
+    "font.size": 9,
+}
+"""Settings for ``matplotlib.rc_context``."""
+
+
+def dots_within(height: float) -> float:
+    """Dots per inch of a figure of this height in inches: a picture ends at 65536 dots, reached by hundreds of experiments."""
+    return min(120.0, 50000.0 / height)
+
+
+def with_unit(name: str, unit: str) -> str:
+    """A label for an axis."""
+    return f"{name} [{unit}]" if unit else name
