@@ -1,0 +1,62 @@
+"""The figure of residuals: over time, their autocorrelation, and their correlation with the inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from greybox_torch.data import Channel, Recording
+from greybox_torch.estimate.residuals import Correlation
+from greybox_torch.report.style import STYLE, dots_within, with_unit
+
+
+@dataclass(frozen=True)
+class ResidualRow:
+    """What is drawn of one output in one experiment: errors (N,), their whiteness, their correlation with each input."""
+
+    recording: Recording
+    output: Channel
+    errors: np.ndarray
+    whiteness: Correlation
+    inputs: Mapping[str, Correlation]
+
+
+def plot_residuals(rows: Sequence[ResidualRow], title: str) -> Figure:
+    """A row for each output of each experiment; the band is what 99 % of the values keep within if nothing is missing."""
+    columns = 2 + max(len(row.inputs) for row in rows)
+    height = 0.7 + 2.3 * len(rows)
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(4.0 * columns, height), dpi=dots_within(height), layout="constrained")
+        figure.suptitle(title, fontweight="bold")
+        axes = figure.subplots(len(rows), columns, squeeze=False)
+        for row, places in zip(rows, axes, strict=True):
+            _plot_errors(places[0], row)
+            _plot_correlation(places[1], row.whiteness, "autocorrelation")
+            for place, (name, correlation) in zip(places[2:], row.inputs.items(), strict=True):
+                _plot_correlation(place, correlation, f"correlation with {name} earlier by the lag")
+    return figure
+
+
+def _plot_errors(axes: Axes, row: ResidualRow) -> None:
+    axes.plot(row.recording.time, row.errors, linewidth=0.6)
+    axes.margins(x=0)
+    axes.set_title(f"{row.recording.name} ({row.recording.role})")
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel("residual of " + with_unit(row.output.name, row.output.unit))
+
+
+def _plot_correlation(axes: Axes, correlation: Correlation, title: str) -> None:
+    axes.axhspan(-correlation.bound, correlation.bound, color="tab:green", alpha=0.25, linewidth=1, label="99 % band")
+    axes.axhline(0.0, color="black", linewidth=0.6)
+    axes.vlines(correlation.lags, 0.0, correlation.values, linewidth=1.0)
+    axes.plot(correlation.lags, correlation.values, "o", markersize=3)
+    reach = 1.15 * max(float(np.abs(correlation.values).max()), correlation.bound)
+    axes.set_ylim(-reach, reach)
+    axes.set_title(title)
+    axes.set_xlabel("lag [samples]")
+    axes.legend(loc="lower right")
