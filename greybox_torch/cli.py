@@ -53,7 +53,7 @@ Out = Annotated[
     Path | None,
     typer.Option(metavar="DIR", help="Where to write results.", show_default="results/<folder of the card>"),
 ]
-Seed = Annotated[int, typer.Option(help="Start of everything that is drawn at random.")]
+Seed = Annotated[int, typer.Option(min=0, max=2**32 - 1, help="Start of everything that is drawn at random.")]
 Device = Annotated[str, typer.Option(help='Where to compute: "cpu", "cuda", "cuda:1".')]
 Json = Annotated[
     bool, typer.Option("--json", help="The result as JSON on standard output, all else on standard error.")
@@ -88,6 +88,72 @@ def inspect(
     from greybox_torch.commands import inspect
 
     inspect.run(dataset, Options(model, out, seed, device, json))
+
+
+@app.command()
+def simulate(
+    dataset: DataSetFile,
+    model: Model = None,
+    out: Out = None,
+    seed: Seed = 0,
+    device: Device = "cpu",
+    json: Json = False,
+) -> None:
+    """Simulate all experiments in free run with the start values."""
+    from greybox_torch.commands import simulate
+
+    simulate.run(dataset, Options(model, out, seed, device, json))
+
+
+@app.command()
+def fit(
+    dataset: DataSetFile,
+    model: Model = None,
+    out: Out = None,
+    seed: Seed = 0,
+    device: Device = "cpu",
+    json: Json = False,
+) -> None:
+    """Estimate the free parameters and initial states, and write them as a checkpoint."""
+    from greybox_torch.commands import fit
+
+    fit.run(dataset, Options(model, out, seed, device, json))
+
+
+@app.command()
+def compare(
+    dataset: DataSetFile,
+    checkpoints: Annotated[
+        list[Path] | None, typer.Argument(metavar="[CHECKPOINT]...", help="Results of fit or diagnose.")
+    ] = None,
+    model: Model = None,
+    out: Out = None,
+    seed: Seed = 0,
+    device: Device = "cpu",
+    json: Json = False,
+) -> None:
+    """Compare simulated with measured, for the start values and for checkpoints."""
+    from greybox_torch.commands import compare
+
+    compare.run(dataset, checkpoints or [], Options(model, out, seed, device, json))
+
+
+@app.command()
+def residuals(
+    dataset: DataSetFile,
+    checkpoint: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Parameter values of a fit instead of the start values.")
+    ] = None,
+    model: Model = None,
+    out: Out = None,
+    seed: Seed = 0,
+    device: Device = "cpu",
+    json: Json = False,
+) -> None:
+    """Test prediction errors: are they white, and does the input still explain part of them?"""
+    from greybox_torch.commands import residuals
+
+    residuals.run(dataset, checkpoint, Options(model, out, seed, device, json))
 
 
 def main() -> None:

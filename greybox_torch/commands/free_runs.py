@@ -1,0 +1,140 @@
+"""Free runs of one or several models on all experiments of a task: what `simulate`, `compare` and `residuals` share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+from greybox_torch.checkpoint import check_same_parameters, load_checkpoint
+from greybox_torch.commands.tables import print_table
+from greybox_torch.commands.task import Task
+from greybox_torch.data import DataSet
+from greybox_torch.errors import NumericalError, UserError
+from greybox_torch.estimate.comparison import Comparison, Score, compare
+from greybox_torch.files import replacing
+from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulate.substeps import choose_substeps
+from greybox_torch.systems import load_model
+
+START = "start"
+"""The name of the model with the card's values."""
+
+
+@dataclass(frozen=True)
+class ModelRun:
+    """A model's free runs: its name in results, how it is loaded, and what came of it."""
+
+    name: str
+    model: str
+    comparison: Comparison
+
+
+def free_run(task: Task, checkpoint: Path | None = None, name: str = START) -> ModelRun:
+    """Simulates all experiments with the card's values or those of a checkpoint; start states from the first tenth of each."""
+    values = None
+    if checkpoint is not None:
+        task, values = _restored(task, checkpoint)
+    problem = task.problem(values=values)
+    stepper = make_stepper(task.model, (), device=task.device)
+    substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
+    return ModelRun(name, task.model_name, compare(problem, task.data.recordings, stepper, substeps=substeps))
+
+
+def _restored(task: Task, path: Path) -> tuple[Task, dict[str, float]]:
+    """The task with the checkpoint's own model, and its values.
+
+    A model that is not where it was when the checkpoint was written is taken to be the task's, if that has the same name.
+    """
+    checkpoint = load_checkpoint(path)
+    if checkpoint.effects:
+        names = ", ".join(str(effect.get("mechanism")) for effect in checkpoint.effects)
+        raise UserError(f"checkpoint {path}: has effects attached ({names}), which cannot be simulated yet")
+    same = checkpoint.title == task.model.title
+    if checkpoint.model != task.model_name:
+        file = Path(checkpoint.model.rpartition(":")[0])
+        if not (same and file.suffix == ".py" and not file.exists()):
+            data = (
+                task.data if same else replace(task.data, parameters={}, initial={})
+            )  # the card speaks of another model
+            task = replace(task, data=data, model=load_model(checkpoint.model), model_name=checkpoint.model)
+    check_same_parameters(path, checkpoint, task.model.title, [p.name for p in task.model.declared_parameters])
+    return task, dict(checkpoint.values)
+
+
+def refuse_overflow(task: Task, run: ModelRun) -> None:
+    """Raises NumericalError, saying where, if a free run is not finite."""
+    for recording, simulated in zip(task.data.recordings, run.comparison.simulated, strict=True):
+        broken = np.flatnonzero(~np.isfinite(simulated).all(axis=1))
+        if broken.size:
+            raise NumericalError(
+                f"simulating {task.model.title}: the simulation of '{recording.name}' overflows at {recording.time[broken[0]]:.6g} s; "
+                "try parameters and start states nearer to the truth, tighter bounds, or a smaller sample time"
+            )
+
+
+def scores_json(scores: Sequence[Score]) -> list[dict[str, Any]]:
+    """Rows as the contract wants them."""
+    return [
+        {"experiment": s.experiment, "role": s.role, "output": s.output, "fit": s.fit, "rmse": s.rmse} for s in scores
+    ]
+
+
+def result_json(data: DataSet, runs: Sequence[ModelRun]) -> dict[str, Any]:
+    """The result of `simulate` and `compare`."""
+    models = [{"name": r.name, "model": r.model, "fit": scores_json(r.comparison.scores)} for r in runs]
+    return {
+        "schema": "greybox-compare/1",
+        "dataset": data.name,
+        "held_out_by_default": data.held_out_by_default,
+        "models": models,
+    }
+
+
+def print_scores(console: Console, data: DataSet, scores: dict[str, Sequence[Score]]) -> None:
+    """A line for every output of every experiment, with the fit and the error of each model."""
+    columns = [
+        "experiment",
+        "role",
+        "output",
+        *[f"{name}\n{what}" for name in scores for what in ("fit [%]", "rmse")],
+        "unit",
+    ]
+    rows = []
+    for together in zip(*scores.values(), strict=True):
+        first = together[0]
+        numbers = [cell for score in together for cell in _cells(score)]
+        rows.append([first.experiment, first.role, first.output, *numbers, data.channels[first.output].unit])
+    print_table(console, columns, rows, prose=["experiment"])
+    if data.held_out_by_default:
+        console.print('The card gives no experiment the role "validation": the last quarter of each is held out.\n')
+
+
+def _cells(score: Score) -> tuple[str | float, str | float]:
+    return (score.fit, score.rmse) if np.isfinite(score.rmse) else ("overflow", "overflow")
+
+
+def write_figures(task: Task, runs: Sequence[ModelRun], prefix: str) -> list[Path]:
+    """Draws every experiment, simulated against measured; all of the figures are written, or none."""
+    from greybox_torch.report.comparison import plot_comparison
+
+    outputs = [task.data.channels[output.name] for output in task.model.outputs]
+    paths = [task.folder / f"{stem}.png" for stem in file_stems(task.data, prefix)]
+    with ExitStack() as together:
+        for e, (recording, path) in enumerate(zip(task.data.recordings, paths, strict=True)):
+            scores = {r.name: [s.fit for s in r.comparison.scores if s.experiment == recording.name] for r in runs}
+            legend = {name: f"{name} ({', '.join(f'{fit:.1f} %' for fit in fits)})" for name, fits in scores.items()}
+            figure = plot_comparison(recording, outputs, {r.name: r.comparison.simulated[e] for r in runs}, legend)
+            figure.savefig(together.enter_context(replacing(path)))
+    return paths
+
+
+def file_stems(data: DataSet, prefix: str) -> list[str]:
+    """A file name for every experiment: its number and what of its name is safe in a file name."""
+    plain = ["".join(c if c.isalnum() else "_" for c in recording.name.lower())[:40] for recording in data.recordings]
+    return [f"{prefix}_{number}_{name}" for number, name in enumerate(plain, start=1)]

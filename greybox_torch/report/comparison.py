@@ -1,0 +1,82 @@
+"""The figure of a comparison: simulated against measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from greybox_torch.data import Channel, Recording
+from greybox_torch.report.style import STYLE, dots_within, with_unit
+
+_DETAIL = 0.05
+"""Share of the record that the detail shows."""
+
+
+def plot_comparison(
+    recording: Recording, outputs: list[Channel], simulated: Mapping[str, np.ndarray], legend: Mapping[str, str]
+) -> Figure:
+    """One experiment: every output over the whole record, and in detail where the last model is worst; errors below.
+
+    ``simulated`` holds the outputs (N, n_y) by the model's name, ``legend`` what to say of each model.
+    """
+    with mpl.rc_context(STYLE):
+        height = 0.6 + 4.4 * len(outputs)
+        figure = Figure(figsize=(11, height), dpi=dots_within(height), layout="constrained")
+        figure.suptitle(f"{recording.name} ({recording.role})", fontweight="bold")
+        grid = figure.add_gridspec(2 * len(outputs), 2, width_ratios=(1.6, 1), height_ratios=(1.4, 1) * len(outputs))
+        for k, output in enumerate(outputs):
+            runs = {name: values[:, k] for name, values in simulated.items()}
+            measured = recording.signals[output.name]
+            ends = _worst(measured, list(runs.values())[-1])
+            for column, part in enumerate((slice(None), ends)):
+                above = figure.add_subplot(grid[2 * k, column])
+                below = figure.add_subplot(grid[2 * k + 1, column], sharex=above)
+                _plot_signals(
+                    above, recording.time[part], measured[part], {n: v[part] for n, v in runs.items()}, legend
+                )
+                _plot_errors(below, recording.time[part], measured[part], {n: v[part] for n, v in runs.items()})
+                below.set_xlabel("time [s]")
+                if column == 0:
+                    above.set_ylabel(with_unit(output.name, output.unit))
+                    below.set_ylabel(with_unit("error", output.unit))
+                    figure.legend(
+                        *above.get_legend_handles_labels(), loc="outside upper right", ncols=3
+                    ) if k == 0 else None
+                else:
+                    above.set_title("where the error is largest", fontsize=9)
+    return figure
+
+
+def _plot_signals(
+    axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mapping[str, np.ndarray], legend: Mapping[str, str]
+) -> None:
+    axes.plot(time, measured, color="black", linewidth=1.0, label="measured")
+    for name, values in runs.items():
+        axes.plot(time, _finite(values), linewidth=0.9, label=legend[name])
+    axes.margins(x=0)
+    axes.tick_params(labelbottom=False)
+
+
+def _plot_errors(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mapping[str, np.ndarray]) -> None:
+    axes.axhline(0.0, color="black", linewidth=0.6)
+    for values in runs.values():
+        axes.plot(time, measured - _finite(values), linewidth=0.8)
+    axes.margins(x=0)
+
+
+def _finite(values: np.ndarray) -> np.ndarray:
+    """Where a simulation overflows, its curve ends."""
+    return np.where(np.isfinite(values), values, np.nan)
+
+
+def _worst(measured: np.ndarray, simulated: np.ndarray) -> slice:
+    """The stretch of the record with the largest squared error."""
+    size = max(10, round(_DETAIL * len(measured)))
+    squared = np.nan_to_num(_finite(measured - simulated)) ** 2
+    total = np.cumsum(np.concatenate([[0.0], squared]))
+    begin = int(np.argmax(total[size:] - total[:-size])) if len(measured) > size else 0
+    return slice(begin, begin + size)
