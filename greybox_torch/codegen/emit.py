@@ -37,8 +37,9 @@ def emit(equations: Equations, precision: str) -> str:
     body = _Body(equations)
     n_x, n_y, n_p = equations.n_states, equations.n_outputs, len(equations.sensitive)
     rate_rows = [(f"dx[{i}]", node) for i, node in enumerate(equations.rates)]
-    state_entries = _entries(equations.rates_by_state)
-    parameter_entries = _entries(equations.rates_by_parameter)
+    n_t = equations.n_tangent
+    state_entries = _entries(equations.rates_by_state[:n_t])
+    parameter_entries = _entries(equations.rates_by_parameter[:n_t])
     output_rows = [(f"y[{i}]", node) for i, node in enumerate(equations.outputs)]
     output_states = _entries(equations.outputs_by_state)
     output_parameters = _entries(equations.outputs_by_parameter)
@@ -54,7 +55,7 @@ def emit(equations: Equations, precision: str) -> str:
         "RATES_JACOBIAN": body.statements(rate_rows + stored_a + stored_b),
         "OUTPUTS": body.statements(output_rows),
         "OUTPUTS_JACOBIAN": body.statements(output_rows + stored_c + stored_d),
-        "TANGENT": _products("k", n_x, state_entries, row_of_state, "A", "b", body),
+        "TANGENT": _products("k", n_t, state_entries, row_of_state, "A", "b", body),
         "TANGENT_OUTPUT": _products("s", n_y, output_states, row_of_state, "C", "d", body),
     }
     text = PROGRAM
@@ -62,6 +63,7 @@ def emit(equations: Equations, precision: str) -> str:
         text = text.replace(f"/*{name}*/", code)
     sizes = {
         "NX": n_x,
+        "NT": n_t,
         "NU": max(equations.n_inputs, 1),
         "NY": n_y,
         "NP": max(equations.n_parameters, 1),

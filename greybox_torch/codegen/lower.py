@@ -18,7 +18,8 @@ class Equations:
     """A model's equations as one expression graph.
 
     ``rates`` and ``outputs`` are root nodes; the Jacobians map leaf nodes to partial derivatives; ``sensitive`` names the parameters
-    that the Jacobians cover, in the order of their columns.
+    that the Jacobians cover, in the order of their columns. Tangents concern the first ``n_tangent`` states; the others
+    (memories of effects that are not there) follow the trajectory without acting on it.
     """
 
     graph: Graph
@@ -26,6 +27,7 @@ class Equations:
     n_inputs: int
     n_outputs: int
     n_parameters: int
+    n_tangent: int
     sensitive: tuple[int, ...]
     rates: tuple[int, ...]
     outputs: tuple[int, ...]
@@ -71,6 +73,7 @@ def lower(model: GreyBoxModel, sensitive: Sequence[str], at_zero: Sequence[str] 
         len(model.inputs),
         len(model.outputs),
         len(names),
+        _acting_states(pieces[0], pieces[2], leaves_x),
         tuple(names.index(name) for name in sensitive),
         rates,
         outputs,
@@ -79,6 +82,17 @@ def lower(model: GreyBoxModel, sensitive: Sequence[str], at_zero: Sequence[str] 
         pieces[2],
         pieces[3],
     )
+
+
+def _acting_states(rates_by_state: list[Partials], outputs_by_state: list[Partials], leaves: list[int]) -> int:
+    """How many leading states act on the outputs, directly or through one another."""
+    acting: set[int] = {leaves.index(leaf) for row in outputs_by_state for leaf in row}
+    found = True
+    while found:
+        reached = {leaves.index(leaf) for i in acting for leaf in rates_by_state[i]}
+        found = not reached <= acting
+        acting |= reached
+    return max(acting) + 1 if acting else len(leaves)
 
 
 class _Substitution:

@@ -21,7 +21,7 @@ SIMD float asinf(float); SIMD float acosf(float); SIMD float atanf(float); SIMD 
 SIMD float tanhf(float); SIMD float erff(float); SIMD float log1pf(float); SIMD float expm1f(float); SIMD float powf(float, float);
 SIMD float atan2f(float, float);
 double sqrt(double); float sqrtf(float); double floor(double); float floorf(float);
-void *malloc(unsigned long); void free(void *);
+void *aligned_alloc(unsigned long, unsigned long); void free(void *);
 }
 #define LIFT(name) \
   INLINE double s_##name(double a) { return name(a); } INLINE float s_##name(float a) { return name##f(a); } \
@@ -42,10 +42,10 @@ INLINE vec v_max(vec a, vec b) { return a > b ? a : b; }
 INLINE void prologue(const vec *p, vec *h) {
 /*PROLOGUE*/
 }
-INLINE void rates(const vec *x, const vec *u, const vec *p, const vec *h, vec *dx) {
+static __attribute__((noinline)) void rates(const vec *x, const vec *u, const vec *p, const vec *h, vec *dx) {
 /*RATES*/
 }
-INLINE void rates_jacobian(const vec *x, const vec *u, const vec *p, const vec *h, vec *dx, vec *A, vec (*B)[NX]) {
+static __attribute__((noinline)) void rates_jacobian(const vec *x, const vec *u, const vec *p, const vec *h, vec *dx, vec *A, vec (*B)[NT]) {
 /*RATES_JACOBIAN*/
 }
 INLINE void outputs(const vec *x, const vec *u, const vec *p, const vec *h, vec *y) {
@@ -70,10 +70,13 @@ struct Job {
   const long *column;      // [directions]    parameter column, or NS for a start-state direction
   const real *p;           // [groups][NP][LANES]
   real *x;                 // [groups][NX][LANES]              in: start states, out: states after the last step
-  real *dx;                // [groups][directions][NX][LANES]  likewise for the tangents
+  real *dx;                // [groups][directions][NT][LANES]  likewise for the tangents
   real *y;                 // [groups][steps][NY][LANES]
-  real *dy;                // [groups][steps][NY][directions][LANES] or null
+  real *dy;                // [groups][steps][NY][directions][LANES], unused where normal is wanted
   real *trace;             // [groups][steps][NX][LANES] or null: states at the samples
+  const real *measured;    // [NY][samples] or null: what the outputs are compared with, NaN = missing
+  const real *weight;      // [NY]            factor on the errors
+  real *normal;            // [groups][R][R][LANES], R = directions + 1 rounded up to TILE: JᵀJ, Jᵀe and eᵀe, lower triangle of tiles
 };
 
 INLINE vec gather(const real *data, const long *index) {
@@ -82,18 +85,38 @@ INLINE vec gather(const real *data, const long *index) {
   return r;
 }
 
+#define TILE 4
+#define CHUNK 32
+INLINE void accumulate(const vec *rows, long count, long width, vec *normal) {
+  for (long i = 0; i < width; i += TILE)
+    for (long j = 0; j <= i; j += TILE) {
+      vec sum[TILE][TILE];
+      for (int a = 0; a < TILE; a++) for (int b = 0; b < TILE; b++) sum[a][b] = normal[(i + a) * width + j + b];
+      for (long t = 0; t < count; t++) {
+        const vec *left = rows + t * width + i, *right = rows + t * width + j;
+        for (int a = 0; a < TILE; a++) for (int b = 0; b < TILE; b++) sum[a][b] += left[a] * right[b];
+      }
+      for (int a = 0; a < TILE; a++) for (int b = 0; b < TILE; b++) normal[(i + a) * width + j + b] = sum[a][b];
+    }
+}
+
 template <bool TANGENTS> static void run_group(const Job &job, long g) {
   vec x[NX], y[NY], u0[NU], u1[NU], uh[NU], h[NH];
   vec A[4][NA], C[NC];
-  static thread_local vec B[4][NS + 1][NX], D[NS + 1][NY];
+  static thread_local vec B[4][NS + 1][NT], D[NS + 1][NY];
   const long nd = job.directions;
   const vec *p = (const vec *)job.p + g * NP;
-  vec *gx = (vec *)job.x + g * NX, *gdx = (vec *)job.dx + g * nd * NX;
+  vec *gx = (vec *)job.x + g * NX, *gdx = (vec *)job.dx + g * nd * NT;
   vec *gy = (vec *)job.y + g * job.steps * NY;
   vec *gdy = (vec *)job.dy + g * job.steps * NY * nd;
   vec *gtrace = job.trace ? (vec *)job.trace + g * job.steps * NX : 0;
+  const long width = (nd + TILE) / TILE * TILE;
+  vec *gnormal = (vec *)job.normal + g * width * width;
+  vec *rows = job.normal ? (vec *)aligned_alloc(64, sizeof(vec) * width * CHUNK * NY) : 0;
+  long filled = 0;
+  if (rows) for (long k = 0; k < width * CHUNK * NY; k++) rows[k] = vec{};
   prologue(p, h);
-  for (int s = 0; s < 4; s++) for (int k = 0; k <= NS; k++) for (int i = 0; i < NX; i++) B[s][k][i] = vec{};
+  for (int s = 0; s < 4; s++) for (int k = 0; k <= NS; k++) for (int i = 0; i < NT; i++) B[s][k][i] = vec{};
   for (int k = 0; k <= NS; k++) for (int i = 0; i < NY; i++) D[k][i] = vec{};
   for (int i = 0; i < NX; i++) x[i] = gx[i];
   for (long n = 0; n < job.steps; n++) {
@@ -108,10 +131,23 @@ template <bool TANGENTS> static void run_group(const Job &job, long g) {
     if (TANGENTS) outputs_jacobian(x, u0, p, h, y, C, D); else outputs(x, u0, p, h, y);
     for (int i = 0; i < NY; i++) gy[n * NY + i] = y[i];
     if (gtrace) for (int i = 0; i < NX; i++) gtrace[n * NX + i] = x[i];
+    vec scale[NY];
+    if (rows) for (int i = 0; i < NY; i++) {
+      const vec target = gather(job.measured + i * job.samples, now);
+      for (int l = 0; l < LANES; l++)
+        scale[i][l] = job.start[g * LANES + l] + n <= job.last[g * LANES + l] && target[l] == target[l] ? job.weight[i] : 0;
+      const vec error = scale[i] != 0 ? (target - y[i]) * scale[i] : vec{};
+      rows[(filled + i) * width + nd] = error;
+    }
     if (TANGENTS) for (long d = 0; d < nd; d++) {
       vec s[NY];
-      tangent_output(C, D[job.column[d]], gdx + d * NX, s);
-      for (int i = 0; i < NY; i++) gdy[(n * NY + i) * nd + d] = s[i];
+      tangent_output(C, D[job.column[d]], gdx + d * NT, s);
+      if (rows) for (int i = 0; i < NY; i++) rows[(filled + i) * width + d] = scale[i] != 0 ? s[i] * scale[i] : vec{};
+      else for (int i = 0; i < NY; i++) gdy[(n * NY + i) * nd + d] = s[i];
+    }
+    if (rows && ((filled += NY) == CHUNK * NY || n == job.steps - 1)) {
+      accumulate(rows, filled, width, gnormal);
+      filled = 0;
     }
     const vec H = gather(job.dt, now) / (real)job.substeps;
     for (long m = 0; m < job.substeps; m++) {
@@ -131,20 +167,21 @@ template <bool TANGENTS> static void run_group(const Job &job, long g) {
       if (TANGENTS) rates_jacobian(z, b, p, h, k4, A[3], B[3]); else rates(z, b, p, h, k4);
       for (int i = 0; i < NX; i++) x[i] += H / (real)6 * (k1[i] + (real)2 * (k2[i] + k3[i]) + k4[i]);
       if (TANGENTS) for (long d = 0; d < nd; d++) {
-        vec *q = gdx + d * NX, w[NX];
+        vec *q = gdx + d * NT, w[NT], k1[NT], k2[NT], k3[NT], k4[NT];
         const long c = job.column[d];
         tangent(A[0], B[0][c], q, k1);
-        for (int i = 0; i < NX; i++) w[i] = q[i] + (real)0.5 * H * k1[i];
+        for (int i = 0; i < NT; i++) w[i] = q[i] + (real)0.5 * H * k1[i];
         tangent(A[1], B[1][c], w, k2);
-        for (int i = 0; i < NX; i++) w[i] = q[i] + (real)0.5 * H * k2[i];
+        for (int i = 0; i < NT; i++) w[i] = q[i] + (real)0.5 * H * k2[i];
         tangent(A[2], B[2][c], w, k3);
-        for (int i = 0; i < NX; i++) w[i] = q[i] + H * k3[i];
+        for (int i = 0; i < NT; i++) w[i] = q[i] + H * k3[i];
         tangent(A[3], B[3][c], w, k4);
-        for (int i = 0; i < NX; i++) q[i] += H / (real)6 * (k1[i] + (real)2 * (k2[i] + k3[i]) + k4[i]);
+        for (int i = 0; i < NT; i++) q[i] += H / (real)6 * (k1[i] + (real)2 * (k2[i] + k3[i]) + k4[i]);
       }
     }
   }
   for (int i = 0; i < NX; i++) gx[i] = x[i];
+  free(rows);
 }
 
 extern "C" void run(const Job *job) {

@@ -81,11 +81,11 @@ def fit(
         NumericalError: the simulation overflows even over short windows.
     """
     stepper = stepper or make_stepper(problem.model, problem.free_names, device=device)
-    substeps = choose_substeps(problem.tape, stepper, problem.values, problem.initial) or 1
+    substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
     evaluations = 0
     if not _good(problem, stepper, substeps):
         problem, evaluations = _approach(problem, stepper, substeps, progress)
-        substeps = choose_substeps(problem.tape, stepper, problem.values, problem.initial) or substeps
+        substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or substeps
     run = FreeRun(problem, stepper, substeps)
     samples = int((~np.isnan(problem.tape.y)).sum())
     if not len(run.start):

@@ -8,12 +8,14 @@ import numpy as np
 
 from greybox_torch.estimate.levenberg_marquardt import Quadratic
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulate.stepper import Stepper, whole_records
+from greybox_torch.simulate.stepper import Run, Stepper, whole_records
 
 
 def simulate(problem: Problem, stepper: Stepper, *, substeps: int = 1) -> list[np.ndarray]:
     """Simulated outputs (N_e, n_y) of every experiment from its start state."""
-    run = stepper.run(problem.tape, whole_records(problem.tape), problem.values, problem.initial, substeps=substeps)
+    run = stepper.run(
+        problem.driving_tape, whole_records(problem.tape), problem.values, problem.initial, substeps=substeps
+    )
     return [np.array(run.y[e, :n]) for e, n in enumerate(problem.tape.lengths)]
 
 
@@ -50,16 +52,40 @@ class FreeRun:
     def admissible(self, z: np.ndarray) -> bool:
         return self.problem.admissible(self.at(z).values)
 
-    def residuals(self, z: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]] | None:
-        """Weighted errors (M_e,) per experiment and their Jacobian (M_e, d_e); None where the simulation is not finite.
+    def quadratic(self, z: np.ndarray) -> Quadratic[None] | None:
+        """Cost, gradient and Gauss-Newton Hessian at ``z``; None where the simulation is not finite."""
+        run = self._run(z, self.problem.weights)
+        assert run.normal is not None
+        if not np.isfinite(run.normal).all():
+            return None
+        size, n_p = len(z), self.n_parameters
+        gradient, hessian = np.zeros(size), np.zeros((size, size))
+        for e, matrix in enumerate(run.normal):
+            index = self.columns(e, n_p, matrix.shape[0] - 1 - n_p)
+            hessian[np.ix_(index, index)] += matrix[:-1, :-1]
+            gradient[index] -= matrix[:-1, -1]
+        return Quadratic(0.5 * float(run.normal[:, -1, -1].sum()), gradient, hessian, None)
+
+    def residuals(self, z: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
+        """Weighted errors simulated − measured (M_e,) per experiment and their Jacobian (M_e, d_e), at a point that simulates.
 
         The columns of an experiment are the free parameters, then its own free start states.
         """
+        run, tape, weights = self._run(z, None), self.problem.tape, self.problem.weights
+        errors, jacobians = [], []
+        for e, n in enumerate(tape.lengths):
+            measured = tape.y[:, tape.span(e)].T
+            known = ~np.isnan(measured)
+            errors.append(((run.y[e, :n] - measured) * weights)[known])
+            jacobians.append(np.zeros((known.sum(), 0)) if run.dy is None else (run.dy[e, :n] * weights[:, None])[known])
+        return errors, jacobians
+
+    def _run(self, z: np.ndarray, weights: np.ndarray | None) -> Run:
         point = self.at(z)
-        tape, states = point.tape, point.free_states
+        tape, states = point.driving_tape, point.free_states
         directions = np.zeros((len(tape.first), len(states), point.initial.shape[1]))
         directions[:, np.arange(len(states)), states] = 1.0
-        run = self.stepper.run(
+        return self.stepper.run(
             tape,
             whole_records(tape),
             point.values,
@@ -67,34 +93,8 @@ class FreeRun:
             tangents=True,
             start_directions=directions,
             substeps=self.substeps,
+            weights=weights,
         )
-        assert run.dy is not None
-        errors, jacobians = [], []
-        for e, n in enumerate(tape.lengths):
-            measured = tape.y[:, tape.span(e)].T
-            known = ~np.isnan(measured)
-            error = ((run.y[e, :n] - measured) * point.weights)[known]
-            slope = (run.dy[e, :n] * point.weights[:, None])[known]
-            if not (np.isfinite(error).all() and np.isfinite(slope).all()):
-                return None
-            errors.append(error)
-            jacobians.append(slope)
-        return errors, jacobians
-
-    def quadratic(self, z: np.ndarray) -> Quadratic[None] | None:
-        """Cost, gradient and Gauss-Newton Hessian at ``z``."""
-        found = self.residuals(z)
-        if found is None:
-            return None
-        size, n_p = len(z), self.n_parameters
-        n_s = (size - n_p) // len(found[0])
-        gradient, hessian, cost = np.zeros(size), np.zeros((size, size)), 0.0
-        for e, (error, slope) in enumerate(zip(*found, strict=True)):
-            index = self.columns(e, n_p, n_s)
-            hessian[np.ix_(index, index)] += slope.T @ slope
-            gradient[index] += slope.T @ error
-            cost += 0.5 * float(error @ error)
-        return Quadratic(cost, gradient, hessian, None)
 
     @staticmethod
     def columns(experiment: int, n_p: int, n_s: int) -> np.ndarray:

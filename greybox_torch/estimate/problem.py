@@ -40,6 +40,11 @@ class Problem:
         return tuple(n for n, f in zip(self.names, self.free, strict=True) if f)
 
     @property
+    def driving_tape(self) -> Tape:
+        """The tape with the inputs that drive the model at the present values."""
+        return self.model.prepared(self.tape, self.values)
+
+    @property
     def free_states(self) -> np.ndarray:
         """Indices of the states whose start value is estimated."""
         return np.flatnonzero(self.initial_free)
@@ -141,34 +146,37 @@ def _start_states(dataset: DataSet, model: GreyBoxModel, tape: Tape) -> np.ndarr
         if entry is not None and entry.value is not None:
             rows[:, i] = entry.value
         elif state.initial == "measured":
-            rows[:, i] = [first_known(tape, measuring_output(model, state), e) for e in range(len(rows))]
+            rows[:, i] = measured_at(model, state, tape, tape.first)
         else:
             rows[:, i] = float(state.initial)
     return rows
 
 
-def measuring_output(model: GreyBoxModel, state: State) -> int:
-    """The output that measures a state: the one of the same name, else the only one in the same unit.
+def measured_at(model: GreyBoxModel, state: State, tape: Tape, samples: np.ndarray) -> np.ndarray:
+    """The measured value of a state at some samples (W,), or where that is missing the next known one.
 
     Raises:
-        UserError: there is none, or more than one in that unit.
+        UserError: no signal measures the state, see :class:`State`.
     """
+    values = _measuring_signal(model, state, tape)
+    known = np.flatnonzero(~np.isnan(values))
+    return values[known[np.minimum(np.searchsorted(known, samples), len(known) - 1)]]
+
+
+def _measuring_signal(model: GreyBoxModel, state: State, tape: Tape) -> np.ndarray:
     names = [o.name for o in model.outputs]
     if state.name in names:
-        return names.index(state.name)
-    same = [i for i, o in enumerate(model.outputs) if o.unit == state.unit]
-    if len(same) != 1:
-        raise UserError(
-            f"model {model.title}, state '{state.name}': initial is 'measured', but {len(same)} outputs are in '{state.unit}'; "
-            "expected an output of the same name, or exactly one in the same unit"
-        )
-    return same[0]
-
-
-def first_known(tape: Tape, output: int, experiment: int) -> float:
-    """The first sample of an output that is not missing."""
-    values = tape.y[output, tape.span(experiment)]
-    return float(values[int(np.argmax(~np.isnan(values)))])
+        return tape.y[names.index(state.name)]
+    for signals, rows in ((model.outputs, tape.y), (model.inputs, tape.u)):
+        same = [i for i, signal in enumerate(signals) if signal.unit == state.unit]
+        if len(same) == 1:
+            return rows[same[0]]
+        if len(same) > 1:
+            break
+    raise UserError(
+        f"model {model.title}, state '{state.name}': initial is 'measured', but not exactly one output or input is in '{state.unit}'; "
+        "expected an output of the same name, or exactly one signal in the same unit"
+    )
 
 
 def _weights(tape: Tape) -> np.ndarray:

@@ -35,7 +35,6 @@ def uncertainty(run: FreeRun, z: np.ndarray, *, blocks: int = 40) -> Uncertainty
     Source: L. Ljung, "System Identification: Theory for the User", 2nd ed., ch. 9; sandwich with block sums after H. White (1982).
     """
     found = run.residuals(z)
-    assert found is not None, "the optimum of an estimation always simulates"
     size, n_p = len(z), run.n_parameters
     n_s = (size - n_p) // len(found[0])
     hessian, meat = np.zeros((size, size)), np.zeros((size, size))

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.estimate.levenberg_marquardt import ROUGH, Settings
-from greybox_torch.estimate.problem import Problem, measuring_output
+from greybox_torch.estimate.problem import Problem, measured_at
 from greybox_torch.simulate.stepper import Stepper, Windows, cut
 
 
@@ -87,11 +87,10 @@ def rough_starts(problem: Problem, windows: Windows) -> np.ndarray:
     """Start states (W, n_x) from the measurement where a state is measured, else the value at the experiment's start."""
     experiment = np.searchsorted(problem.tape.first, windows.start, side="right") - 1
     states = problem.initial[experiment].copy()
+    outputs = {o.name for o in problem.model.outputs}
     for i, state in enumerate(problem.model.states):
-        names = [o.name for o in problem.model.outputs]
-        if state.initial == "measured" or state.name in names:
-            measured = problem.tape.y[measuring_output(problem.model, state), windows.start]
-            states[:, i] = np.where(np.isnan(measured), states[:, i], measured)
+        if state.initial == "measured" or state.name in outputs:
+            states[:, i] = measured_at(problem.model, state, problem.tape, windows.start)
     return states
 
 
@@ -115,31 +114,30 @@ def _evaluate(
     n_p = int(problem.free.sum())
     eye = np.broadcast_to(np.eye(n_x), (count, n_x, n_x))
     run = stepper.run(
-        problem.tape, windows, problem.values, states, tangents=True, start_directions=eye, substeps=substeps
+        problem.driving_tape, windows, problem.values, states, tangents=True, start_directions=eye, substeps=substeps, weights=problem.weights
     )
-    assert run.dy is not None
-    index = np.minimum(windows.start[:, None] + np.arange(windows.steps), windows.last[:, None])
-    measured = np.moveaxis(problem.tape.y[:, index], 0, -1)
-    inside = (windows.start[:, None] + np.arange(windows.steps) <= windows.last[:, None])[..., None]
-    known = ~np.isnan(measured) & inside
-    error = np.where(known, (run.y - measured) * problem.weights, 0.0).reshape(count, -1)
-    slope = np.where(known[..., None], run.dy * problem.weights[:, None], 0.0).reshape(count, error.shape[1], -1)
-    if not (np.isfinite(error).all() and np.isfinite(slope).all()):
+    assert run.normal is not None
+    if not np.isfinite(run.normal).all():
         return None
-    turned = np.swapaxes(slope, 1, 2)
-    h = turned @ slope
-    g = (turned @ error[..., None])[..., 0]
-    mean_square = float((error**2).sum() / max(int(known.sum()), 1))
+    h, g = run.normal[:, :-1, :-1], -run.normal[:, :-1, -1]
+    energy = float(run.normal[:, -1, -1].sum())
     away = states - reference
     return _Pass(
-        cost=0.5 * float((error**2).sum() + (hold * away**2).sum()),
+        cost=0.5 * (energy + float((hold * away**2).sum())),
         hpp=h[:, :n_p, :n_p].sum(0),
         gp=g[:, :n_p].sum(0),
         hss=h[:, n_p:, n_p:] + np.diag(hold),
         hsp=h[:, n_p:, :n_p],
         gs=g[:, n_p:] + hold * away,
-        mean_square=mean_square,
+        mean_square=energy / max(_weighted_samples(problem, windows), 1),
     )
+
+
+def _weighted_samples(problem: Problem, windows: Windows) -> int:
+    """How many samples the windows compare, missing ones not counted."""
+    known = np.concatenate([[0], np.cumsum((~np.isnan(problem.tape.y)).sum(axis=0))])
+    ends = np.minimum(windows.start + windows.steps, windows.last + 1)
+    return int((known[ends] - known[windows.start]).sum())
 
 
 def _stepped(problem: Problem, here: _Pass, states: np.ndarray, damping: float) -> tuple[Problem, np.ndarray]:

@@ -12,8 +12,8 @@ from greybox_torch.errors import UserError
 class State:
     """A state variable.
 
-    ``initial`` is its start value: a number, or ``"measured"`` for the first sample of the output of the same name (or, where there
-    is none, of the only output in the same unit). Every start value is estimated per experiment unless ``fixed``.
+    ``initial`` is its start value: a number, or ``"measured"`` for the first sample of the output of the same name (where there is
+    none: of the only output, else the only input, in the same unit). Every start value is estimated per experiment unless ``fixed``.
     """
 
     name: str

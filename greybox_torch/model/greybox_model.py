@@ -61,6 +61,10 @@ class GreyBoxModel(torch.nn.Module):
         """Quantities that must stay positive, by a name for messages (for constraints that join several parameters)."""
         return {}
 
+    def prepared(self, tape: Any, values: Any) -> Any:
+        """The tape that drives the model at parameter ``values`` (n_p,): the recorded one, unless an effect shifts signals in time."""
+        return tape
+
     @property
     def title(self) -> str:
         """The model's name for reports."""

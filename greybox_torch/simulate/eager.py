@@ -43,6 +43,7 @@ class EagerStepper:
         tangents0: np.ndarray | None = None,
         substeps: int = 1,
         keep_states: bool = False,
+        weights: np.ndarray | None = None,
     ) -> Run:
         count, n_x = len(windows.start), len(self.model.states)
         n_p = len(self.sensitive) if tangents else 0
@@ -67,12 +68,15 @@ class EagerStepper:
                     step = _rk4(self._rates, u0, u1, dt / substeps, m / substeps, (m + 1) / substeps)
                     x, dx = self._pushed(step, x, u0, values, dx, dp)
         directed = n_p + n_s > 0
+        y = _array(torch.stack(ys), (2, 0, 1))
+        dy = _array(torch.stack(dys), (3, 0, 2, 1)) if directed else np.zeros((*y.shape, 0))
         return Run(
-            y=_array(torch.stack(ys), (2, 0, 1)),
-            dy=_array(torch.stack(dys), (3, 0, 2, 1)) if directed else None,
+            y=y,
+            dy=dy if directed and weights is None else None,
             x_end=_array(x, (1, 0)),
             dx_end=_array(dx, (2, 0, 1)) if directed else None,
             states=_array(torch.stack(xs), (2, 0, 1)) if keep_states else None,
+            normal=None if weights is None else _normal(tape, windows, y, dy, weights),
         )
 
     def _pushed(
@@ -125,6 +129,17 @@ def _rk4(rates: Field, u0: Vector, u1: Vector, h: Vector, start: float, end: flo
         return x + h / 6 * (k1 + 2 * (k2 + k3) + k4)
 
     return step
+
+
+def _normal(tape: Tape, windows: Windows, y: np.ndarray, dy: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """[J e]ᵀ[J e] per window."""
+    index = windows.start[:, None] + np.arange(windows.steps)
+    inside = (index <= windows.last[:, None])[..., None]
+    measured = np.moveaxis(tape.y[:, np.minimum(index, windows.last[:, None])], 0, -1)
+    known = inside & ~np.isnan(measured)
+    error = np.where(known, (measured - y) * weights, 0.0)[..., None]
+    rows = np.concatenate([np.where(known[..., None], dy * weights[:, None], 0.0), error], axis=-1).reshape(len(y), -1, dy.shape[-1] + 1)
+    return np.swapaxes(rows, 1, 2) @ rows
 
 
 def _array(values: Vector, order: tuple[int, ...]) -> np.ndarray:

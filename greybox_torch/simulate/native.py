@@ -17,12 +17,16 @@ from greybox_torch.simulate.tape import Tape
 _LONG, _POINTER = ctypes.c_long, ctypes.c_void_p
 
 
+_TILE = 4
+"""Side of the squares in which the emitted program accumulates normal matrices."""
+
+
 class _Job(ctypes.Structure):
     """Mirrors ``struct Job`` of the emitted program."""
 
     _fields_ = [
         *[(n, _LONG) for n in ("groups", "steps", "substeps", "foh", "samples", "directions", "threads")],
-        *[(n, _POINTER) for n in ("u", "dt", "start", "last", "column", "p", "x", "dx", "y", "dy", "trace")],
+        *[(n, _POINTER) for n in ("u", "dt", "start", "last", "column", "p", "x", "dx", "y", "dy", "trace", "measured", "weight", "normal")],
     ]
 
 
@@ -53,6 +57,7 @@ class NativeStepper:
         tangents0: np.ndarray | None = None,
         substeps: int = 1,
         keep_states: bool = False,
+        weights: np.ndarray | None = None,
     ) -> Run:
         real = np.float64 if self.precision == "double" else np.float32
         lanes = 64 // np.dtype(real).itemsize
@@ -61,13 +66,15 @@ class NativeStepper:
         n_p = len(self.sensitive) if tangents else 0
         n_s = 0 if start_directions is None else start_directions.shape[1]
         n_d = n_p + n_s
+        n_t = self.equations.n_tangent
 
         rows = np.broadcast_to(np.atleast_2d(p), (count, self.equations.n_parameters))
-        dx0 = np.zeros((count, n_d, n_x))
+        dx0 = np.zeros((count, n_d, n_t))
         if n_p and tangents0 is not None:
-            dx0[:, :n_p] = tangents0
+            dx0[:, :n_p] = tangents0[..., :n_t]
         if start_directions is not None:
-            dx0[:, n_p:] = start_directions
+            dx0[:, n_p:] = start_directions[..., :n_t]
+        width = (n_d + _TILE) // _TILE * _TILE
         packed = {
             "u": _aligned(np.atleast_2d(tape.u) if len(tape.u) else np.zeros((1, len(tape.dt))), real),
             "dt": _aligned(tape.dt, real),
@@ -78,8 +85,11 @@ class NativeStepper:
             "x": _lanes(x0, lanes, real),
             "dx": _lanes(dx0, lanes, real),
             "y": _empty((groups, windows.steps, n_y, lanes), real),
-            "dy": _empty((groups, windows.steps, n_y, n_d, lanes), real) if n_d else None,
+            "dy": _empty((groups, windows.steps, n_y, n_d, lanes), real) if n_d and weights is None else None,
             "trace": _empty((groups, windows.steps, n_x, lanes), real) if keep_states else None,
+            "measured": None if weights is None else _aligned(tape.y, real),
+            "weight": None if weights is None else _aligned(weights, real),
+            "normal": None if weights is None else _zeros((groups, width, width, lanes), real),
         }
         threads = min(groups, int(os.environ.get("OMP_NUM_THREADS", os.cpu_count() or 1)))
         sizes = (groups, windows.steps, substeps, int(tape.hold == "foh"), len(tape.dt), n_d, threads)
@@ -92,6 +102,7 @@ class NativeStepper:
             x_end=_windows(packed["x"], count),
             dx_end=_windows(packed["dx"], count) if n_d else None,
             states=_windows(packed["trace"], count) if keep_states else None,
+            normal=None if packed["normal"] is None else _mirrored(_windows(packed["normal"], count)[:, : n_d + 1, : n_d + 1]),
         )
 
 
@@ -101,6 +112,18 @@ def _empty(shape: tuple[int, ...], real: type) -> np.ndarray:
     raw = np.empty(size + 64, dtype=np.uint8)
     offset = -raw.ctypes.data % 64
     return raw[offset : offset + size].view(real).reshape(shape)
+
+
+def _zeros(shape: tuple[int, ...], real: type) -> np.ndarray:
+    result = _empty(shape, real)
+    result.fill(0)
+    return result
+
+
+def _mirrored(lower: np.ndarray) -> np.ndarray:
+    """Symmetric matrices (W, d, d) from their lower triangles."""
+    low = np.tril(lower)
+    return low + np.swapaxes(np.tril(lower, -1), 1, 2)
 
 
 def _aligned(values: np.ndarray, real: type) -> np.ndarray:

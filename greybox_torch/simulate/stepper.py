@@ -33,7 +33,9 @@ class Run:
 
     ``y`` (W, K, n_y); ``dy`` (W, K, n_y, n_d) with the directions in the order sensitive parameters, then start-state directions;
     ``x_end`` (W, n_x) and ``dx_end`` (W, n_d, n_x) after the last step; ``states`` (W, K, n_x) if they were asked for.
-    Samples beyond a window's end are meaningless.
+    ``normal`` (W, n_d + 1, n_d + 1), if errors against a measurement were asked for: the matrix [J e]ᵀ[J e] of the directions' output
+    sensitivities J and the weighted errors e = measured − simulated; then ``dy`` is None. Samples beyond a window's end are
+    meaningless, and carry no weight in ``normal``.
     """
 
     y: np.ndarray
@@ -41,6 +43,7 @@ class Run:
     x_end: np.ndarray
     dx_end: np.ndarray | None
     states: np.ndarray | None
+    normal: np.ndarray | None = None
 
 
 class Stepper(Protocol):
@@ -63,6 +66,7 @@ class Stepper(Protocol):
         tangents0: np.ndarray | None = None,
         substeps: int = 1,
         keep_states: bool = False,
+        weights: np.ndarray | None = None,
     ) -> Run:
         """Advance all windows.
 
@@ -74,6 +78,7 @@ class Stepper(Protocol):
             tangents0: start values (W, n_sensitive, n_x) of the parameter tangents, zero by default (a record continued in chunks).
             substeps: Runge-Kutta steps per sample.
             keep_states: also return the states at the samples.
+            weights: (n_y,) factors on the errors against the tape's outputs; asks for ``normal`` instead of ``dy``.
         """
         ...
 

@@ -1,0 +1,119 @@
+"""Which mechanisms can be attached where."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+import torch
+
+from greybox_torch.diagnose.surroundings import driving_body
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.library import LIBRARY
+from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
+from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.model import Body, Coupling, GreyBoxModel, Port, Signals
+
+FLEXIBLE = {
+    "body": ("speed", "position"),
+    "coupling": ("deflection", "rate"),
+    "balance": ("level",),
+    "actuator": ("input",),
+}
+"""Signals that the flexible curve is tried over, by kind of port."""
+
+
+def candidates(
+    model: GreyBoxModel, problem: Problem, surroundings: Mapping[str, Surroundings], *, flexible: bool
+) -> list[Attachment]:
+    """Every mechanism of the library at every port that it fits (or, with ``flexible``, the unknown curves)."""
+    found = []
+    for port in model.all_ports:
+        shifted = shifted_state(model, problem, port) if isinstance(port, Coupling) else ""
+        for mechanism in _curves(port) if flexible else (m() for m in LIBRARY.values()):
+            if (
+                port.kind in mechanism.kinds
+                and _available(mechanism, surroundings[port.name])
+                and (shifted or not mechanism.kinematic)
+            ):
+                found.append(attach(model, port.name, mechanism, shifted))
+    return found
+
+
+def attach(model: GreyBoxModel, port: str, mechanism: Mechanism, shifted: str = "") -> Attachment:
+    """The attachment of ``mechanism`` at ``port``, with the body that its position belongs to."""
+    site = next(q for q in model.all_ports if q.name == port)
+    position = ""
+    if "position" in mechanism.signals() or "position" in mechanism.needs:
+        body = site if isinstance(site, Body) else driving_body(model)
+        position = body.name if body is not None else ""
+    return Attachment(port, mechanism, position=position, shifted_state=shifted if mechanism.kinematic else "")
+
+
+def _curves(port: Port) -> Iterable[Unknown]:
+    return (Unknown(signal) for signal in FLEXIBLE.get(port.kind, ()))
+
+
+def _available(mechanism: Mechanism, around: Surroundings) -> bool:
+    needed = set(mechanism.needs) - {"delayed"}
+    if isinstance(mechanism, Unknown):
+        needed = {mechanism.signal}
+    return needed <= set(around.ranges)
+
+
+def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, points: int = 24) -> str:
+    """The state through which a change of a coupling's deflection reaches nothing but its spring, as ``+name`` or ``-name``.
+
+    A kinematic mechanism (play, transmission error) changes the deflection that the spring sees. That is the same as moving one state
+    that the deflection depends on with slope ±1, provided the rates depend on that state only by way of this coupling: then they
+    change in the direction in which the port's force acts. Empty where there is no such state.
+    """
+    generator = torch.Generator().manual_seed(0)
+    n_x, n_u = len(model.states), len(model.inputs)
+    scale_u = (
+        torch.as_tensor(np.maximum(np.abs(problem.tape.u).max(axis=1), 1e-9))
+        if n_u
+        else torch.ones(0, dtype=torch.float64)
+    )
+    values = dict(zip(problem.names, problem.values, strict=True))
+    p = Signals(
+        "parameter", {q.name: torch.tensor(values[q.name], dtype=torch.float64) for q in model.declared_parameters}
+    )
+    names = [s.name for s in model.states]
+    index = port.deflection if isinstance(port.deflection, str) else None
+    works = {i: True for i in range(n_x) if index is None or names[i] == index}
+    signs: dict[int, float] = {}
+    for _ in range(points):
+        x = torch.randn(n_x, dtype=torch.float64, generator=generator)
+        u = scale_u * torch.randn(n_u, dtype=torch.float64, generator=generator)
+        slope = torch.func.jacfwd(lambda z: _deflection(model, port, z, u, p))(x)
+        by_state = torch.func.jacfwd(lambda z: model.rates(z, u, p))(x)
+        by_force = torch.func.jacfwd(lambda f: _forced(model, port.name, x, u, p, f))(
+            torch.zeros((), dtype=torch.float64)
+        )
+        for i in works:
+            change = by_state[:, i]
+            along = by_force * (change @ by_force) / (by_force @ by_force)
+            parallel = torch.linalg.vector_norm(change - along) <= 1e-8 * torch.linalg.vector_norm(change)
+            unit = abs(abs(float(slope[i])) - 1.0) < 1e-9
+            works[i] = works[i] and bool(parallel) and unit
+            signs[i] = float(slope[i])
+    chosen = next((i for i, ok in works.items() if ok), None)
+    return "" if chosen is None else ("+" if signs[chosen] > 0 else "-") + names[chosen]
+
+
+def _deflection(model: GreyBoxModel, port: Coupling, x: torch.Tensor, u: torch.Tensor, p: Signals) -> torch.Tensor:
+    xs = Signals("state", {s.name: x[i] for i, s in enumerate(model.states)})
+    us = Signals("input", {s.name: u[i] for i, s in enumerate(model.inputs)})
+    return xs[port.deflection] if isinstance(port.deflection, str) else port.deflection(xs, us, p)
+
+
+def _forced(
+    model: GreyBoxModel, port: str, x: torch.Tensor, u: torch.Tensor, p: Signals, force: torch.Tensor
+) -> torch.Tensor:
+    xs = Signals("state", {s.name: x[i] for i, s in enumerate(model.states)})
+    us = Signals("input", {s.name: u[i] for i, s in enumerate(model.inputs)})
+    forces = Signals("port", {q.name: force if q.name == port else torch.zeros_like(force) for q in model.all_ports})
+    rates = model.derivative(xs, us, p, forces)
+    return torch.stack([torch.as_tensor(rates[s.name]) for s in model.states])

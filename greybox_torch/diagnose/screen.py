@@ -1,0 +1,178 @@
+"""The screen: which effects would explain what the model does not, by a score test without a single refit.
+
+At the fitted parameters, the output's sensitivity to the amplitude of an effect that is not there is one more tangent of the pass that
+computes the sensitivities anyway. Tangents of parameters and window start states are projected out; the share of the residual that
+the rest explains, on stretches that took no part in choosing its size, ranks the candidate.
+
+Source: C. R. Rao, score test, 1948; N. R. Kristensen, H. Madsen, S. B. Jørgensen, Automatica 40(2), 2004, for the idea of asking the
+data which equation is deficient.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.window_fit import WindowFit
+from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
+from greybox_torch.mechanisms.mechanism import Probe, Surroundings
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulate.stepper import Stepper, make_stepper, whole_records
+
+FOLDS = 6
+
+
+@dataclass(frozen=True)
+class Look:
+    """What one probe of one attachment explains at one window length.
+
+    ``explained`` is the share of the residual's energy after projection, ``predicted`` that on stretches left out, ``size`` the
+    estimated values of the probe's directions.
+    """
+
+    attachment: Attachment
+    probe: Probe
+    length: int
+    explained: float
+    predicted: float
+    size: np.ndarray
+
+
+@dataclass(frozen=True)
+class Screen:
+    """A compiled screen of some attachments around a model with ``accepted`` effects."""
+
+    base: GreyBoxModel
+    accepted: tuple[Attachment, ...]
+    looks: tuple[tuple[Attachment, Probe], ...]
+    model: AugmentedModel
+    stepper: Stepper
+    directions: tuple[tuple[str, ...], ...]
+    free_names: tuple[str, ...]
+
+    @staticmethod
+    def of(
+        base: GreyBoxModel,
+        accepted: Sequence[Attachment],
+        attachments: Sequence[Attachment],
+        surroundings: Mapping[str, Surroundings],
+        free_names: Sequence[str],
+        *,
+        device: str = "cpu",
+    ) -> Screen:
+        """Prepare the screen of ``attachments``."""
+        looks, labelled = [], []
+        for attachment in attachments:
+            for probe in attachment.mechanism.probes(surroundings[attachment.port]):
+                looks.append((attachment, probe))
+                labelled.append(replace(attachment, label=f"#{len(looks)}"))
+        model = AugmentedModel(base, [*accepted, *labelled], surroundings, probed=labelled)
+        directions = tuple(
+            tuple(f"{a.prefix}.{d}" for d in probe.directions) for a, (_, probe) in zip(labelled, looks, strict=True)
+        )
+        zero = [name for group in directions for name in group]
+        stepper = make_stepper(model, [*free_names, *zero], at_zero=zero, device=device)
+        return Screen(base, tuple(accepted), tuple(looks), model, stepper, directions, tuple(free_names))
+
+    def values(self, problem: Problem) -> np.ndarray:
+        """Parameter vector of the screen's model: the problem's values, the probes' values, zero in the directions."""
+        numbers = dict(zip(problem.names, problem.values, strict=True))
+        for group, (_, probe) in zip(self.directions, self.looks, strict=True):
+            prefix = group[0].rpartition(".")[0]
+            numbers |= {f"{prefix}.{name}": value for name, value in probe.values.items()}
+            numbers |= {name: 0.0 for name in group}
+        return np.array([numbers.get(p.name, p.value) for p in self.model.declared_parameters])
+
+    def look(self, fitted: WindowFit, substeps: int) -> list[Look]:
+        """Score every probe on windows whose parameters and start states were fitted."""
+        normal = self._normal_matrices(fitted, substeps)
+        n_p = len(self.free_names)
+        folds = np.array_split(np.arange(len(normal)), min(FOLDS, len(normal)))
+        total = normal.sum(axis=0)
+        parts = [normal[f].sum(axis=0) for f in folds]
+        results, at = [], n_p
+        for group, (attachment, probe) in zip(self.directions, self.looks, strict=True):
+            columns = np.arange(at, at + len(group))
+            at += len(group)
+            explained, size = _explained(total, n_p, columns)
+            results.append(
+                Look(attachment, probe, fitted.windows.steps, explained, _predicted(total, parts, n_p, columns), size)
+            )
+        return results
+
+    def _normal_matrices(self, fitted: WindowFit, substeps: int) -> np.ndarray:
+        """Per window the normal matrix (W, d, d) of [parameters, probes, residual], window start states projected out."""
+        problem, windows = fitted.problem, fitted.windows
+        values = self.values(problem)
+        tape = self.model.prepared(problem.tape, values)
+        starts = self._starts(fitted, values, tape, substeps)
+        count, n_base = len(windows.start), fitted.starts.shape[1]
+        eye = np.zeros((count, n_base, starts.shape[1]))
+        eye[:, np.arange(n_base), np.arange(n_base)] = 1.0
+        run = self.stepper.run(tape, windows, values, starts, tangents=True, start_directions=eye, substeps=substeps, weights=problem.weights)
+        assert run.normal is not None
+        d = run.normal.shape[1] - 1 - n_base
+        order = np.concatenate([np.arange(d), [d + n_base], np.arange(d, d + n_base)])
+        finite = np.isfinite(run.normal).all(axis=(1, 2))
+        full = run.normal[finite][:, order][:, :, order]
+        inner, cross, own = full[:, : d + 1, : d + 1], full[:, : d + 1, d + 1 :], full[:, d + 1 :, d + 1 :]
+        diagonal = np.einsum("wii->wi", own)
+        own = own + np.eye(n_base) * (1e-9 * diagonal + 1e-12 * diagonal.max())[:, :, None]
+        return inner - cross @ np.linalg.solve(own, np.swapaxes(cross, 1, 2))
+
+    def _starts(self, fitted: WindowFit, values: np.ndarray, tape, substeps: int) -> np.ndarray:  # noqa: ANN001
+        """Window starts of the screen's model: the fitted ones, and for memories what the free run has there."""
+        problem, n_base = fitted.problem, fitted.starts.shape[1]
+        names = [s.name for s in self.model.states]
+        initial = np.zeros((len(problem.initial), len(names)))
+        initial[:, :n_base] = problem.initial
+        for i, state in enumerate(self.model.states[n_base:], start=n_base):
+            if state.initial == "measured":
+                initial[:, i] = _measured(problem, self.model, state)
+        run = self.stepper.run(tape, whole_records(problem.tape), values, initial, substeps=substeps, keep_states=True)
+        assert run.states is not None
+        experiment = np.searchsorted(problem.tape.first, fitted.windows.start, side="right") - 1
+        offset = fitted.windows.start - problem.tape.first[experiment]
+        starts = np.nan_to_num(run.states[experiment, offset], posinf=0.0, neginf=0.0)
+        starts[:, :n_base] = fitted.starts
+        return starts
+
+
+def _measured(problem: Problem, model: GreyBoxModel, state) -> np.ndarray:  # noqa: ANN001
+    from greybox_torch.estimate.problem import measured_at
+
+    return measured_at(model, state, problem.tape, problem.tape.first)
+
+
+def _solve(matrix: np.ndarray, unknown: np.ndarray) -> np.ndarray:
+    """Least-squares values of ``unknown`` columns for the residual in the last column of a normal matrix."""
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(matrix)[unknown], 1e-300))
+    inner = matrix[np.ix_(unknown, unknown)] * scale[:, None] * scale[None, :]
+    inner[np.diag_indices_from(inner)] += 1e-9
+    return scale * np.linalg.solve(inner, matrix[unknown, -1] * scale)
+
+
+def _energy(matrix: np.ndarray, unknown: np.ndarray, size: np.ndarray) -> float:
+    """Residual energy left when ``unknown`` columns take the values ``size``."""
+    inner = matrix[np.ix_(unknown, unknown)]
+    return float(matrix[-1, -1] - 2 * size @ matrix[unknown, -1] + size @ inner @ size)
+
+
+def _explained(total: np.ndarray, n_p: int, columns: np.ndarray) -> tuple[float, np.ndarray]:
+    base, both = np.arange(n_p), np.concatenate([np.arange(n_p), columns])
+    before = _energy(total, base, _solve(total, base))
+    size = _solve(total, both)
+    return (before - _energy(total, both, size)) / max(before, 1e-300), size[n_p:]
+
+
+def _predicted(total: np.ndarray, parts: Sequence[np.ndarray], n_p: int, columns: np.ndarray) -> float:
+    base, both = np.arange(n_p), np.concatenate([np.arange(n_p), columns])
+    before = after = 0.0
+    for part in parts:
+        rest = total - part
+        before += _energy(part, base, _solve(rest, base))
+        after += _energy(part, both, _solve(rest, both))
+    return (before - after) / max(before, 1e-300)

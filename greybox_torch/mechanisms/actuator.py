@@ -1,0 +1,150 @@
+"""The way from the recorded input to the input that acts: delay, lag, bias, gain, saturation, dead zone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import torch
+
+from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
+from greybox_torch.mechanisms.transmission import dead_zone
+from greybox_torch.model import Parameter, Signals, State
+
+
+class InputLag(Mechanism):
+    """The input acts through a first-order lag: T dv/dt = u − v."""
+
+    name = "input_lag"
+    kinds = ("actuator",)
+    needs = ("input",)
+    explanation = "The input acts through a first-order lag (current loop, valve)."
+    source = "L. Ljung, System Identification, 2nd ed., 1999"
+    experiment = "a step or a chirp of the input, to tell a lag from a delay"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        step = around.sample_time
+        return [Parameter("T", 3 * step, "s", lower=0.45 * step, upper=2000 * step, description="time constant")]
+
+    def states(self, around: Surroundings) -> list[State]:
+        return [State("lagged", around.force_unit, initial="measured", fixed=True)]
+
+    def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
+        return {"lagged": (s.input - z.lagged) / p.T}
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return z.lagged - s.input
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (2, 6, 20, 60)]
+
+
+class InputDelay(Mechanism):
+    """The input acts later by a dead time: u(t − T)."""
+
+    name = "input_delay"
+    kinds = ("actuator",)
+    needs = ("input", "delayed")
+    explanation = "The input acts after a dead time (computation, bus, transport)."
+    source = "L. Ljung, System Identification, 2nd ed., 1999"
+    experiment = "a step or a chirp of the input, to tell a lag from a delay"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        step = around.sample_time
+        return [Parameter("T", 2 * step, "s", lower=0.0, upper=500 * step, description="dead time")]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return s.delayed - s.input
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (2, 6, 20, 60)]
+
+
+class InputBias(Mechanism):
+    """The input that acts is off by a constant."""
+
+    name = "input_bias"
+    kinds = ("actuator",)
+    explanation = "The input that acts is off by a constant (amplifier offset)."
+    source = "A. Janot, M. Gautier, M. Brunot, Data set and reference models of EMPS, 2019"
+    experiment = "a record with zero input"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        return [Parameter("bias", 0.0, around.force_unit, description="offset")]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return p.bias
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe(("bias",))]
+
+
+class InputGain(Mechanism):
+    """The input that acts is (1 + g) u."""
+
+    name = "input_gain"
+    kinds = ("actuator",)
+    needs = ("input",)
+    explanation = "The input acts with another gain than recorded (current sensor, torque constant)."
+    source = "M. Gautier, S. Briot, J. Dyn. Sys. Meas. Control 136, 2014"
+    experiment = "a known load: from force to motion a gain cannot be told from mass and friction"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        return [Parameter("gain_error", 0.0, "", lower=-0.9, upper=9.0, description="relative error of the gain")]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return p.gain_error * s.input
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe(("gain_error",))]
+
+
+class TorqueSaturation(Mechanism):
+    """The input that acts is limited to ±limit."""
+
+    name = "torque_saturation"
+    kinds = ("actuator",)
+    needs = ("input",)
+    explanation = "The input that acts is limited (current limit, valve fully open)."
+    source = "H. K. Khalil, Nonlinear Systems, 3rd ed., 2002"
+    experiment = "large inputs of both signs"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        reach = around.ranges["input"].reach
+        return [
+            Parameter("limit", 0.8 * reach, around.force_unit, lower=0.02 * reach, upper=reach, description="limit")
+        ]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return torch.clamp(s.input, -p.limit, p.limit) - s.input
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        spread = around.ranges["input"]
+        limits = (1.0 * spread.rms, 1.5 * spread.rms, 2.0 * spread.rms, 2.7 * spread.rms)
+        return [Probe((SHARE,), {"limit": limit}) for limit in limits if limit < spread.reach]
+
+
+class ActuatorDeadzone(Mechanism):
+    """The input acts only beyond ±half_width."""
+
+    name = "actuator_deadzone"
+    kinds = ("actuator",)
+    needs = ("input",)
+    explanation = "Small inputs do nothing (valve overlap, amplifier dead band)."
+    source = "G. Tao, P. V. Kokotović, Adaptive Control of Systems with Actuator and Sensor Nonlinearities, 1996"
+    experiment = "small inputs around zero"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        reach = around.ranges["input"].reach
+        return [
+            Parameter(
+                "half_width", 0.0, around.force_unit, lower=0.0, upper=0.9 * reach, description="half the dead band"
+            )
+        ]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return dead_zone(s.input, p.half_width) - s.input
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        rms = around.ranges["input"].rms
+        return [Probe(("half_width",)), *(Probe((SHARE,), {"half_width": f * rms}) for f in (0.2, 0.6))]

@@ -1,0 +1,267 @@
+"""A mechanism at a port, and the model that results from attaching some."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import torch
+
+from greybox_torch.errors import UserError
+from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Surroundings
+from greybox_torch.model import Body, GreyBoxModel, Input, Parameter, Signals, State
+from greybox_torch.model.ports import Actuator, Sensor, Signal
+
+
+@dataclass(frozen=True)
+class Attachment:
+    """A mechanism at a port. ``label`` tells several of the same kind apart; ``position`` names the body whose position it uses."""
+
+    port: str
+    mechanism: Mechanism
+    label: str = ""
+    position: str = ""
+    shifted_state: str = ""
+    """For a kinematic mechanism: the state that carries the change of deflection, ``+name`` or ``-name``."""
+
+    @property
+    def prefix(self) -> str:
+        return f"{self.port}.{self.mechanism.name}{self.label}"
+
+
+class AugmentedModel(GreyBoxModel):
+    """``base`` with mechanisms attached.
+
+    The base's states come first, then positions and time where mechanisms need them, then the mechanisms' memory. Parameters of a
+    mechanism are named ``PORT.MECHANISM.PARAMETER``.
+
+    Args:
+        surroundings: by port, what the mechanisms may know of it.
+        probed: attachments that get a factor ``share`` on the whole of their effect, for the screen.
+        start: parameter values that replace the declared ones.
+    """
+
+    def __init__(
+        self,
+        base: GreyBoxModel,
+        attachments: Sequence[Attachment],
+        surroundings: Mapping[str, Surroundings],
+        *,
+        probed: Sequence[Attachment] = (),
+        start: Mapping[str, float] | None = None,
+    ) -> None:
+        self.attachments = tuple(attachments)
+        self.surroundings = dict(surroundings)
+        self.probed = frozenset(a.prefix for a in probed)
+        self.base_ports = {port.name: port for port in base.all_ports}
+        for attachment in attachments:
+            if attachment.port not in self.base_ports:
+                raise UserError(
+                    f"model {base.title} has no port '{attachment.port}' (it has: {', '.join(self.base_ports)})"
+                )
+        self.name = base.title  # type: ignore[misc]
+        self.states = [*base.states, *self._position_states(base), *self._time_state(), *self._memory_states()]
+        self.inputs = [*base.inputs, *self._delayed_inputs()]
+        self.outputs = list(base.outputs)
+        self.ports = list(base.ports)
+        self.declared_parameters = tuple(
+            _restarted(p, start or {}) for p in (*base.declared_parameters, *self._own_parameters())
+        )
+        super().__init__()
+        self.base = base
+
+    def parameter_name(self, attachment: Attachment, parameter: str) -> str:
+        return f"{attachment.prefix}.{parameter}"
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        seen = self._seen_states(x, u, p)
+        acting = self._acting_inputs(x, u, p)
+        forces = dict(port)
+        extra: dict[str, Any] = {}
+        for a in self.attachments:
+            site = self.base_ports[a.port]
+            local, own, memory = self._local(a, seen, u if isinstance(site, Actuator) else acting, p)
+            if not a.mechanism.kinematic and not isinstance(site, Actuator | Sensor):
+                forces[a.port] = forces[a.port] + self._share(a, p) * a.mechanism.force(local, own, memory)
+            for name, rate in a.mechanism.rates(local, own, memory).items():
+                extra[f"{a.prefix}.{name}"] = rate
+        rates = dict(self.base.derivative(seen, acting, p, Signals("port", forces)))
+        for name in self._positions():
+            rates[f"{name}.position"] = _value(self._body(name).speed, x, u, p)
+        if self._needs("time"):
+            rates["time"] = torch.ones_like(x[self.states[0].name])
+        return {**rates, **extra}
+
+    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+        values = dict(self.base.output(x, self._acting_inputs(x, u, p), p))
+        true = dict(values)
+        for a in self.attachments:
+            site = self.base_ports[a.port]
+            if isinstance(site, Sensor):
+                local = Signals("signal", {"output": true[site.output], **self._clock(x)})
+                own, memory = self._own(a, p), self._memory(a, x)
+                values[site.output] = values[site.output] + self._share(a, p) * a.mechanism.force(local, own, memory)
+        return values
+
+    def admissible(self, p: Any) -> dict[str, Any]:
+        return self.base.admissible(p)
+
+    def prepared(self, tape: Any, values: Any) -> Any:
+        """The tape with the delayed inputs appended: value at the present delay, its slope, and the delay itself."""
+        tape = self.base.prepared(tape, values)
+        names = [p.name for p in self.declared_parameters]
+        rows = []
+        for a in self._delays():
+            site = self.base_ports[a.port]
+            assert isinstance(site, Actuator)
+            channel = [i.name for i in self.base.inputs].index(site.input)
+            delay = float(values[names.index(f"{a.prefix}.T")])
+            rows += _delayed(tape, channel, delay)
+        return tape if not rows else replace(tape, u=np.concatenate([tape.u, np.array(rows)]))
+
+    def curve(self, attachment: Attachment, signals: Mapping[str, torch.Tensor], p: Any) -> torch.Tensor:
+        """The effect's own force for given local signals (without memory), for plots."""
+        memory = Signals(
+            "memory", {s.name: torch.zeros(()) for s in attachment.mechanism.states(self.surroundings[attachment.port])}
+        )
+        local, own = Signals("signal", signals), self._own(attachment, p)
+        if attachment.mechanism.kinematic:
+            return attachment.mechanism.deflection(local, own) - signals["deflection"]
+        return attachment.mechanism.force(local, own, memory)
+
+    def local_signals(self, attachment: Attachment, x: Any, u: Any, p: Any) -> Signals:
+        """The signals that an attached mechanism sees."""
+        return self._local(attachment, self._seen_states(x, u, p), u, p)[0]
+
+    def _seen_states(self, x: Signals, u: Any, p: Any) -> Signals:
+        """States with the deflections changed by kinematic mechanisms."""
+        for a in self.attachments:
+            if a.mechanism.kinematic:
+                local, own, _ = self._local(a, x, u, p)
+                change = self._share(a, p) * (a.mechanism.deflection(local, own) - local.deflection)
+                name = a.shifted_state[1:]
+                x = x.replaced(**{name: x[name] + change if a.shifted_state[0] == "+" else x[name] - change})
+        return x
+
+    def _acting_inputs(self, x: Signals, u: Signals, p: Signals) -> Signals:
+        acting = u
+        for a in self.attachments:
+            site = self.base_ports[a.port]
+            if isinstance(site, Actuator):
+                local, own, memory = self._local(a, x, u, p)
+                change = self._share(a, p) * a.mechanism.force(local, own, memory)
+                acting = acting.replaced(**{site.input: acting[site.input] + change})
+        return acting
+
+    def _local(self, a: Attachment, x: Signals, u: Signals, p: Signals) -> tuple[Signals, Signals, Signals]:
+        site = self.base_ports[a.port]
+        values: dict[str, Any] = {
+            name: _value(signal, x, u, p) for name, signal in site.signals.items() if name != "position"
+        }
+        if "position" in a.mechanism.needs or getattr(a.mechanism, "signal", "") == "position":
+            values["position"] = self._position(a.position, x, u, p)
+        if isinstance(site, Sensor):
+            values["output"] = self.base.output(x, u, p)[site.output]
+        if "delayed" in a.mechanism.needs:
+            value, slope, at = (u[f"{a.prefix}.{n}"] for n in ("delayed", "slope", "delay"))
+            values["delayed"] = value + (p[f"{a.prefix}.T"] - at) * slope
+        values |= self._clock(x)
+        return Signals("signal", values), self._own(a, p), self._memory(a, x)
+
+    def _clock(self, x: Signals) -> dict[str, Any]:
+        return {"time": x["time"]} if self._needs("time") else {}
+
+    def _own(self, a: Attachment, p: Signals) -> Signals:
+        start = f"{a.prefix}."
+        return Signals(
+            "parameter", {name.removeprefix(start): value for name, value in p.items() if name.startswith(start)}
+        )
+
+    def _memory(self, a: Attachment, x: Signals) -> Signals:
+        names = [s.name for s in a.mechanism.states(self.surroundings[a.port])]
+        return Signals("memory", {n: x[f"{a.prefix}.{n}"] for n in names})
+
+    def _share(self, a: Attachment, p: Signals) -> Any:
+        return p[f"{a.prefix}.{SHARE}"] if a.prefix in self.probed else 1.0
+
+    def _needs(self, signal: str) -> bool:
+        return any(
+            signal in a.mechanism.needs or getattr(a.mechanism, "signal", "") == signal for a in self.attachments
+        )
+
+    def _delays(self) -> list[Attachment]:
+        return [a for a in self.attachments if "delayed" in a.mechanism.needs]
+
+    def _body(self, name: str) -> Body:
+        body = self.base_ports[name]
+        assert isinstance(body, Body)
+        return body
+
+    def _positions(self) -> list[str]:
+        """Bodies whose position has to be integrated from their speed."""
+        names = [a.position for a in self.attachments if a.position]
+        return [n for n in dict.fromkeys(names) if self._body(n).position is None]
+
+    def _position(self, name: str, x: Signals, u: Signals, p: Signals) -> Any:
+        signal = self._body(name).position
+        return x[f"{name}.position"] if signal is None else _value(signal, x, u, p)
+
+    def _position_states(self, base: GreyBoxModel) -> list[State]:
+        return [State(f"{n}.position", position_unit(base, self._body(n)), 0.0, fixed=True) for n in self._positions()]
+
+    def _time_state(self) -> list[State]:
+        return [State("time", "s", 0.0, fixed=True)] if self._needs("time") else []
+
+    def _memory_states(self) -> list[State]:
+        return [
+            replace(s, name=f"{a.prefix}.{s.name}")
+            for a in self.attachments
+            for s in a.mechanism.states(self.surroundings[a.port])
+        ]
+
+    def _delayed_inputs(self) -> list[Input]:
+        return [Input(f"{a.prefix}.{n}") for a in self._delays() for n in ("delayed", "slope", "delay")]
+
+    def _own_parameters(self) -> list[Parameter]:
+        result = []
+        for a in self.attachments:
+            result += [
+                replace(q, name=f"{a.prefix}.{q.name}") for q in a.mechanism.parameters(self.surroundings[a.port])
+            ]
+            if a.prefix in self.probed:
+                result.append(Parameter(f"{a.prefix}.{SHARE}", 1.0))
+        return result
+
+
+def position_unit(model: GreyBoxModel, body: Body) -> str:
+    """The unit of a body's position: that of its position state, else its speed's without the per-second."""
+    units = {s.name: s.unit for s in model.states}
+    if isinstance(body.position, str):
+        return units.get(body.position, "")
+    return units.get(body.speed, "").replace("/s", "") if isinstance(body.speed, str) else ""
+
+
+def _value(signal: Signal, x: Signals, u: Signals, p: Signals) -> Any:
+    return x[signal] if isinstance(signal, str) else signal(x, u, p)
+
+
+def _restarted(parameter: Parameter, start: Mapping[str, float]) -> Parameter:
+    if parameter.name not in start:
+        return parameter
+    low, high = parameter.bounds
+    return replace(parameter, value=float(np.clip(start[parameter.name], low, high)))
+
+
+def _delayed(tape: Any, channel: int, delay: float) -> list[np.ndarray]:
+    """An input shifted later by ``delay`` s (linear between samples, held before the record), its slope, and the delay."""
+    value, slope = np.empty(tape.u.shape[1]), np.empty(tape.u.shape[1])
+    for e in range(len(tape.first)):
+        span = tape.span(e)
+        time, signal = tape.time(e), tape.u[channel, span]
+        value[span] = np.interp(time - delay, time, signal)
+        rate = np.append(np.diff(signal) / np.diff(time), 0.0)
+        index = np.clip(np.searchsorted(time, time - delay, side="right") - 1, 0, len(time) - 1)
+        slope[span] = np.where(time - delay < 0, 0.0, -rate[index])
+    return [value, slope, np.full(tape.u.shape[1], delay)]

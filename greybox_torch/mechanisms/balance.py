@@ -1,0 +1,67 @@
+"""Terms of a rate equation that is no mass: leaks and thresholds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import torch
+
+from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
+from greybox_torch.model import Parameter, Signals
+
+
+class LinearLeak(Mechanism):
+    """−c level."""
+
+    name = "linear_leak"
+    kinds = ("balance",)
+    needs = ("level",)
+    explanation = "Something leaks in proportion to the level (heat loss, seepage)."
+    source = "N. R. Kristensen, H. Madsen, S. B. Jørgensen, Automatica 40(2), 2004"
+    experiment = "rest at several levels"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        return [Parameter("c", 0.0, around.per("level"), lower=0.0, description="leak per level")]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return -p.c * s.level
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe(("c",))]
+
+
+class ThresholdFlow(Mechanism):
+    """−c (level − threshold) above the threshold."""
+
+    name = "threshold_flow"
+    kinds = ("balance",)
+    needs = ("level",)
+    explanation = "Above a level something flows off (overflow, relief valve)."
+    source = (
+        "M. Schoukens, J. P. Noël, Three benchmarks addressing open challenges in nonlinear identification, IFAC 2017"
+    )
+    experiment = "levels just below and just above the threshold"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        level = around.ranges["level"]
+        return [
+            Parameter("c", 0.0, around.per("level"), lower=0.0, description="flow per level above the threshold"),
+            Parameter(
+                "threshold",
+                0.5 * (level.low + level.high),
+                around.units.get("level", ""),
+                lower=level.low,
+                upper=level.high,
+                description="level at which the flow sets in",
+            ),
+        ]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return -p.c * torch.clamp(s.level - p.threshold, min=0.0)
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        level = around.ranges["level"]
+        return [
+            Probe(("c",), {"threshold": level.low + f * (level.high - level.low)}) for f in (0.3, 0.5, 0.7, 0.85, 0.95)
+        ]

@@ -1,0 +1,159 @@
+"""Forces on a body that do not depend on its speed: bias, gravity, ripple, end stops, one more mass."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import torch
+
+from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
+from greybox_torch.model import Parameter, Signals, State
+
+
+class ConstantBias(Mechanism):
+    """A constant b."""
+
+    name = "constant_bias"
+    kinds = ("body", "balance")
+    explanation = "A constant force acts (offset of an amplifier, unbalanced weight, preload)."
+    source = "A. Janot, M. Gautier, M. Brunot, Data set and reference models of EMPS, 2019"
+    experiment = "standstill and reversals without load: a bias pushes at rest, an asymmetry does not"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        return [Parameter("bias", 0.0, around.force_unit, description="constant force")]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return p.bias
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe(("bias",))]
+
+
+class Gravity(Mechanism):
+    """−(a sin θ + b cos θ): once per turn."""
+
+    name = "gravity"
+    kinds = ("body",)
+    needs = ("position",)
+    explanation = "Weight pulls with a torque that depends on the angle, once per turn."
+    source = "W. Khalil, E. Dombre, Modeling, Identification and Control of Robots, 2002"
+    experiment = "slow motion over a full turn"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        return [
+            Parameter("a", 0.0, around.force_unit, description="sine amplitude"),
+            Parameter("b", 0.0, around.force_unit, description="cosine amplitude"),
+        ]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return -(p.a * torch.sin(s.position) + p.b * torch.cos(s.position))
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe(("a", "b"))]
+
+
+class TorqueRipple(Mechanism):
+    """a cos nθ + b sin nθ with an order n above one."""
+
+    name = "torque_ripple"
+    kinds = ("body",)
+    needs = ("position",)
+    explanation = "The drive's force varies periodically with position (cogging, commutation)."
+    source = "T. M. Jahns, W. L. Soong, IEEE Trans. Industrial Electronics 43(2), 1996"
+    experiment = "slow constant speed over several turns, in both directions"
+
+    def __init__(self, order: float = 2.0) -> None:
+        self.order = order
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        return [
+            Parameter("a", 0.0, around.force_unit, description="cosine amplitude"),
+            Parameter("b", 0.0, around.force_unit, description="sine amplitude"),
+            Parameter(
+                "order", self.order, "", lower=0.5 * self.order, upper=2 * self.order, description="periods per turn"
+            ),
+        ]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        angle = p.order * s.position
+        return p.a * torch.cos(angle) + p.b * torch.sin(angle)
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe(("a", "b"), {"order": self.order})]
+
+
+class EndStop(Mechanism):
+    """−k (θ − θ_1) beyond θ_1 (``side`` +1), or −k (θ − θ_1) below it (``side`` −1)."""
+
+    name = "end_stop"
+    kinds = ("body",)
+    needs = ("position",)
+    explanation = "Past a position something stiff pushes back (mechanical stop, cable)."
+    source = "F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts, 1996"
+    experiment = "slow approach to the ends of travel"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        travel = around.ranges["position"]
+        return [
+            Parameter("k", 0.0, around.per("position"), lower=0.0, description="stiffness of the stop"),
+            Parameter(
+                "where",
+                travel.high,
+                around.units.get("position", ""),
+                lower=travel.low,
+                upper=travel.high,
+                description="stop",
+            ),
+            Parameter("side", 1.0, "", fixed=True, description="+1: the stop is above, -1: below"),
+        ]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        beyond = torch.clamp(p.side * (s.position - p.where), min=0.0)
+        return -p.k * p.side * beyond
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        travel = around.ranges["position"]
+        width = travel.high - travel.low
+        above = [Probe(("k",), {"where": travel.high - share * width, "side": 1.0}) for share in (0.03, 0.1, 0.25)]
+        return above + [
+            Probe(("k",), {"where": travel.low + share * width, "side": -1.0}) for share in (0.03, 0.1, 0.25)
+        ]
+
+
+class AdditionalMode(Mechanism):
+    """A further mass m on the body by a spring m ω² and a damper 2 ζ ω m."""
+
+    name = "additional_mode"
+    kinds = ("body",)
+    needs = ("speed",)
+    explanation = "One more mass hangs on this body by a spring and a damper (an unmodelled resonance)."
+    source = "E. Wernholt, S. Gunnarsson, SYSID 2006; J. P. Den Hartog, Mechanical Vibrations, 1956"
+    experiment = "broadband excitation around the resonance"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        unit = around.per("speed").replace("/(rad/s)", " s^2/rad")
+        nyquist = torch.pi / around.sample_time
+        return [
+            Parameter("mass", 0.0, unit, lower=0.0, description="mass or inertia"),
+            Parameter(
+                "omega", 0.02 * nyquist, "rad/s", lower=2e-4 * nyquist, upper=0.3 * nyquist, description="frequency"
+            ),
+            Parameter("zeta", 0.05, "", lower=1e-3, upper=2.0, description="damping ratio"),
+        ]
+
+    def states(self, around: Surroundings) -> list[State]:
+        unit = around.units.get("speed", "")
+        return [State("stretch", unit.replace("/s", "")), State("speed", unit, initial="measured")]
+
+    def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
+        relative = z.speed - s.speed
+        return {"stretch": relative, "speed": -(p.omega**2) * z.stretch - 2 * p.zeta * p.omega * relative}
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return p.mass * (p.omega**2 * z.stretch + 2 * p.zeta * p.omega * (z.speed - s.speed))
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        nyquist = torch.pi / around.sample_time
+        shares = (0.002, 0.004, 0.008, 0.016, 0.03, 0.06, 0.12)
+        return [Probe(("mass",), {"omega": share * nyquist, "zeta": 0.1}) for share in shares]

@@ -1,0 +1,76 @@
+"""The hypothesis library: every mechanism by its name, and the way to add one."""
+
+from __future__ import annotations
+
+from greybox_torch.mechanisms.actuator import (
+    ActuatorDeadzone,
+    InputBias,
+    InputDelay,
+    InputGain,
+    InputLag,
+    TorqueSaturation,
+)
+from greybox_torch.mechanisms.balance import LinearLeak, ThresholdFlow
+from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndStop, Gravity, TorqueRipple
+from greybox_torch.mechanisms.friction import (
+    CoulombAsymmetry,
+    CoulombFriction,
+    FrictionWarmup,
+    LoadDependentFriction,
+    PositionDependentFriction,
+    PreslidingHysteresis,
+    QuadraticDrag,
+    StribeckFriction,
+    ViscousFriction,
+)
+from greybox_torch.mechanisms.mechanism import Mechanism
+from greybox_torch.mechanisms.sensor import SensorBias, SensorGain, SensorLag
+from greybox_torch.mechanisms.transmission import (
+    Backlash,
+    HystereticSpring,
+    NonlinearDamping,
+    NonlinearStiffness,
+    TransmissionError,
+)
+
+LIBRARY: dict[str, type[Mechanism]] = {
+    mechanism.name: mechanism
+    for mechanism in (
+        ViscousFriction,
+        CoulombFriction,
+        StribeckFriction,
+        CoulombAsymmetry,
+        QuadraticDrag,
+        LoadDependentFriction,
+        PositionDependentFriction,
+        FrictionWarmup,
+        PreslidingHysteresis,
+        ConstantBias,
+        Gravity,
+        TorqueRipple,
+        EndStop,
+        AdditionalMode,
+        Backlash,
+        NonlinearStiffness,
+        HystereticSpring,
+        NonlinearDamping,
+        TransmissionError,
+        LinearLeak,
+        ThresholdFlow,
+        InputDelay,
+        InputLag,
+        InputBias,
+        InputGain,
+        TorqueSaturation,
+        ActuatorDeadzone,
+        SensorLag,
+        SensorBias,
+        SensorGain,
+    )
+}
+
+
+def register(mechanism: type[Mechanism]) -> type[Mechanism]:
+    """Add a mechanism to the library (usable as a class decorator in a user's own file)."""
+    LIBRARY[mechanism.name] = mechanism
+    return mechanism

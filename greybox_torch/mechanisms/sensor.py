@@ -1,0 +1,75 @@
+"""The way from the true output to the recorded one: delay, lag, bias, gain."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
+from greybox_torch.model import Parameter, Signals, State
+
+
+class SensorLag(Mechanism):
+    """The output is recorded through a first-order lag: T dw/dt = y − w."""
+
+    name = "sensor_lag"
+    kinds = ("sensor",)
+    needs = ("output",)
+    explanation = "The output is recorded through a first-order lag (filter, sensor dynamics)."
+    source = "L. Ljung, System Identification, 2nd ed., 1999"
+    experiment = "a second sensor, or a known motion"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        step = around.sample_time
+        return [Parameter("T", 3 * step, "s", lower=0.45 * step, upper=2000 * step, description="time constant")]
+
+    def states(self, around: Surroundings) -> list[State]:
+        return [State("lagged", around.units.get("output", ""), initial="measured", fixed=True)]
+
+    def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
+        return {"lagged": (s.output - z.lagged) / p.T}
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return z.lagged - s.output
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (2, 6, 20)]
+
+
+class SensorBias(Mechanism):
+    """The recorded output is off by a constant."""
+
+    name = "sensor_bias"
+    kinds = ("sensor",)
+    explanation = "The recorded output is off by a constant (sensor offset)."
+    source = "J. J. Craig, Introduction to Robotics, 3rd ed., 2005"
+    experiment = "a record at standstill"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        return [Parameter("bias", 0.0, around.units.get("output", ""), description="offset")]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return p.bias
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe(("bias",))]
+
+
+class SensorGain(Mechanism):
+    """The recorded output is (1 + g) y."""
+
+    name = "sensor_gain"
+    kinds = ("sensor",)
+    needs = ("output",)
+    explanation = "The output is recorded with another gain (scale factor)."
+    source = "J. J. Craig, Introduction to Robotics, 3rd ed., 2005"
+    experiment = "a second sensor, or a known motion"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        return [Parameter("gain_error", 0.0, "", lower=-0.9, upper=9.0, description="relative error of the gain")]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return p.gain_error * s.output
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe(("gain_error",))]

@@ -1,0 +1,161 @@
+"""Couplings between two masses: play, nonlinear springs and dampers, hysteresis, kinematic error."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import torch
+
+from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
+from greybox_torch.model import Parameter, Signals, State
+
+
+def dead_zone(value: Any, half_gap: Any) -> Any:
+    """Zero within ±half_gap, shifted towards zero by it outside."""
+    return value - torch.clamp(value, -half_gap, half_gap)
+
+
+class Backlash(Mechanism):
+    """The spring sees the deflection less a dead zone."""
+
+    name = "backlash"
+    kinds = ("coupling",)
+    needs = ("deflection",)
+    kinematic = True
+    explanation = "There is play: within a gap the coupling transmits nothing."
+    source = "M. Nordin, P.-O. Gutman, Automatica 38(10), 2002"
+    experiment = "reversals at low torque, so that the gap is crossed slowly"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        reach = around.ranges["deflection"].reach
+        unit = around.units.get("deflection", "")
+        return [Parameter("half_gap", 0.0, unit, lower=0.0, upper=reach, description="half the gap")]
+
+    def deflection(self, s: Signals, p: Signals) -> Any:
+        return dead_zone(s.deflection, p.half_gap)
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        reach = around.ranges["deflection"].reach
+        return [Probe(("half_gap",)), *(Probe(("share",), {"half_gap": f * reach}) for f in (0.1, 0.3))]
+
+
+class NonlinearStiffness(Mechanism):
+    """k_2 δ |δ| + k_3 δ³."""
+
+    name = "nonlinear_stiffness"
+    kinds = ("coupling",)
+    needs = ("deflection",)
+    explanation = "The spring stiffens or softens with deflection."
+    source = "T. Tuttle, W. Seering, IEEE Trans. Robotics and Automation 12(3), 1996 (harmonic drives)"
+    experiment = "static loads up to the largest"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        return [
+            Parameter("k_2", 0.0, around.per("deflection", 2), description="coefficient of δ|δ|"),
+            Parameter("k_3", 0.0, around.per("deflection", 3), description="coefficient of δ³"),
+        ]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return p.k_2 * s.deflection * torch.abs(s.deflection) + p.k_3 * s.deflection**3
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe(("k_3",)), Probe(("k_2", "k_3"))]
+
+
+class HystereticSpring(Mechanism):
+    """F z / z_0 with dz/dt = δ' − |δ'| z / z_0 (an elasto-slip element in parallel with the spring)."""
+
+    name = "hysteretic_spring"
+    kinds = ("coupling",)
+    needs = ("rate",)
+    explanation = "The coupling remembers: loading and unloading follow different curves (micro-slip, rubber)."
+    source = "R. Bouc, 1967; Y.-K. Wen, J. Eng. Mech. 102(2), 1976; M. Ruderman, F. Hoffmann, T. Bertram, IEEE TIE 56(10), 2009"
+    experiment = "slow loading and unloading between several limits"
+
+    def _smallest(self, around: Surroundings) -> float:
+        return around.ranges["rate"].reach * around.sample_time
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        least = self._smallest(around)
+        unit = around.units.get("deflection", "")
+        return [
+            Parameter("F", 0.0, around.force_unit, lower=0.0, description="level at full slip"),
+            Parameter(
+                "z_0", 4 * least, unit, lower=0.5 * least, upper=1e3 * least, description="deflection at which it slips"
+            ),
+        ]
+
+    def states(self, around: Surroundings) -> list[State]:
+        return [State("slip", around.units.get("deflection", ""))]
+
+    def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
+        return {"slip": s.rate - torch.abs(s.rate) * z.slip / p.z_0}
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return p.F * z.slip / p.z_0
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe(("F",), {"z_0": factor * self._smallest(around)}) for factor in (2, 8, 32)]
+
+
+class NonlinearDamping(Mechanism):
+    """d_2 δ' |δ'| + d_0 tanh(δ' / r_0)."""
+
+    name = "nonlinear_damping"
+    kinds = ("coupling",)
+    needs = ("rate",)
+    explanation = "The coupling's damping is not proportional to the rate of deflection."
+    source = "R. Dhaouadi, F. H. Ghorbel, P. S. Gandhi, IEEE Trans. Industrial Electronics 50(6), 2003"
+    experiment = "vibration at several amplitudes"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        reach = around.ranges["rate"].reach
+        unit = around.units.get("rate", "")
+        return [
+            Parameter("d_2", 0.0, around.per("rate", 2), description="coefficient of r|r|"),
+            Parameter("d_0", 0.0, around.force_unit, description="level of the dry part"),
+            Parameter("r_0", 0.1 * reach, unit, lower=0.01 * reach, upper=reach, description="width of the dry part"),
+        ]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return p.d_2 * s.rate * torch.abs(s.rate) + p.d_0 * torch.tanh(s.rate / p.r_0)
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        reach = around.ranges["rate"].reach
+        return [
+            Probe(("d_2",), {"r_0": 0.1 * reach}),
+            *(Probe(("d_2", "d_0"), {"r_0": f * reach}) for f in (0.03, 0.15)),
+        ]
+
+
+class TransmissionError(Mechanism):
+    """The spring sees the deflection plus a cos nθ + b sin nθ, with θ the position of the driving body."""
+
+    name = "transmission_error"
+    kinds = ("coupling",)
+    needs = ("deflection", "position")
+    kinematic = True
+    explanation = "The gear's output does not follow its input exactly: a kinematic error periodic in position."
+    source = "T. Tuttle, W. Seering, IEEE Trans. Robotics and Automation 12(3), 1996"
+    experiment = "slow constant speed over several turns, in both directions"
+
+    def __init__(self, order: float = 1.0) -> None:
+        self.order = order
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        unit = around.units.get("deflection", "")
+        return [
+            Parameter("a", 0.0, unit, description="cosine amplitude"),
+            Parameter("b", 0.0, unit, description="sine amplitude"),
+            Parameter(
+                "order", self.order, "", lower=0.5 * self.order, upper=2 * self.order, description="periods per turn"
+            ),
+        ]
+
+    def deflection(self, s: Signals, p: Signals) -> Any:
+        angle = p.order * s.position
+        return s.deflection + p.a * torch.cos(angle) + p.b * torch.sin(angle)
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe(("a", "b"), {"order": self.order})]

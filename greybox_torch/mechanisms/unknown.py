@@ -1,0 +1,52 @@
+"""A flexible curve over one signal: the ceiling that named mechanisms are measured against, and the answer `unknown`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import torch
+
+from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
+from greybox_torch.model import Parameter, Signals
+
+
+class Unknown(Mechanism):
+    """A sum of smooth bumps over the range of one signal.
+
+    ``knots`` bumps exp(−((s − s_k) / w)²) with centres spread evenly over where the signal moved.
+    """
+
+    name = "unknown"
+    kinds = ("body", "coupling", "balance", "actuator", "sensor")
+    explanation = "Something repeatable is missing here that no known mechanism describes; the curve shows what."
+    source = "radial basis functions: D. S. Broomhead, D. Lowe, Complex Systems 2, 1988"
+
+    def __init__(self, signal: str, knots: int = 14) -> None:
+        self.signal = signal
+        self.knots = knots
+
+    def signals(self) -> tuple[str, ...]:
+        return (self.signal,)
+
+    def centres(self, around: Surroundings) -> list[float]:
+        """Centres of the bumps, in the signal's unit."""
+        span = around.ranges[self.signal]
+        return [span.low + (span.high - span.low) * k / (self.knots - 1) for k in range(self.knots)]
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        centres = self.centres(around)
+        unit = around.units.get(self.signal, "")
+        heights = [
+            Parameter(f"w_{k}", 0.0, around.force_unit, description=f"height at {c:g}") for k, c in enumerate(centres)
+        ]
+        first = Parameter("first", centres[0], unit, fixed=True, description="first centre")
+        spacing = Parameter("spacing", centres[1] - centres[0], unit, fixed=True, description="distance of the centres")
+        return [*heights, first, spacing]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        place = (s[self.signal] - p.first) / p.spacing
+        return sum(p[f"w_{k}"] * torch.exp(-((place - k) ** 2)) for k in range(self.knots))
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe(tuple(f"w_{k}" for k in range(self.knots)))]
