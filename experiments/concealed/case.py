@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.random import Generator, SeedSequence
@@ -88,7 +88,7 @@ def draw_case(
     case = Case(f"c{number:03d}", sample_time, seed, number, plan, strengths, truth, card, excitation, [])
     position = np.zeros((samples, len(EXPERIMENTS)))
     if any(name in NEEDS_POSITIONS for name in plan):
-        position = _simulate([case], [], steps_per_sample=1)[0].position
+        position = simulate_cases([replace(case, plan=())], steps_per_sample=1)[0].position
     surroundings = Surroundings(truth, position)
     for effect, word in zip(case.effects, strengths, strict=True):
         drawn = effect.draw(rng, STRENGTHS[word], surroundings)
@@ -103,32 +103,29 @@ def _stays_within_estimation(excitation: Excitation, sample_time: float) -> bool
     return bool(position[:, 3].max() < position[:, 0].max() - 2.0)
 
 
-def simulate_cases(cases: list[Case]) -> list[Recordings]:
+def simulate_cases(cases: list[Case], *, steps_per_sample: int = STEPS_PER_SAMPLE) -> list[Recordings]:
     """Simulate all cases, of one sample time and length, side by side with their effects.
 
     One `Recordings` of shape (samples, 4) each, the pre-roll cut.
     """
-    grouped: dict[str, tuple[Effect, list[int], list[dict[str, float]]]] = {}
-    for i, case in enumerate(cases):
-        for effect, switches in zip(case.effects, case.switches, strict=True):
-            entry = grouped.setdefault(effect.name, (effect, [], []))
-            entry[1].append(i)
-            entry[2].append(switches)
-    laws: list[Law] = []
-    experiments = np.arange(len(EXPERIMENTS))
-    for effect, where, switches in grouped.values():
-        lanes = np.concatenate([len(EXPERIMENTS) * i + experiments for i in where])
-        values = {
-            name: np.repeat([one[name] for one in switches], len(EXPERIMENTS)).astype(float) for name in switches[0]
-        }
-        laws.append(effect.law(lanes, values, effect.port))
-    return _simulate(cases, laws)
+    plant, drive = assemble(cases, steps_per_sample=steps_per_sample)
+    everything = plant.run(plant.initial_state(np.zeros((3, plant.lanes))), drive)
+    arrays = (everything.torque, everything.speed, everything.position)
+    cut, count = round(PRE_ROLL / plant.sample_time), len(EXPERIMENTS)
+    return [Recordings(*(a[cut:, count * i : count * (i + 1)] for a in arrays)) for i in range(len(cases))]
 
 
-def _simulate(cases: list[Case], laws: list[Law], steps_per_sample: int = STEPS_PER_SAMPLE) -> list[Recordings]:
+def assemble(cases: list[Case], *, steps_per_sample: int = STEPS_PER_SAMPLE) -> tuple[ArmPlant, Drive]:
+    """The plant of all cases with their effects, and what drives it; lane 4 i + j is experiment j of case i."""
     count, sample_time = len(EXPERIMENTS), cases[0].sample_time
     parameters = {name: np.repeat([case.truth[name] for case in cases], count) for name in PARAMETERS}
-    plant = ArmPlant(parameters, laws, sample_time=sample_time, steps_per_sample=steps_per_sample, start_time=-PRE_ROLL)
+    plant = ArmPlant(
+        parameters,
+        concealed_laws(cases),
+        sample_time=sample_time,
+        steps_per_sample=steps_per_sample,
+        start_time=-PRE_ROLL,
+    )
     drive = Drive(
         np.concatenate([case.excitation.feedforward for case in cases], axis=1),
         np.concatenate([case.excitation.reference for case in cases], axis=1),
@@ -136,11 +133,19 @@ def _simulate(cases: list[Case], laws: list[Law], steps_per_sample: int = STEPS_
         np.repeat([case.excitation.gain for case in cases], count),
         np.repeat([case.excitation.integral_gain for case in cases], count),
     )
-    everything = plant.run(plant.initial_state(np.zeros((3, plant.lanes))), drive)
-    cut = slice(round(PRE_ROLL / sample_time), None)
-    return [
-        Recordings(
-            *(a[cut, count * i : count * (i + 1)] for a in (everything.torque, everything.speed, everything.position))
-        )
-        for i in range(len(cases))
-    ]
+    return plant, drive
+
+
+def concealed_laws(cases: list[Case]) -> list[Law]:
+    """One law for every effect of the catalogue that occurs, on the lanes of the cases that conceal it."""
+    occurrences: dict[str, list[tuple[int, dict[str, float]]]] = {}
+    for i, case in enumerate(cases):
+        for effect, switches in zip(case.effects, case.switches, strict=True):
+            occurrences.setdefault(effect.name, []).append((i, switches))
+    laws: list[Law] = []
+    count = len(EXPERIMENTS)
+    for name, found in occurrences.items():
+        lanes = np.concatenate([count * i + np.arange(count) for i, _ in found])
+        values = {key: np.repeat([float(one[key]) for _, one in found], count) for key in found[0][1]}
+        laws.append(CATALOGUE[name].law(lanes, values, CATALOGUE[name].port))
+    return laws

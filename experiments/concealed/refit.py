@@ -132,14 +132,13 @@ class Refit:
         values = {name: np.repeat(self.parameters[name], width) for name in PARAMETERS}
         simulated = simulate(values, self.states.reshape(5, -1), self.torque.reshape(samples, -1), self.sample_time)
         error = self.speed.reshape(samples, -1) - simulated
-        mean_square: Array = np.einsum("ij,ij->j", error, error) / samples
-        return np.asarray(np.sqrt(mean_square), dtype=float).reshape(self.cases, width)
+        return np.sqrt((error**2).mean(axis=0)).reshape(self.cases, width)
 
 
 def _solve(columns: Array, residual: Array) -> Array:
     if not (np.isfinite(columns).all() and np.isfinite(residual).all()):
         return np.zeros(columns.shape[1])
-    return np.linalg.lstsq(columns, residual, rcond=None)[0]
+    return np.asarray(np.linalg.lstsq(columns, residual, rcond=None)[0], np.float64)
 
 
 def main(arguments: list[str]) -> int:
