@@ -73,7 +73,9 @@ def _power(graph: Graph, index: int, position: int) -> int:
     if position == 0:
         lowered = graph.apply("pow", base, graph.apply("sub", exponent, _one(graph)))
         return graph.apply("mul", exponent, lowered)
-    return graph.apply("mul", index, graph.apply("log", base))
+    zero = graph.constant(0.0)
+    slope = graph.apply("mul", index, graph.apply("log", base))
+    return graph.apply("where", graph.apply("eq", base, zero), zero, slope)  # 0^b log 0 would be no number
 
 
 def _extremum(comparison: str) -> Callable[[Graph, int, int], int]:

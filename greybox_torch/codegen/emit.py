@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from greybox_torch.codegen.derive import Partials
-from greybox_torch.codegen.expression import ARITHMETIC, COMPARISONS, FUNCTIONS, LOGIC
+from greybox_torch.codegen.expression import ARITHMETIC, BOOLEAN, COMPARISONS, FUNCTIONS, LOGIC
 from greybox_torch.codegen.lower import Equations
 from greybox_torch.codegen.template import PROGRAM
 
@@ -101,7 +101,7 @@ class _Body:
             if node.operation in ("constant", "leaf") or not varies[index]:
                 continue
             lines.append(f"{self._type(index)} t{index} = {self._expression(index, varies)};")
-        lines += [f"{target} = {self._reference(node, varies)};" for target, node in targets]
+        lines += [f"{target} = {self._number(node, varies)};" for target, node in targets]
         return "\n".join(lines)
 
     def prologue(self) -> str:
@@ -114,7 +114,7 @@ class _Body:
                 lines.append(f"{self._type(index)} t{index} = {self._expression(index, nothing)};")
         for key, slot in self._hoisted.items():
             kind, node = key.split(":")
-            value = self._reference(int(node), nothing)
+            value = self._number(int(node), nothing)
             lines.append(f"h[{slot}] = {f'splat(1)/{value}' if kind == 'inverse' else value};")
         return "\n".join(lines)
 
@@ -122,8 +122,7 @@ class _Body:
         return self.graph.value_of(index)
 
     def _type(self, index: int) -> str:
-        node = self.graph.nodes[index]
-        return "mask" if node.operation in COMPARISONS or node.operation in LOGIC or node.operation == "not" else "vec"
+        return "mask" if self.graph.nodes[index].operation in BOOLEAN else "vec"
 
     def _hoist(self, kind: str, index: int) -> str:
         key = f"{kind}:{index}"
@@ -142,33 +141,44 @@ class _Body:
             )
         if node.operation == "leaf":
             return f"{node.leaf}[{int(node.value)}]"
-        if index < len(varies) and not varies[index] and self._type(index) == "vec":
-            return self._hoist("value", index)
-        return f"t{index}"
+        return f"t{index}" if self._varies(index, varies) else self._hoist("value", index)
+
+    def _varies(self, index: int, varies: list[bool]) -> bool:
+        return index >= len(varies) or varies[index]
+
+    def _number(self, index: int, varies: list[bool]) -> str:
+        """A node as a vector of numbers: a condition counts as one where it holds and zero where not."""
+        text = self._reference(index, varies)
+        is_mask = self._type(index) == "mask" and self._varies(index, varies)
+        return f"choose({text}, splat(1), splat(0))" if is_mask else text
+
+    def _condition(self, index: int, varies: list[bool]) -> str:
+        """A node as a condition, which holds where it is not zero. (What the prologue keeps are numbers.)"""
+        text = self._reference(index, varies)
+        is_mask = self._type(index) == "mask" and self._varies(index, varies)
+        return text if is_mask else f"({text} != splat(0))"
 
     def _expression(self, index: int, varies: list[bool]) -> str:
         node = self.graph.nodes[index]
         if node.operation == "div" and not all(varies):
             numerator, denominator = node.arguments
             if not varies[denominator] and self.graph.value_of(denominator) is None:
-                return f"{self._reference(numerator, varies)} * {self._hoist('inverse', denominator)}"
-        arguments = [self._reference(a, varies) for a in node.arguments]
+                return f"{self._number(numerator, varies)} * {self._hoist('inverse', denominator)}"
         operation = node.operation
-        table = {**ARITHMETIC, **COMPARISONS, **LOGIC}
+        if operation in LOGIC or operation == "not":
+            conditions = [self._condition(a, varies) for a in node.arguments]
+            return f"~{conditions[0]}" if operation == "not" else f"{conditions[0]} {LOGIC[operation]} {conditions[1]}"
+        arguments = [self._number(a, varies) for a in node.arguments]
+        table = {**ARITHMETIC, **COMPARISONS}
         if operation in table:
             return f"{arguments[0]} {table[operation]} {arguments[1]}"
         if operation == "neg":
             return f"-{arguments[0]}"
-        if operation == "not":
-            return f"~{arguments[0]}"
         if operation == "where":
-            return f"choose({self._condition(node.arguments[0], arguments[0])}, {arguments[1]}, {arguments[2]})"
+            return f"choose({self._condition(node.arguments[0], varies)}, {arguments[1]}, {arguments[2]})"
         if operation in FUNCTIONS or operation in ("min", "max", "pow", "atan2"):
             return f"v_{operation}({', '.join(arguments)})"
         raise AssertionError(f"no C++ form of '{operation}'")
-
-    def _condition(self, index: int, text: str) -> str:
-        return text if self._type(index) == "mask" else f"({text} != splat(0))"
 
 
 def _products(

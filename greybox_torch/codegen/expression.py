@@ -70,6 +70,10 @@ class Graph:
         node = self.nodes[index]
         return node.value if node.operation == "constant" else None
 
+    def is_condition(self, index: int) -> bool:
+        """Whether a node is true or false by its operation."""
+        return self.nodes[index].operation in BOOLEAN
+
     def needed(self, roots: Iterable[int]) -> list[int]:
         """All nodes that ``roots`` depend on, in order of evaluation."""
         seen: set[int] = set()

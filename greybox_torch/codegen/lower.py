@@ -9,8 +9,10 @@ import torch
 
 from greybox_torch.codegen.derive import Partials, jacobian
 from greybox_torch.codegen.expression import Graph
-from greybox_torch.codegen.trace import symbols
+from greybox_torch.codegen.trace import UnsupportedOperation, nodes_of, symbols
+from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel, Signals
+from greybox_torch.model.check import explain
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ def lower(model: GreyBoxModel, sensitive: Sequence[str], at_zero: Sequence[str] 
 
     Raises:
         UnsupportedOperation: the equations use a torch operation that has no scalar form here.
-        UserError: the equations branch on a signal's value, or do not return what the model declares.
+        UserError: the equations raise, branch on a signal's value, or do not return what the model declares.
     """
     graph = Graph()
     names = [p.name for p in model.declared_parameters]
@@ -53,9 +55,13 @@ def lower(model: GreyBoxModel, sensitive: Sequence[str], at_zero: Sequence[str] 
     u = symbols(graph, "u", len(model.inputs))
     values = symbols(graph, "p", len(names))
     p = Signals("parameter", {name: values[i] for i, name in enumerate(names)})
-    with torch.no_grad():
-        rates = tuple(int(n) for n in model.rates(x, u, p).nodes)  # type: ignore[attr-defined]
-        outputs = tuple(int(n) for n in model.measured(x, u, p).nodes)  # type: ignore[attr-defined]
+    try:
+        with torch.no_grad():
+            rates, outputs = (nodes_of(graph, function(x, u, p)) for function in (model.rates, model.measured))
+    except (UserError, UnsupportedOperation):
+        raise
+    except Exception as error:  # whatever the user's equations raise, torch's complaints about other libraries among it
+        raise UserError(explain(model, error)) from error
     leaves_x = [graph.leaf("x", i) for i in range(len(model.states))]
     leaves_p = [graph.leaf("p", names.index(name)) for name in sensitive]
     pieces = [jacobian(graph, roots, leaves) for roots in (rates, outputs) for leaves in (leaves_x, leaves_p)]

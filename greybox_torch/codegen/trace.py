@@ -15,7 +15,7 @@ from torch.utils._pytree import tree_map
 
 from greybox_torch.codegen.expression import FUNCTIONS, Graph
 from greybox_torch.errors import UserError
-from greybox_torch.model.check import BRANCHES_ON_SIGNAL
+from greybox_torch.model.check import NEEDS_A_VALUE
 
 
 class UnsupportedOperation(Exception):
@@ -30,7 +30,9 @@ class Symbol(torch.Tensor):
 
     @staticmethod
     def of(graph: Graph, nodes: np.ndarray) -> Symbol:
-        symbol = torch.Tensor._make_wrapper_subclass(Symbol, nodes.shape, dtype=torch.float64)  # type: ignore[attr-defined]
+        conditions = nodes.size > 0 and all(graph.is_condition(n) for n in nodes.flat)
+        kind = torch.bool if conditions else torch.float64
+        symbol = torch.Tensor._make_wrapper_subclass(Symbol, nodes.shape, dtype=kind)  # type: ignore[attr-defined]
         symbol.nodes, symbol.graph = nodes, graph
         return symbol
 
@@ -42,10 +44,27 @@ class Symbol(torch.Tensor):
         handler = _HANDLERS.get(name)
         if handler is None:
             if name == "_local_scalar_dense":
-                raise UserError(BRANCHES_ON_SIGNAL)
+                raise UserError(NEEDS_A_VALUE)
             raise UnsupportedOperation(f"torch operation '{func._schema.name}'")
-        result = handler(graph, *tree_map(lambda a: _nodes_of(graph, a), args), **kwargs)
-        return Symbol.of(graph, np.asarray(result, dtype=object))
+        result = _handled(handler, func._schema.name, graph, args, kwargs)
+        if func._schema.name.endswith("_") and isinstance(args[0], Symbol):
+            args[0].nodes = np.broadcast_to(
+                result, args[0].nodes.shape
+            )  # torch hands the argument back, not the result
+        return Symbol.of(graph, result)
+
+
+def _handled(handler: Callable[..., Any], name: str, graph: Graph, args: Any, kwargs: Any) -> np.ndarray:
+    operands = tree_map(lambda a: _nodes_of(graph, a), args)
+    try:
+        return np.asarray(handler(graph, *operands, **kwargs), dtype=object)
+    except (TypeError, ValueError, IndexError) as error:  # a form of the operation that its handler was not written for
+        raise UnsupportedOperation(f"torch operation '{name}' in this form") from error
+
+
+def nodes_of(graph: Graph, tensor: torch.Tensor) -> tuple[int, ...]:
+    """The nodes of a vector that tracing gave, also where it does not depend on any symbol."""
+    return tuple(int(node) for node in _nodes_of(graph, tensor))
 
 
 def symbols(graph: Graph, kind: str, count: int) -> Symbol:
@@ -125,6 +144,35 @@ def _sigmoid(graph: Graph, value: Any) -> np.ndarray:
     return _elementwise("mul")(graph, _elementwise("add")(graph, _elementwise("tanh")(graph, half), 1.0), 0.5)
 
 
+def _softplus(graph: Graph, value: Any, beta: float = 1.0, threshold: float = 20.0) -> np.ndarray:
+    scaled = _elementwise("mul")(graph, value, beta)
+    bounded = _elementwise("min")(graph, scaled, threshold)
+    curved = _elementwise("div")(graph, _elementwise("log1p")(graph, _elementwise("exp")(graph, bounded)), beta)
+    return _elementwise("where")(graph, _elementwise("gt")(graph, scaled, threshold), value, curved)
+
+
+def _divided(graph: Graph, value: Any, divisor: Any, rounding_mode: str | None = None) -> np.ndarray:
+    quotient = _elementwise("div")(graph, value, divisor)
+    if rounding_mode is None:
+        return quotient
+    down = _elementwise("floor")(graph, quotient)
+    if rounding_mode == "floor":
+        return down
+    up = _elementwise("neg")(graph, _elementwise("floor")(graph, _elementwise("neg")(graph, quotient)))
+    return _elementwise("where")(graph, _elementwise("lt")(graph, quotient, 0.0), up, down)
+
+
+def _converted(graph: Graph, value: Any, *_: Any, dtype: torch.dtype | None = None, **__: Any) -> Any:
+    if dtype is torch.bool:
+        return _elementwise("ne")(graph, value, 0.0)
+    if dtype is not None and not dtype.is_floating_point:
+        raise UnsupportedOperation(f"conversion to {dtype}")
+    return _map(
+        lambda n: graph.apply("where", n, graph.constant(1.0), graph.constant(0.0)) if graph.is_condition(n) else n,
+        value,
+    )
+
+
 def _reciprocal(graph: Graph, value: Any, power: float = 1.0) -> np.ndarray:
     return _power(graph, value, -power)
 
@@ -191,11 +239,7 @@ _HANDLERS: dict[str, Callable[..., Any]] = {
     "sub": _added("sub"),
     "rsub": _added("sub", swap=True),
     "mul": _elementwise("mul"),
-    "div": lambda g, a, b, rounding_mode=None: (
-        _elementwise("div")(g, a, b)
-        if rounding_mode is None
-        else _elementwise("floor")(g, _elementwise("div")(g, a, b))
-    ),
+    "div": _divided,
     "pow": _power,
     "square": lambda g, a: _power(g, a, 2.0),
     "reciprocal": _reciprocal,
@@ -208,7 +252,7 @@ _HANDLERS: dict[str, Callable[..., Any]] = {
     "relu": lambda g, a: _clamped(g, a, 0.0, None),
     "sigmoid": _sigmoid,
     "silu": lambda g, a: _elementwise("mul")(g, a, _sigmoid(g, a)),
-    "softplus": lambda g, a, *_: _elementwise("log1p")(g, _elementwise("exp")(g, a)),
+    "softplus": _softplus,
     "sgn": _elementwise("sign"),
     "neg": _elementwise("neg"),
     "remainder": _remainder,
@@ -243,7 +287,7 @@ _HANDLERS: dict[str, Callable[..., Any]] = {
     "detach": _same,
     "clone": _same,
     "alias": _same,
-    "_to_copy": _same,
+    "_to_copy": _converted,
     "lift_fresh": _same,
     "zeros_like": _full(0.0),
     "ones_like": _full(1.0),
