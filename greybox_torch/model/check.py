@@ -11,9 +11,9 @@ from greybox_torch.errors import UserError
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.signals import Signals
 
-BRANCHES_ON_SIGNAL = (
-    "the model's equations branch on the value of a signal (a Python `if`, `float()` or `.item()` on a tensor); "
-    "write torch.where(condition, yes, no) instead, so that all samples can be computed side by side"
+NEEDS_A_VALUE = (
+    "the model's equations need the value of a signal or parameter (a Python `if`, `float()`, `.item()` or a function of `math` on a "
+    "tensor); write torch.where(condition, yes, no) and functions of torch instead, so that all samples can be computed side by side"
 )
 
 
@@ -23,7 +23,7 @@ def check_equations(model: GreyBoxModel) -> None:
     Raises:
         UserError: ``derivative()`` or ``output()`` raises, branches on a signal, or does not return what the model declares.
     """
-    batch = 2
+    batch = 3
     x = torch.zeros(len(model.states), batch, dtype=torch.float64)
     u = torch.zeros(len(model.inputs), batch, dtype=torch.float64)
     with torch.no_grad():
@@ -31,19 +31,25 @@ def check_equations(model: GreyBoxModel) -> None:
         p = Signals("parameter", {name: value.expand(batch) for name, value in values.items()})
         for function in (model.rates, model.measured):
             try:
-                function(x, u, p)
+                result = function(x, u, p)
             except UserError:
                 raise
             except Exception as error:
                 raise UserError(explain(model, error)) from None
+            if result.shape[1:] != (batch,):
+                raise UserError(
+                    f"the equations of {model.title} return values of shape {tuple(result.shape[1:])} for signals of shape ({batch},); "
+                    "expected one number for each sample"
+                )
 
 
 def explain(model: GreyBoxModel, error: Exception) -> str:
     """In words, what went wrong in the equations of ``model`` and in which line of which file."""
     place = _place(model, error)
-    if "Boolean value of Tensor" in str(error) or "converted to Scalar" in str(error):
-        return f"{place}{BRANCHES_ON_SIGNAL}"
-    return f"{place}the equations of {model.title} raised {type(error).__name__}: {error}"
+    if any(words in str(error) for words in ("Boolean value of Tensor", "to Scalar", "to Python scalar")):
+        return f"{place}{NEEDS_A_VALUE}"
+    hint = "; use functions of torch instead" if "numpy" in str(error) else ""
+    return f"{place}the equations of {model.title} raised {type(error).__name__}: {error}{hint}"
 
 
 def _place(model: GreyBoxModel, error: Exception) -> str:

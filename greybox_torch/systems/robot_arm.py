@@ -64,9 +64,10 @@ class RobotArm(GreyBoxModel):
     ]
 
     def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
-        friction = p.F_v * x.motor_speed + (p.F_c + p.F_cs / torch.cosh(p.alpha * x.motor_speed)) * torch.tanh(
-            p.beta * x.motor_speed
-        )
+        stribeck = p.F_cs / torch.cosh(
+            (p.alpha * x.motor_speed).clamp(-80.0, 80.0)
+        )  # zero beyond; cosh itself overflows
+        friction = p.F_v * x.motor_speed + (p.F_c + stribeck) * torch.tanh(p.beta * x.motor_speed)
         gear = gear_torque(x, p) + port.gear_spring
         arm = arm_torque(x, p) + port.arm_spring
         return {
