@@ -106,9 +106,9 @@ class GreyBoxModel(torch.nn.Module):
         """The parameters as differentiable tensors in physical units, held within their bounds."""
         values = {}
         for parameter in self.declared_parameters:
-            scale = self._scales[parameter.name]
             low, high = parameter.bounds
-            values[parameter.name] = project(self.raw[_key(parameter.name)], low / scale, high / scale) * scale
+            scale = self._scales[parameter.name]
+            values[parameter.name] = project(self.raw[_key(parameter.name)] * scale, low, high)  # exact at the bounds
         return Signals("parameter", values)
 
     def project_(self) -> None:
