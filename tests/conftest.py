@@ -47,6 +47,12 @@ def bench(tmp_path: Path) -> Path:
     return folder
 
 
+@pytest.fixture(scope="session")
+def machines() -> Path:
+    """The folder of model files that tests load as a user would."""
+    return Path(__file__).parent / "machines"
+
+
 @pytest.fixture
 def edit() -> Callable[[Path, str, str], None]:
     """Replaces text in a file, where it stands exactly once."""

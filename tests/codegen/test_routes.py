@@ -1,0 +1,165 @@
+"""Which models are compiled, which are not, and that both routes give the same numbers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+
+from greybox_torch.codegen import build
+from greybox_torch.errors import UserError
+from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
+from greybox_torch.simulate.eager import EagerStepper
+from greybox_torch.simulate.native import NativeStepper
+from greybox_torch.simulate.stepper import Stepper, make_stepper, whole_records
+from greybox_torch.simulate.tape import Tape
+from greybox_torch.systems import RobotArm
+
+
+def lag(rate: Any) -> GreyBoxModel:
+    """A model with one state and the rate ``rate(x, u, p)``."""
+
+    class Lag(GreyBoxModel):
+        states = [State("level")]
+        inputs = [Input("flow")]
+        outputs = [Output("level")]
+        parameters = [Parameter("k", 0.7, lower=0.0)]
+
+        def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+            return {"level": rate(x, u, p)}
+
+        def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+            return {"level": x.level}
+
+    return Lag()
+
+
+def plain(x: Any, u: Any, p: Any) -> Any:
+    return u.flow - p.k * torch.sqrt(x.level**2 + 0.1)
+
+
+def with_hypot(x: Any, u: Any, p: Any) -> Any:
+    return u.flow - p.k * torch.hypot(x.level, torch.full_like(x.level, 0.1**0.5))
+
+
+@pytest.fixture
+def tape() -> Tape:
+    u = np.sin(0.3 * np.arange(50))[None]
+    return Tape(u, np.zeros((1, 50)), np.full(50, 0.1), np.array([0]), np.array([49]), ("one",), "zoh")
+
+
+def simulated(stepper: Stepper, tape: Tape) -> tuple[np.ndarray, np.ndarray]:
+    run = stepper.run(tape, whole_records(tape), np.array([0.7]), np.ones((1, 1)), tangents=True)
+    assert run.dy is not None
+    return run.y, run.dy
+
+
+def test_operation_that_is_not_traced_falls_back(tape: Tape) -> None:
+    compiled, fallen = make_stepper(lag(plain), ("k",)), make_stepper(lag(with_hypot), ("k",))
+    assert isinstance(compiled, NativeStepper)
+    assert isinstance(fallen, EagerStepper)
+    for one, other in zip(simulated(compiled, tape), simulated(fallen, tape), strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12)
+
+
+def test_form_of_an_operation_that_is_not_traced_falls_back() -> None:
+    def rate(x: Any, u: Any, p: Any) -> Any:
+        return u.flow - torch.stack([x.level, x.level]).sum(dim=0, dtype=torch.float32).to(torch.int32) * p.k
+
+    assert isinstance(make_stepper(lag(rate), ()), EagerStepper)
+
+
+def test_without_a_compiler(tape: Tape, monkeypatch: pytest.MonkeyPatch) -> None:
+    compiled = make_stepper(lag(plain), ("k",))
+    monkeypatch.setenv("GREYBOX_COMPILER", "off")
+    build.library.cache_clear()
+    eager = make_stepper(lag(plain), ("k",))
+    build.library.cache_clear()
+    assert isinstance(eager, EagerStepper)
+    for one, other in zip(simulated(compiled, tape), simulated(eager, tape), strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "rate",
+    [
+        lambda x, u, p: u.flow if x.level > 0 else -p.k,
+        lambda x, u, p: u.flow if p.k > 0 else x.level,
+        lambda x, u, p: max(x.level, u.flow),
+        lambda x, u, p: x.level * float(u.flow),
+        lambda x, u, p: x.level.item() * p.k,
+    ],
+    ids=["if a state", "if a parameter", "max", "float", "item"],
+)
+def test_equations_that_branch_are_refused(rate: Any) -> None:
+    with pytest.raises(UserError, match=r"torch\.where"):
+        make_stepper(lag(rate), ())
+
+
+def test_equations_that_raise_are_refused() -> None:
+    def rate(x: Any, u: Any, p: Any) -> Any:
+        return u.flow + undefined_name  # type: ignore[name-defined]  # noqa: F821
+
+    with pytest.raises(UserError, match=r"test_routes\.py, line \d+: .*NameError.*undefined_name"):
+        make_stepper(lag(rate), ())
+    with pytest.raises(UserError, match="use functions of torch"):
+        make_stepper(lag(lambda x, u, p: np.sin(x.level)), ())
+    with pytest.raises(UserError, match=r"'stage', which it does not declare \(declared: level\)"):
+        make_stepper(lag(lambda x, u, p: x.stage), ())
+
+
+def test_every_parameter_and_state_constant_is_allowed(tape: Tape) -> None:
+    model = lag(lambda x, u, p: torch.zeros((), dtype=torch.float64))
+    y, dy = simulated(make_stepper(model, ("k",)), tape)
+    assert (y == 1.0).all()
+    assert (dy == 0.0).all()
+
+
+def test_compiled_code_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tape: Tape) -> None:
+    monkeypatch.setenv("GREYBOX_CACHE", str(tmp_path))
+    build.library.cache_clear()
+    compiled = make_stepper(lag(plain), ("k",))
+    assert isinstance(compiled, NativeStepper)
+    (file,) = tmp_path.glob("*.so")
+    before = file.stat().st_mtime_ns
+
+    def no_compiler(*_: Any) -> bool:
+        raise AssertionError("compiled again")
+
+    monkeypatch.setattr(build, "_compile", no_compiler)
+    build.library.cache_clear()  # as in a new process
+    again = make_stepper(lag(plain), ("k",))
+    build.library.cache_clear()
+    assert isinstance(again, NativeStepper)
+    assert file.stat().st_mtime_ns == before
+    np.testing.assert_array_equal(simulated(compiled, tape)[0], simulated(again, tape)[0])
+
+
+def test_damaged_cache_is_compiled_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tape: Tape) -> None:
+    monkeypatch.setenv("GREYBOX_CACHE", str(tmp_path))
+    expected = simulated(make_stepper(lag(plain), ("k",)), tape)[0]
+    build.library.cache_clear()
+    make_stepper(lag(plain), ("k",))
+    (file,) = tmp_path.glob("*.so")
+    file.unlink()  # the loaded library stays mapped; a new file takes its name
+    file.write_bytes(b"not a library")
+    build.library.cache_clear()
+    again = make_stepper(lag(plain), ("k",))
+    build.library.cache_clear()
+    assert isinstance(again, NativeStepper)
+    np.testing.assert_array_equal(simulated(again, tape)[0], expected)
+
+
+def test_stribeck_term_does_not_overflow_at_high_speed() -> None:
+    arm = RobotArm()
+    tape = Tape(np.zeros((1, 5)), np.zeros((1, 5)), np.full(5, 5e-4), np.array([0]), np.array([4]), ("one",), "zoh")
+    p = np.array([{**arm.values(), "alpha": 50.0}[d.name] for d in arm.declared_parameters])
+    run = make_stepper(arm, ("alpha", "F_cs")).run(
+        tape, whole_records(tape), p, np.array([[0.0, 0.0, 50.0, 50.0, 50.0]]), tangents=True
+    )
+    assert run.dy is not None
+    assert np.isfinite(run.y).all()
+    assert np.isfinite(run.dy).all()
