@@ -113,7 +113,7 @@ class EagerStepper:
             yield u0, (u[:, following] if tape.hold == "foh" else u0), dt[now]
 
     def _tensor(self, values: np.ndarray) -> Vector:
-        return torch.as_tensor(np.ascontiguousarray(values), dtype=self.dtype, device=self.device)
+        return torch.as_tensor(np.array(values), dtype=self.dtype, device=self.device)
 
 
 def _rk4(rates: Field, u0: Vector, u1: Vector, h: Vector, start: float, end: float) -> Field:
