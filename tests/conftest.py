@@ -2,10 +2,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any, Literal, Protocol
 
 import numpy as np
 import pytest
 from hypothesis import settings
+
+from greybox_torch.data import Channel, DataSet, InitialEntry, ParameterEntry, Recording, Role
+from greybox_torch.data.dataset import hash_of
 
 settings.register_profile("greybox", deadline=None, max_examples=30)
 settings.load_profile("greybox")
@@ -51,6 +55,49 @@ def bench(tmp_path: Path) -> Path:
 def machines() -> Path:
     """The folder of model files that tests load as a user would."""
     return Path(__file__).parent / "machines"
+
+
+class MakeDataSet(Protocol):
+    def __call__(
+        self,
+        units: dict[str, str],
+        experiments: list[dict[str, np.ndarray]],
+        *,
+        sample_time: float = 0.01,
+        hold: Literal["zoh", "foh"] = "zoh",
+        roles: list[Role] | None = None,
+        parameters: dict[str, dict[str, Any]] | None = None,
+        initial: dict[str, dict[str, Any]] | None = None,
+    ) -> DataSet: ...
+
+
+@pytest.fixture(scope="session")
+def data_set() -> MakeDataSet:
+    """Makes a data set of arrays: units by channel, then for each experiment its signals by channel (and perhaps "time")."""
+
+    def make(units, experiments, *, sample_time=0.01, hold="zoh", roles=None, parameters=None, initial=None):
+        recordings = []
+        for e, signals in enumerate(experiments):
+            length = len(next(iter(signals.values())))
+            time = np.asarray(signals.get("time", np.arange(length) * sample_time))
+            own = {name: np.asarray(signals[name], dtype=float) for name in units}
+            role = "estimation" if roles is None else roles[e]
+            step = float(np.median(np.diff(time)))
+            recordings.append(Recording(f"run {e + 1}", role, time, step, own, Path("memory"), (0, length)))
+        return DataSet(
+            name="made",
+            path=Path("dataset.toml"),
+            hold=hold,
+            channels={name: Channel(name, unit) for name, unit in units.items()},
+            recordings=tuple(recordings),
+            model=None,
+            parameters={name: ParameterEntry(**entry) for name, entry in (parameters or {}).items()},
+            initial={name: InitialEntry(**entry) for name, entry in (initial or {}).items()},
+            held_out_by_default=False,
+            sha256=hash_of(recordings),
+        )
+
+    return make
 
 
 @pytest.fixture
