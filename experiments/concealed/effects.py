@@ -211,7 +211,7 @@ def _coupling_effects() -> list[Effect]:
         Effect("gear_damping", coupling.QuadraticDamping, gear, "gear", lambda g, s, c: {"c": s * g.uniform(0.012, 0.024)},
                ((gear, "nonlinear_damping"),), ((gear, "hysteretic_spring"),), (gear,)),
         Effect("arm_damping", coupling.QuadraticDamping, arm, "arm_spring",
-               lambda g, s, c: {"c": s * g.uniform(0.02, 0.04)},
+               lambda g, s, c: {"c": s * g.uniform(0.04, 0.08)},
                ((arm, "nonlinear_damping"),), ((arm, "hysteretic_spring"),), (arm,)),
         Effect("transmission_error", coupling.TransmissionError, gear, "position", error,
                ((gear, "transmission_error"),), (("motor", "torque_ripple"), ("gearbox", "torque_ripple")), (gear,)),
