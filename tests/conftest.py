@@ -100,6 +100,32 @@ def data_set() -> MakeDataSet:
     return make
 
 
+class MotorSpeed(Protocol):
+    def __call__(
+        self,
+        voltage: np.ndarray,
+        *,
+        inertia: float = 0.02,
+        gain: float = 0.1,
+        damping: float = 0.05,
+        start: float = 0.0,
+    ) -> np.ndarray: ...
+
+
+@pytest.fixture(scope="session")
+def motor_speed() -> MotorSpeed:
+    """The exact speed of the documentation's motor at samples 10 ms apart, its voltage constant between them."""
+
+    def simulate(voltage, *, inertia=0.02, gain=0.1, damping=0.05, start=0.0):
+        decay = np.exp(-damping / inertia * 0.01)
+        speeds = [start]
+        for v in voltage[:-1]:
+            speeds.append(decay * speeds[-1] + (1 - decay) * gain / damping * v)
+        return np.array(speeds)
+
+    return simulate
+
+
 @pytest.fixture
 def edit() -> Callable[[Path, str, str], None]:
     """Replaces text in a file, where it stands exactly once."""

@@ -1,0 +1,112 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from greybox_torch.estimate.levenberg_marquardt import Quadratic, Settings, minimise
+from greybox_torch.estimate.termination import Termination
+
+OPEN = np.full(2, np.inf)
+
+
+def of_residuals(
+    residuals: Callable[[np.ndarray], np.ndarray], jacobian: Callable[[np.ndarray], np.ndarray]
+) -> Callable[[np.ndarray], Quadratic[None]]:
+    def evaluate(z: np.ndarray) -> Quadratic[None]:
+        r, j = residuals(z), jacobian(z)
+        return Quadratic(0.5 * float(r @ r), j.T @ r, j.T @ j, None)
+
+    return evaluate
+
+
+rosenbrock = of_residuals(
+    lambda z: np.array([10 * (z[1] - z[0] ** 2), 1 - z[0]]), lambda z: np.array([[-20 * z[0], 10.0], [-1.0, 0.0]])
+)
+
+
+def test_rosenbrock() -> None:
+    costs: list[float] = []
+    found = minimise(
+        rosenbrock, np.array([-1.2, 1.0]), -OPEN, OPEN, on_iteration=lambda i, cost, damping: costs.append(cost)
+    )
+    assert found is not None
+    assert found.termination.succeeded
+    np.testing.assert_allclose(found.point, [1.0, 1.0], atol=1e-6)
+    assert costs == sorted(costs, reverse=True)
+    assert found.evaluations >= found.iterations >= len(costs) > 5
+
+
+def test_linear_least_squares_in_badly_scaled_unknowns() -> None:
+    rng = np.random.default_rng(0)
+    a, b = rng.standard_normal((30, 4)) * [1e-6, 1.0, 1e3, 1e5], rng.standard_normal(30)
+    found = minimise(
+        of_residuals(lambda z: a @ z - b, lambda z: a), np.zeros(4), np.full(4, -np.inf), np.full(4, np.inf)
+    )
+    assert found is not None
+    np.testing.assert_allclose(found.point, np.linalg.lstsq(a, b, rcond=None)[0], rtol=1e-4)
+
+
+def test_optimum_at_a_bound() -> None:
+    """Within z0 ≤ 0.5 the valley's lowest point is on the bound, at z1 = z0²."""
+    found = minimise(rosenbrock, np.array([-1.2, 1.0]), -OPEN, np.array([0.5, np.inf]))
+    assert found is not None
+    np.testing.assert_allclose(found.point, [0.5, 0.25], atol=1e-6)
+
+
+def test_start_at_a_bound_leads_inwards() -> None:
+    found = minimise(rosenbrock, np.array([0.0, 0.0]), np.zeros(2), OPEN)
+    assert found is not None
+    np.testing.assert_allclose(found.point, [1.0, 1.0], atol=1e-6)
+
+
+def test_start_at_an_optimum_held_by_bounds() -> None:
+    found = minimise(rosenbrock, np.array([0.5, 0.25]), -OPEN, np.array([0.5, 0.25]))
+    assert found is not None
+    assert found.point.tolist() == [0.5, 0.25]
+
+
+def test_start_outside_the_bounds_is_brought_in() -> None:
+    found = minimise(rosenbrock, np.array([9.0, 9.0]), -OPEN, np.array([0.5, np.inf]))
+    assert found is not None
+    assert found.point[0] <= 0.5
+
+
+def test_points_that_fail_are_stepped_around() -> None:
+    tried: list[bool] = []
+
+    def fails_below(z: np.ndarray) -> Quadratic[None] | None:
+        tried.append(z[1] < -0.3)  # where the first full step leads
+        return None if tried[-1] else rosenbrock(z)
+
+    found = minimise(fails_below, np.array([-1.2, 1.0]), -OPEN, OPEN)
+    assert found is not None
+    assert any(tried)
+    np.testing.assert_allclose(found.point, [1.0, 1.0], atol=1e-5)
+
+
+def test_joint_constraint() -> None:
+    found = minimise(rosenbrock, np.array([-1.2, 1.0]), -OPEN, OPEN, admissible=lambda z: bool(z[0] + z[1] < 1.0))
+    assert found is not None
+    assert found.point.sum() < 1.0
+    assert found.model.cost < rosenbrock(np.array([-1.2, 1.0])).cost
+
+
+def test_start_that_fails() -> None:
+    assert minimise(lambda z: None, np.zeros(2), -OPEN, OPEN) is None
+
+
+def test_iteration_limit() -> None:
+    found = minimise(rosenbrock, np.array([-1.2, 1.0]), -OPEN, OPEN, settings=Settings(iterations=2))
+    assert found is not None
+    assert found.termination is Termination.iteration_limit
+    assert not found.termination.succeeded
+    assert "more iterations" in found.termination.value
+
+
+def test_unknown_that_does_not_matter() -> None:
+    evaluate = of_residuals(lambda z: np.array([z[0] - 3.0]), lambda z: np.array([[1.0, 0.0]]))
+    found = minimise(evaluate, np.array([0.0, 7.0]), -OPEN, OPEN)
+    assert found is not None
+    assert found.point == pytest.approx([3.0, 7.0], abs=1e-6)

@@ -1,0 +1,92 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from greybox_torch.estimate.residuals import input_correlation, whiteness
+
+Noise = Callable[[np.random.Generator, int], np.ndarray]
+
+
+def white(rng: np.random.Generator, n: int) -> np.ndarray:
+    return rng.standard_normal(n)
+
+
+def coloured(rng: np.random.Generator, n: int) -> np.ndarray:
+    return lfilter([1.0], [1.0, -0.9], rng.standard_normal(n + 200))[200:]
+
+
+def periodic(rng: np.random.Generator, n: int) -> np.ndarray:
+    phases = rng.uniform(0, 2 * np.pi, 39)
+    return sum(np.cos(2 * np.pi * k * np.arange(n) / 200 + phase) for k, phase in enumerate(phases, start=1))
+
+
+def with_gaps(rng: np.random.Generator, values: np.ndarray) -> np.ndarray:
+    return np.where(rng.random(len(values)) < 0.3, np.nan, values)
+
+
+def test_white_noise_stays_inside_its_bound() -> None:
+    rng = np.random.default_rng(0)
+    found = [whiteness(white(rng, 1500)) for _ in range(200)]
+    assert {f.tested for f in found} == {25}
+    assert 0.005 < sum(f.outside for f in found) / (200 * 25) < 0.015
+    assert found[0].bound == pytest.approx(2.58 / np.sqrt(1500))
+
+
+@pytest.mark.parametrize("errors", [white, coloured])
+@pytest.mark.parametrize("signal", [white, coloured, periodic])
+def test_errors_that_have_nothing_to_do_with_the_input(errors: Noise, signal: Noise) -> None:
+    """Whatever the colours, about one value in a hundred lies outside: the bound allows for them."""
+    rng = np.random.default_rng(1)
+    found = [input_correlation(errors(rng, 2000), 5.0 + signal(rng, 2000)) for _ in range(200)]
+    assert {f.tested for f in found} == {26}
+    assert 0.002 < sum(f.outside for f in found) / (200 * 26) < 0.02
+
+
+def test_gaps_do_not_raise_false_alarms() -> None:
+    rng = np.random.default_rng(2)
+    pairs = [(with_gaps(rng, white(rng, 1500)), coloured(rng, 1500)) for _ in range(100)]
+    assert sum(whiteness(e).outside for e, _ in pairs) / (100 * 25) < 0.015
+    assert sum(input_correlation(e, u).outside for e, u in pairs) / (100 * 26) < 0.02
+
+
+def test_missing_dynamics_are_seen() -> None:
+    """A tenth of the noise's size, from three samples ago."""
+    rng = np.random.default_rng(3)
+    u = white(rng, 5000)
+    errors = white(rng, 5000) + 0.1 * np.roll(u, 3)
+    found = input_correlation(errors, u)
+    assert found.largest > found.bound
+    assert found.lags[np.argmax(np.abs(found.values))] == 3
+    assert found.values[np.argmax(np.abs(found.values))] == pytest.approx(0.1, abs=0.03)
+    assert whiteness(errors).outside <= 2
+
+
+def test_feedback_shows_at_negative_lags_and_is_not_held_against_the_model() -> None:
+    rng = np.random.default_rng(4)
+    errors = white(rng, 5000)
+    found = input_correlation(errors, np.roll(errors, 4) + white(rng, 5000))
+    assert found.lags[np.argmax(np.abs(found.values))] == -4
+    assert found.outside <= 2
+
+
+def test_values_by_hand() -> None:
+    e = np.array([1.0, -2.0, 3.0, 1.0])
+    found = whiteness(e, lags=2)
+    assert found.lags.tolist() == [1, 2]
+    np.testing.assert_allclose(found.values, np.array([-2 - 6 + 3, 3 - 2]) / 15)
+    u = np.array([1.0, 0.0, 0.0, -1.0])
+    crossed = input_correlation(e, u, lags=1)
+    # e(t) u(t − k) at k = −1, 0, 1
+    np.testing.assert_allclose(crossed.values, np.array([-3.0, 0.0, -2.0]) / np.sqrt(15 * 2), atol=1e-15)
+    assert crossed.largest == pytest.approx(2 / np.sqrt(30))
+
+
+def test_nothing_to_correlate() -> None:
+    assert whiteness(np.zeros(50)).largest == 0.0
+    assert input_correlation(np.random.default_rng(0).standard_normal(50), np.full(50, 3.0)).largest == 0.0
+    assert input_correlation(np.zeros(50), np.arange(50.0)).largest == 0.0
+    assert whiteness(np.arange(12.0)).tested == 11
