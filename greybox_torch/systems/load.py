@@ -76,5 +76,7 @@ def _line_in(file: Path, error: BaseException) -> str:
     """The last line of ``file`` on the way to the error."""
     if isinstance(error, SyntaxError):
         return f", line {error.lineno}"
-    lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if Path(f.filename) == file]
+    lines = [
+        f.lineno for f in traceback.extract_tb(error.__traceback__) if Path(f.filename).resolve() == file.resolve()
+    ]
     return f", line {lines[-1]}" if lines else ""
