@@ -30,7 +30,11 @@ def run(dataset: Path, checkpoints: Sequence[Path], options: Options) -> None:
 
 
 def _names(checkpoints: Sequence[Path]) -> list[str]:
-    """The checkpoints' file names; the whole path where that alone would not tell them apart."""
-    stems = [checkpoint_name(path) for path in checkpoints]
-    taken = [START, *stems]
-    return [stem if taken.count(stem) == 1 else str(path) for stem, path in zip(stems, checkpoints, strict=True)]
+    """The checkpoints' file names; the whole path where that alone would not tell them apart, numbered where it is given twice."""
+    names: list[str] = []
+    stems = [START, *[checkpoint_name(path) for path in checkpoints]]
+    for path, stem in zip(checkpoints, stems[1:], strict=True):
+        name = stem if stems.count(stem) == 1 else str(path)
+        again = sum(other == name or other.startswith(f"{name} (") for other in names)
+        names.append(f"{name} ({again + 1})" if again else name)
+    return names

@@ -112,7 +112,8 @@ def print_scores(console: Console, data: DataSet, scores: dict[str, Sequence[Sco
         rows.append([first.experiment, first.role, first.output, *numbers, data.channels[first.output].unit])
     print_table(console, columns, rows, prose=["experiment"])
     if data.held_out_by_default:
-        console.print('The card gives no experiment the role "validation": the last quarter of each is held out.\n')
+        note = 'The card gives no experiment the role "validation": the last quarter of each is held out.\n'
+        console.print(note, soft_wrap=True)
 
 
 def _cells(score: Score) -> tuple[str | float, str | float]:

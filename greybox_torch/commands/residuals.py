@@ -16,6 +16,11 @@ from greybox_torch.estimate.residuals import Correlation, input_correlation, whi
 from greybox_torch.files import replacing
 from greybox_torch.report.residuals import ResidualRow, plot_residuals
 
+_EXPLANATION = (
+    "whiteness: largest autocorrelation at lags 1 to 25; correlation with an input: largest at lags 0 to 25.",
+    "Above the bound, something repeatable is left in the residual. What correlates with the input a better model can remove.",
+)
+
 
 def run(dataset: Path, checkpoint: Path | None, options: Options) -> None:
     """Prints the statistics of the free run's errors, with the start values or those of a checkpoint, and draws them.
@@ -91,10 +96,6 @@ def _print(options: Options, title: str, rows: list[ResidualRow], result: list[d
             [row.recording.name, row.recording.role, row.output.name, numbers["rmse"], row.output.unit, *correlations]
         )
     print_table(console, columns, lines, prose=["experiment"])
-    console.print(
-        Text(
-            "whiteness: largest autocorrelation at lags 1 to 25; correlation with an input: largest at lags 0 to 25. Above the bound, "
-            "something repeatable is left in the residual; the correlation with the input is what a better model can remove."
-        )
-    )
+    for line in _EXPLANATION:
+        console.print(line, soft_wrap=True)
     console.print(Text(f"Figure: {figure}"), soft_wrap=True)

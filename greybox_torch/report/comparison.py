@@ -29,34 +29,28 @@ def plot_comparison(
         figure.suptitle(f"{recording.name} ({recording.role})", fontweight="bold")
         grid = figure.add_gridspec(2 * len(outputs), 2, width_ratios=(1.6, 1), height_ratios=(1.4, 1) * len(outputs))
         for k, output in enumerate(outputs):
-            runs = {name: values[:, k] for name, values in simulated.items()}
             measured = recording.signals[output.name]
-            ends = _worst(measured, list(runs.values())[-1])
-            for column, part in enumerate((slice(None), ends)):
+            runs = {legend[name]: values[:, k] for name, values in simulated.items()}
+            worst = _worst(measured, list(runs.values())[-1])
+            for column, part in enumerate((slice(None), worst)):
                 above = figure.add_subplot(grid[2 * k, column])
                 below = figure.add_subplot(grid[2 * k + 1, column], sharex=above)
-                _plot_signals(
-                    above, recording.time[part], measured[part], {n: v[part] for n, v in runs.items()}, legend
-                )
-                _plot_errors(below, recording.time[part], measured[part], {n: v[part] for n, v in runs.items()})
-                below.set_xlabel("time [s]")
+                pieces = {label: values[part] for label, values in runs.items()}
+                _plot_signals(above, recording.time[part], measured[part], pieces)
+                _plot_errors(below, recording.time[part], measured[part], pieces)
                 if column == 0:
                     above.set_ylabel(with_unit(output.name, output.unit))
                     below.set_ylabel(with_unit("error", output.unit))
-                    figure.legend(
-                        *above.get_legend_handles_labels(), loc="outside upper right", ncols=3
-                    ) if k == 0 else None
                 else:
                     above.set_title("where the error is largest", fontsize=9)
+        figure.legend(*above.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
 
 
-def _plot_signals(
-    axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mapping[str, np.ndarray], legend: Mapping[str, str]
-) -> None:
+def _plot_signals(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mapping[str, np.ndarray]) -> None:
     axes.plot(time, measured, color="black", linewidth=1.0, label="measured")
-    for name, values in runs.items():
-        axes.plot(time, _finite(values), linewidth=0.9, label=legend[name])
+    for label, values in runs.items():
+        axes.plot(time, _finite(values), linewidth=0.9, label=label)
     axes.margins(x=0)
     axes.tick_params(labelbottom=False)
 
@@ -66,6 +60,7 @@ def _plot_errors(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mappi
     for values in runs.values():
         axes.plot(time, measured - _finite(values), linewidth=0.8)
     axes.margins(x=0)
+    axes.set_xlabel("time [s]")
 
 
 def _finite(values: np.ndarray) -> np.ndarray:
@@ -76,7 +71,7 @@ def _finite(values: np.ndarray) -> np.ndarray:
 def _worst(measured: np.ndarray, simulated: np.ndarray) -> slice:
     """The stretch of the record with the largest squared error."""
     size = max(10, round(_DETAIL * len(measured)))
-    squared = np.nan_to_num(_finite(measured - simulated)) ** 2
+    squared = np.nan_to_num(_finite(measured - simulated)).clip(-1e100, 1e100) ** 2
     total = np.cumsum(np.concatenate([[0.0], squared]))
     begin = int(np.argmax(total[size:] - total[:-size])) if len(measured) > size else 0
     return slice(begin, begin + size)
