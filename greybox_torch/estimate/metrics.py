@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 
+@np.errstate(over="ignore")
 def fit_percent(measured: np.ndarray, simulated: np.ndarray) -> float:
     """100 (1 − ‖y − ŷ‖ / ‖y − ȳ‖) over the samples (N,) that are not missing; −inf where the simulation is not finite.
 
@@ -18,6 +19,7 @@ def fit_percent(measured: np.ndarray, simulated: np.ndarray) -> float:
     return float(100.0 * (1.0 - np.linalg.norm(y - s) / spread)) if spread > 0 else float("-inf")
 
 
+@np.errstate(over="ignore")
 def root_mean_square(measured: np.ndarray, simulated: np.ndarray) -> float:
     """Root mean square error over the samples (N,) that are not missing, in the signal's unit; inf where not finite."""
     known = ~np.isnan(measured)
