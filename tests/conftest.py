@@ -126,6 +126,68 @@ def motor_speed() -> MotorSpeed:
     return simulate
 
 
+MOTOR_CARD = """\
+name = "Motor on the bench"
+sample_time = 0.01
+hold = "zoh"
+
+[channels]
+voltage = { column = "v", unit = "V" }
+speed = { column = "w", unit = "rad/s" }
+
+[[experiment]]
+name = "Steps"
+file = "steps.csv"
+role = "estimation"
+
+[[experiment]]
+name = "More steps"
+file = "more.csv"
+role = "estimation"
+
+[[experiment]]
+name = "Sweep"
+file = "sweep.csv"
+role = "validation"
+
+[model]
+name = "my_motor.py:Motor"
+
+[model.parameters]
+J = { value = 0.03 }
+b = { value = 0.08, upper = 1.0 }
+"""
+
+
+@pytest.fixture
+def motor_folder(tmp_path: Path, machines: Path, motor_speed: MotorSpeed) -> Callable[..., Path]:
+    """Makes a folder with the documentation's motor and recordings of it: a card, a model file, three experiments.
+
+    The true J is 0.02 and b 0.05. Voltages below ``dead_zone`` do nothing to the true motor, which the model does not know.
+    """
+
+    def make(dead_zone: float = 0.0, noise: float = 0.02) -> Path:
+        folder = tmp_path / "motor"
+        folder.mkdir()
+        (folder / "my_motor.py").write_text((machines / "motor.py").read_text())
+        (folder / "dataset.toml").write_text(MOTOR_CARD)
+        rng, time = np.random.default_rng(0), np.arange(600) * 0.01
+        sweep = 2.5 * np.sin(2 * np.pi * 0.3 * time * (1 + 0.3 * time))
+        voltages = {
+            "steps": np.repeat(rng.uniform(-3, 3, 30), 20),
+            "more": np.repeat(rng.uniform(-3, 3, 16), 25),
+            "sweep": np.floor(sweep * 20) / 20,
+        }
+        for name, voltage in voltages.items():
+            acting = np.sign(voltage) * np.maximum(np.abs(voltage) - dead_zone, 0.0)
+            speed = motor_speed(acting, start=0.3) + rng.normal(0, noise, len(voltage))
+            rows = np.column_stack([voltage, speed])
+            np.savetxt(folder / f"{name}.csv", rows, delimiter=",", header="v,w", comments="", fmt="%.12g")
+        return folder
+
+    return make
+
+
 @pytest.fixture
 def edit() -> Callable[[Path, str, str], None]:
     """Replaces text in a file, where it stands exactly once."""

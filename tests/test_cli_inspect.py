@@ -119,7 +119,7 @@ def test_card_that_does_not_fit_the_model(bench: Path, edit: Edit, old: str, new
         ("no_such_system", "", "model 'no_such_system' is unknown"),
         ("bench/nowhere.py:Motor", "", "bench/nowhere.py: no such file"),
         ("bench/my_motor.py:Engine", MOTOR, "'Engine' is not defined"),
-        ("bench/my_motor.py:Motor", "1 / 0", "my_motor.py: running it raised ZeroDivisionError"),
+        ("bench/my_motor.py:Motor", "1 / 0", "my_motor.py, line 1: running it raised ZeroDivisionError"),
     ],
 )
 def test_model_that_cannot_be_loaded(bench: Path, model: str, content: str, expected: str) -> None:
