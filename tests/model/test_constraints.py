@@ -9,7 +9,7 @@ from greybox_torch.model import GreyBoxModel, Output, Parameter, State
 from greybox_torch.model.constraints import parameter_scale, project
 
 INFINITE = float("inf")
-numbers = st.floats(-1e6, 1e6)
+numbers = st.floats(-1e6, 1e6).map(lambda v: round(v, 9))
 
 
 def one_parameter(value: float, lower: float | None, upper: float | None) -> GreyBoxModel:

@@ -315,15 +315,80 @@ def test_a_model_without_inputs_and_parameters() -> None:
 
 
 @pytest.mark.parametrize(
-    ("lengths", "length"), [((100,), 30), ((100, 64), 32), ((10,), 30), ((95, 7), 10), ((101,), 1)]
+    ("lengths", "length"), [((100,), 30), ((100, 64), 32), ((10,), 30), ((95, 7), 10), ((101,), 1), ((45,), 30)]
 )
 def test_cut(lengths: tuple[int, ...], length: int) -> None:
+    """Every sample is in one window, no window crosses experiments, and all are about as long as they should be."""
     tape = arm_tape(lengths)
     windows = cut(tape, length)
-    assert windows.steps == min(length, max(lengths))
+    sizes = windows.last - windows.start + 1
     experiment = np.searchsorted(tape.first, windows.start, side="right") - 1
     assert (windows.last <= tape.last[experiment]).all()
-    assert (windows.last - windows.start < windows.steps).all()
-    covered = np.concatenate([np.arange(a, b + 1) for a, b in zip(windows.start, windows.last, strict=True)])
-    missing = np.setdiff1d(np.arange(sum(lengths)), covered)
-    assert len(missing) <= len(lengths) * length / 2
+    samples = [np.arange(a, b + 1) for a, b in zip(windows.start, windows.last, strict=True)]
+    assert np.concatenate(samples).tolist() == list(range(sum(lengths)))
+    assert windows.steps == sizes.max() <= 1.5 * length
+    assert (sizes >= np.minimum(length / 2, np.array(lengths)[experiment])).all()
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+def test_normal_matrices(compiled: bool) -> None:
+    """[J e]ᵀ[J e] summed as the windows go, against the sensitivities kept and multiplied afterwards."""
+    tape = arm_tape((50, 33))
+    y = np.random.default_rng(2).normal(15.0, 2.0, tape.y.shape)
+    y[0, [3, 4, 60]] = np.nan
+    tape = Tape(tape.u, y, tape.dt, tape.first, tape.last, tape.names, tape.hold)
+    windows = Windows(np.array([0, 20, 50]), np.array([19, 49, 82]), 33)
+    names, x0 = ("J", "k_g1", "F_c"), np.tile(X0, (3, 1))
+    stepper = native(names=names) if compiled else EagerStepper.of(ARM, names, "cpu", "double")
+    directions = np.broadcast_to(np.eye(5)[[2, 4]], (3, 2, 5))
+    options: dict[str, Any] = {"tangents": True, "start_directions": directions, "substeps": 2}
+    kept = stepper.run(tape, windows, P, x0, **options)
+    summed = stepper.run(tape, windows, P, x0, weights=np.array([0.3]), **options)
+    assert kept.dy is not None
+    assert summed.normal is not None
+    assert summed.dy is None
+    for w, (first, last) in enumerate(zip(windows.start, windows.last, strict=True)):
+        size = last - first + 1
+        errors = 0.3 * (y[0, first : last + 1] - kept.y[w, :size, 0])
+        columns = np.column_stack([0.3 * kept.dy[w, :size, 0], errors])[~np.isnan(errors)]
+        expected = columns.T @ columns
+        np.testing.assert_allclose(summed.normal[w], expected, rtol=1e-10, atol=1e-10 * np.abs(expected).max())
+
+
+def test_parameters_that_are_zero_throughout() -> None:
+    """What a screen asks: the sensitivity to a parameter at zero, from code in which it is zero."""
+    tape = arm_tape((60,))
+    p = np.array([{**dict(zip(PARAMETERS, P, strict=True)), "k_g3": 0.0, "d_a": 0.0}[n] for n in PARAMETERS])
+    names = ("k_g1", "k_g3", "d_a")
+    plain = native(names=names).run(tape, whole_records(tape), p, X0[None], tangents=True)
+    at_zero = native(names=names, at_zero=("k_g3", "d_a")).run(tape, whole_records(tape), P, X0[None], tangents=True)
+    assert plain.dy is not None
+    assert at_zero.dy is not None
+    np.testing.assert_allclose(at_zero.y, plain.y, rtol=1e-13)
+    np.testing.assert_allclose(at_zero.dy, plain.dy, rtol=1e-11, atol=1e-12 * np.abs(plain.dy).max())
+
+
+def test_states_that_act_on_nothing() -> None:
+    """A position that no output sees is simulated like any other state."""
+
+    class Travelled(Oscillator):
+        states = [*Oscillator.states, State("way")]
+
+        def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+            return {**super().derivative(x, u, p, port), "way": x.v}
+
+    tape = Tape(
+        np.sin(np.arange(30.0))[None], np.zeros((1, 30)), np.full(30, 0.1), np.array([0]), np.array([29]), ("",), "zoh"
+    )
+    p, x0 = np.array([2.0, 0.1]), np.array([[1.0, -0.5, 7.0]])
+    run = native(Travelled(), ("w",)).run(tape, whole_records(tape), p, x0, tangents=True, keep_states=True)
+    other = EagerStepper.of(Travelled(), ("w",), "cpu", "double").run(
+        tape, whole_records(tape), p, x0, tangents=True, keep_states=True
+    )
+    assert run.states is not None
+    assert other.states is not None
+    np.testing.assert_allclose(run.states, other.states, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(run.states[0, :, 2] - 7.0, run.states[0, :, 0] - 1.0, atol=1e-12)
+    assert run.dy is not None
+    assert other.dy is not None
+    np.testing.assert_allclose(run.dy, other.dy, rtol=1e-12, atol=1e-12)
