@@ -39,6 +39,7 @@ def plot_residuals(rows: Sequence[ResidualRow], title: str) -> Figure:
             _plot_correlation(places[1], row.whiteness, "autocorrelation")
             for place, (name, correlation) in zip(places[2:], row.inputs.items(), strict=True):
                 _plot_correlation(place, correlation, f"correlation with {name} earlier by the lag")
+        figure.legend(*axes[0, 1].get_legend_handles_labels(), loc="outside lower center")
     return figure
 
 
@@ -59,4 +60,3 @@ def _plot_correlation(axes: Axes, correlation: Correlation, title: str) -> None:
     axes.set_ylim(-reach, reach)
     axes.set_title(title)
     axes.set_xlabel("lag [samples]")
-    axes.legend(loc="lower right")
