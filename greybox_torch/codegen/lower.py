@@ -67,10 +67,11 @@ def lower(model: GreyBoxModel, sensitive: Sequence[str], at_zero: Sequence[str] 
     pieces = [jacobian(graph, roots, leaves) for roots in (rates, outputs) for leaves in (leaves_x, leaves_p)]
     zeros = {graph.leaf("p", names.index(name)) for name in at_zero}
     if zeros:
-        place = _Substitution(graph, zeros)
-        rates, outputs = tuple(map(place, rates)), tuple(map(place, outputs))
+        every = [*rates, *outputs, *(node for piece in pieces for row in piece for node in row.values())]
+        place = _with_zeros(graph, every, zeros)
+        rates, outputs = tuple(place[n] for n in rates), tuple(place[n] for n in outputs)
         pieces = [
-            [{v: n for v, n in ((v, place(n)) for v, n in row.items()) if graph.value_of(n) != 0.0} for row in piece]
+            [{v: place[n] for v, n in row.items() if graph.value_of(place[n]) != 0.0} for row in piece]
             for piece in pieces
         ]
     return Equations(
@@ -101,19 +102,14 @@ def _acting_states(rates_by_state: list[Partials], outputs_by_state: list[Partia
     return max(acting) + 1 if acting else len(leaves)
 
 
-class _Substitution:
-    """Rebuilds expressions with some leaves replaced by zero, simplifying on the way."""
-
-    def __init__(self, graph: Graph, zeros: set[int]) -> None:
-        self._graph = graph
-        self._done = {leaf: graph.constant(0.0) for leaf in zeros}
-
-    def __call__(self, root: int) -> int:
-        graph = self._graph
-        for index in graph.needed([root]):
-            if index in self._done:
-                continue
-            node = graph.nodes[index]
-            arguments = tuple(self._done[a] for a in node.arguments)
-            self._done[index] = index if arguments == node.arguments else graph.apply(node.operation, *arguments)
-        return self._done[root]
+def _with_zeros(graph: Graph, roots: Sequence[int], zeros: set[int]) -> dict[int, int]:
+    """What every node that ``roots`` need becomes when some leaves are zero."""
+    place: dict[int, int] = {}
+    for index in graph.needed(roots):
+        node = graph.nodes[index]
+        arguments = tuple(place[a] for a in node.arguments)
+        if index in zeros:
+            place[index] = graph.constant(0.0)
+        else:
+            place[index] = index if arguments == node.arguments else graph.apply(node.operation, *arguments)
+    return place

@@ -10,10 +10,16 @@ import torch
 from greybox_torch.diagnose.surroundings import driving_body
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.forces import TorqueRipple
+from greybox_torch.mechanisms.friction import PositionDependentFriction
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
+from greybox_torch.mechanisms.transmission import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Port, Signals
+
+LEAST_RIPPLE_ORDER = 1.2
+"""Below this order a force periodic in position is gravity's, not ripple."""
 
 FLEXIBLE = {
     "body": ("speed", "position"),
@@ -22,6 +28,10 @@ FLEXIBLE = {
     "actuator": ("input",),
 }
 """Signals that the flexible curve is tried over, by kind of port."""
+
+
+PERIODIC = (TorqueRipple, PositionDependentFriction, TransmissionError)
+"""Mechanisms whose order has to be found in the data first."""
 
 
 def candidates(
@@ -38,6 +48,22 @@ def candidates(
                 and (shifted or not mechanism.kinematic)
             ):
                 found.append(attach(model, port.name, mechanism, shifted))
+    return found
+
+
+def periodic_candidates(model: GreyBoxModel, problem: Problem, orders: Iterable[float]) -> list[Attachment]:
+    """Periodic mechanisms at every port that they fit, at the given orders (gravity, order one, stands by itself)."""
+    found = []
+    for order in orders:
+        for port in model.ports:
+            if isinstance(port, Body):
+                found.append(attach(model, port.name, PositionDependentFriction(order)))
+                if order > LEAST_RIPPLE_ORDER:
+                    found.append(attach(model, port.name, TorqueRipple(order)))
+            elif isinstance(port, Coupling) and driving_body(model) is not None:
+                shifted = shifted_state(model, problem, port)
+                if shifted:
+                    found.append(attach(model, port.name, TransmissionError(order), shifted))
     return found
 
 

@@ -15,12 +15,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from greybox_torch.estimate.problem import Problem
-from greybox_torch.estimate.window_fit import WindowFit
+from greybox_torch.estimate.problem import Problem, measured_at, problem_for
+from greybox_torch.estimate.window_fit import WindowFit, carried_starts
 from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
 from greybox_torch.mechanisms.mechanism import Probe, Surroundings
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulate.stepper import Stepper, make_stepper, whole_records
+from greybox_torch.simulate.stepper import Stepper, make_stepper
 
 FOLDS = 6
 
@@ -88,71 +88,90 @@ class Screen:
 
     def look(self, fitted: WindowFit, substeps: int) -> list[Look]:
         """Score every probe on windows whose parameters and start states were fitted."""
-        normal = self._normal_matrices(fitted, substeps)
+        normal = self.matrices(fitted, substeps)
         n_p = len(self.free_names)
-        folds = np.array_split(np.arange(len(normal)), min(FOLDS, len(normal)))
+        hold = _hold(fitted, n_p)
         total = normal.sum(axis=0)
-        parts = [normal[f].sum(axis=0) for f in folds]
+        parts = [normal[f].sum(axis=0) for f in np.array_split(np.arange(len(normal)), min(FOLDS, len(normal)))]
         results, at = [], n_p
         for group, (attachment, probe) in zip(self.directions, self.looks, strict=True):
             columns = np.arange(at, at + len(group))
             at += len(group)
-            explained, size = _explained(total, n_p, columns)
-            results.append(
-                Look(attachment, probe, fitted.windows.steps, explained, _predicted(total, parts, n_p, columns), size)
-            )
+            explained, size = _explained(total, n_p, columns, hold)
+            predicted = _predicted(total, parts, n_p, columns, hold)
+            results.append(Look(attachment, probe, fitted.windows.steps, explained, predicted, size))
         return results
 
-    def _normal_matrices(self, fitted: WindowFit, substeps: int) -> np.ndarray:
+    def with_probes(self, values: Sequence[Mapping[str, float]]) -> Screen:
+        """The same compiled screen looking at other shapes: new values for every probe, in order."""
+        looks = tuple((a, replace(p, values={**p.values, **v})) for (a, p), v in zip(self.looks, values, strict=True))
+        return replace(self, looks=looks)
+
+    def matrices(self, fitted: WindowFit, substeps: int) -> np.ndarray:
         """Per window the normal matrix (W, d, d) of [parameters, probes, residual], window start states projected out."""
         problem, windows = fitted.problem, fitted.windows
         values = self.values(problem)
         tape = self.model.prepared(problem.tape, values)
-        starts = self._starts(fitted, values, tape, substeps)
+        starts = self._starts(fitted, values, substeps)
         count, n_base = len(windows.start), fitted.starts.shape[1]
         eye = np.zeros((count, n_base, starts.shape[1]))
         eye[:, np.arange(n_base), np.arange(n_base)] = 1.0
-        run = self.stepper.run(tape, windows, values, starts, tangents=True, start_directions=eye, substeps=substeps, weights=problem.weights)
+        run = self.stepper.run(
+            tape,
+            windows,
+            values,
+            starts,
+            tangents=True,
+            start_directions=eye,
+            substeps=substeps,
+            weights=problem.weights,
+        )
         assert run.normal is not None
         d = run.normal.shape[1] - 1 - n_base
         order = np.concatenate([np.arange(d), [d + n_base], np.arange(d, d + n_base)])
-        finite = np.isfinite(run.normal).all(axis=(1, 2))
-        full = run.normal[finite][:, order][:, :, order]
+        full = np.where(_failed(run.normal), 0.0, run.normal)[:, order][:, :, order]
         inner, cross, own = full[:, : d + 1, : d + 1], full[:, : d + 1, d + 1 :], full[:, d + 1 :, d + 1 :]
         diagonal = np.einsum("wii->wi", own)
         own = own + np.eye(n_base) * (1e-9 * diagonal + 1e-12 * diagonal.max())[:, :, None]
         return inner - cross @ np.linalg.solve(own, np.swapaxes(cross, 1, 2))
 
-    def _starts(self, fitted: WindowFit, values: np.ndarray, tape, substeps: int) -> np.ndarray:  # noqa: ANN001
-        """Window starts of the screen's model: the fitted ones, and for memories what the free run has there."""
-        problem, n_base = fitted.problem, fitted.starts.shape[1]
-        names = [s.name for s in self.model.states]
-        initial = np.zeros((len(problem.initial), len(names)))
-        initial[:, :n_base] = problem.initial
+    def _starts(self, fitted: WindowFit, values: np.ndarray, substeps: int) -> np.ndarray:
+        """Window starts of the screen's model: the fitted ones, memories carried along from window to window."""
+        n_base = fitted.starts.shape[1]
+        problem = problem_for(
+            fitted.problem, self.model, dict(zip((p.name for p in self.model.declared_parameters), values, strict=True))
+        )
+        experiment = np.searchsorted(problem.tape.first, fitted.windows.start, side="right") - 1
+        starts = problem.initial[experiment]
+        starts[:, :n_base] = fitted.starts
         for i, state in enumerate(self.model.states[n_base:], start=n_base):
             if state.initial == "measured":
-                initial[:, i] = _measured(problem, self.model, state)
-        run = self.stepper.run(tape, whole_records(problem.tape), values, initial, substeps=substeps, keep_states=True)
-        assert run.states is not None
-        experiment = np.searchsorted(problem.tape.first, fitted.windows.start, side="right") - 1
-        offset = fitted.windows.start - problem.tape.first[experiment]
-        starts = np.nan_to_num(run.states[experiment, offset], posinf=0.0, neginf=0.0)
-        starts[:, :n_base] = fitted.starts
-        return starts
+                starts[:, i] = measured_at(self.model, state, problem.tape, fitted.windows.start)
+        carried = np.arange(starts.shape[1]) >= n_base
+        return carried_starts(replace(problem, carried=carried), self.stepper, fitted.windows, starts, substeps)
 
 
-def _measured(problem: Problem, model: GreyBoxModel, state) -> np.ndarray:  # noqa: ANN001
-    from greybox_torch.estimate.problem import measured_at
+def _failed(normal: np.ndarray) -> np.ndarray:
+    """Entries (1, d, d) of directions whose tangents are not finite in some window: such a probe is passed over."""
+    bad = ~np.isfinite(np.einsum("wii->wi", normal)).all(axis=0)
+    return (bad[:, None] | bad[None, :])[None]
 
-    return measured_at(model, state, problem.tape, problem.tape.first)
+
+def _hold(fitted: WindowFit, n_p: int) -> np.ndarray:
+    """Curvature (n_p,) that keeps the linear answer near the parameters it is valid for: steps beyond their own size cost."""
+    values = fitted.problem.values[fitted.problem.free]
+    scale = np.where(values != 0.0, values, np.inf)
+    return 10.0 * fitted.mean_square / scale[:n_p] ** 2
 
 
-def _solve(matrix: np.ndarray, unknown: np.ndarray) -> np.ndarray:
-    """Least-squares values of ``unknown`` columns for the residual in the last column of a normal matrix."""
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(matrix)[unknown], 1e-300))
-    inner = matrix[np.ix_(unknown, unknown)] * scale[:, None] * scale[None, :]
-    inner[np.diag_indices_from(inner)] += 1e-9
-    return scale * np.linalg.solve(inner, matrix[unknown, -1] * scale)
+def _solve(matrix: np.ndarray, unknown: np.ndarray, hold: np.ndarray) -> np.ndarray:
+    """Least-squares values of ``unknown`` columns (the first of which are held) for the residual in the last column."""
+    inner = matrix[np.ix_(unknown, unknown)].copy()
+    inner[np.arange(len(hold)), np.arange(len(hold))] += hold
+    diagonal = np.diag(inner)
+    scale = np.where(diagonal > 0, 1.0 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)), 0.0)
+    scaled = inner * scale[:, None] * scale[None, :] + 1e-9 * np.eye(len(scale))
+    return scale * np.linalg.solve(scaled, matrix[unknown, -1] * scale)
 
 
 def _energy(matrix: np.ndarray, unknown: np.ndarray, size: np.ndarray) -> float:
@@ -161,18 +180,20 @@ def _energy(matrix: np.ndarray, unknown: np.ndarray, size: np.ndarray) -> float:
     return float(matrix[-1, -1] - 2 * size @ matrix[unknown, -1] + size @ inner @ size)
 
 
-def _explained(total: np.ndarray, n_p: int, columns: np.ndarray) -> tuple[float, np.ndarray]:
+def _explained(total: np.ndarray, n_p: int, columns: np.ndarray, hold: np.ndarray) -> tuple[float, np.ndarray]:
     base, both = np.arange(n_p), np.concatenate([np.arange(n_p), columns])
-    before = _energy(total, base, _solve(total, base))
-    size = _solve(total, both)
+    before = _energy(total, base, _solve(total, base, hold))
+    size = _solve(total, both, hold)
     return (before - _energy(total, both, size)) / max(before, 1e-300), size[n_p:]
 
 
-def _predicted(total: np.ndarray, parts: Sequence[np.ndarray], n_p: int, columns: np.ndarray) -> float:
+def _predicted(
+    total: np.ndarray, parts: Sequence[np.ndarray], n_p: int, columns: np.ndarray, hold: np.ndarray
+) -> float:
     base, both = np.arange(n_p), np.concatenate([np.arange(n_p), columns])
     before = after = 0.0
     for part in parts:
         rest = total - part
-        before += _energy(part, base, _solve(rest, base))
-        after += _energy(part, both, _solve(rest, both))
+        before += _energy(part, base, _solve(rest, base, hold))
+        after += _energy(part, both, _solve(rest, both, hold))
     return (before - after) / max(before, 1e-300)

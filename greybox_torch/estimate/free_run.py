@@ -77,7 +77,9 @@ class FreeRun:
             measured = tape.y[:, tape.span(e)].T
             known = ~np.isnan(measured)
             errors.append(((run.y[e, :n] - measured) * weights)[known])
-            jacobians.append(np.zeros((known.sum(), 0)) if run.dy is None else (run.dy[e, :n] * weights[:, None])[known])
+            jacobians.append(
+                np.zeros((known.sum(), 0)) if run.dy is None else (run.dy[e, :n] * weights[:, None])[known]
+            )
         return errors, jacobians
 
     def _run(self, z: np.ndarray, weights: np.ndarray | None) -> Run:

@@ -21,7 +21,8 @@ class Problem:
 
     ``values`` (n_p,) and ``lower``, ``upper`` in physical units, in the order of the model's parameters; ``free`` (n_p,) says which
     are estimated. ``initial`` (E, n_x) start states per experiment, ``initial_free`` (n_x,) which are estimated. ``weights`` (n_y,)
-    multiply the errors of the outputs.
+    multiply the errors of the outputs. ``carried`` (n_x,) marks states (integrated positions, time, memories) that are never free in
+    a window but carried into it from the one before.
     """
 
     model: GreyBoxModel
@@ -34,6 +35,7 @@ class Problem:
     initial: np.ndarray
     initial_free: np.ndarray
     weights: np.ndarray
+    carried: np.ndarray
 
     @property
     def free_names(self) -> tuple[str, ...]:
@@ -96,6 +98,7 @@ def make_problem(
         initial=_start_states(dataset, model, tape),
         initial_free=np.array([not _initial_fixed(s, dataset) for s in model.states], dtype=bool),
         weights=_weights(tape),
+        carried=np.zeros(len(model.states), dtype=bool),
     )
     if not problem.admissible(problem.values):
         broken = ", ".join(model.admissible(_tensors(problem)))
@@ -103,6 +106,38 @@ def make_problem(
             f"{dataset.path}: [model.parameters] break a constraint of {model.title}: these must be positive: {broken}"
         )
     return problem
+
+
+def problem_for(problem: Problem, model: GreyBoxModel, values: Mapping[str, float]) -> Problem:
+    """``problem`` restated for an augmented ``model``: its own parameters as in ``problem``, those of effects free unless declared fixed."""
+    own = {n: i for i, n in enumerate(problem.names)}
+    declared = list(model.declared_parameters)
+    count = len(problem.model.states)
+    extra = np.zeros((len(problem.initial), len(model.states) - count))
+    fresh = Problem(
+        model=model,
+        tape=problem.tape,
+        names=tuple(p.name for p in declared),
+        values=np.array(
+            [values.get(p.name, problem.values[own[p.name]] if p.name in own else p.value) for p in declared]
+        ),
+        lower=np.array([problem.lower[own[p.name]] if p.name in own else p.bounds[0] for p in declared]),
+        upper=np.array([problem.upper[own[p.name]] if p.name in own else p.bounds[1] for p in declared]),
+        free=np.array([problem.free[own[p.name]] if p.name in own else not p.fixed for p in declared], dtype=bool),
+        initial=np.hstack([problem.initial, extra]),
+        initial_free=np.concatenate([problem.initial_free, [not s.fixed for s in model.states[count:]]]).astype(bool),
+        weights=problem.weights,
+        carried=np.concatenate([problem.carried[:count], [s.fixed for s in model.states[count:]]]).astype(bool),
+    )
+    return replace(fresh, values=np.clip(fresh.values, fresh.lower, fresh.upper), initial=_memory_starts(fresh, count))
+
+
+def _memory_starts(problem: Problem, count: int) -> np.ndarray:
+    initial = problem.initial.copy()
+    for i, state in enumerate(problem.model.states[count:], start=count):
+        if state.initial == "measured":
+            initial[:, i] = measured_at(problem.model, state, problem.tape, problem.tape.first)
+    return initial
 
 
 def _tensors(problem: Problem) -> Signals:

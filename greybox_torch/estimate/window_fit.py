@@ -9,7 +9,7 @@ Source: H. G. Bock, "Recent advances in parameter identification techniques for 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,13 +20,26 @@ from greybox_torch.simulate.stepper import Stepper, Windows, cut
 
 @dataclass(frozen=True)
 class WindowFit:
-    """Result: the problem with its parameters improved, window starts (W, n_x), mean squared weighted error, evaluations used."""
+    """Result: the problem with its parameters improved, window starts (W, n_x), mean squared weighted error, energy of the error per
+    window (W,), evaluations used.
+    """
 
     problem: Problem
     windows: Windows
     starts: np.ndarray
     mean_square: float
+    energies: np.ndarray
     evaluations: int
+
+
+@dataclass(frozen=True)
+class _Hold:
+    """How weakly the unknowns are held where they began: weights of squared distances, of start states (n_x,) and parameters (n_p,)."""
+
+    starts: np.ndarray
+    weights: np.ndarray
+    values: np.ndarray
+    value_weights: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -38,6 +51,10 @@ class _Pass:
     hsp: np.ndarray
     gs: np.ndarray
     mean_square: float
+    energies: np.ndarray
+    open_states: np.ndarray
+    away: np.ndarray
+    moved: np.ndarray
 
 
 def fit_windows(
@@ -46,31 +63,35 @@ def fit_windows(
     length: int,
     *,
     starts: np.ndarray | None = None,
+    shorter: WindowFit | None = None,
     substeps: int = 1,
     settings: Settings = ROUGH,
 ) -> WindowFit | None:
     """Estimate the free parameters on windows of ``length`` samples with free start states; None where even these overflow.
 
     Args:
-        starts: window start states (W, n_x) to begin with; by default the measured values where a state is measured, else the
-            model's start value.
+        starts: window start states (W, n_x) to begin with; by default those of ``shorter`` at the same samples, else the measured
+            values where a state is measured and the model's start value where not.
+        shorter: a fit on shorter windows, of this model or of the model that it extends.
     """
     windows = cut(problem.tape, length)
-    states = rough_starts(problem, windows) if starts is None else starts
-    nothing_held = np.zeros(states.shape[1])
-    first = _evaluate(problem, stepper, windows, states, states, nothing_held, substeps)
-    if first is None:
+    states = starts
+    if states is None:
+        states = rough_starts(problem, windows) if shorter is None else _starts_of(shorter, problem, windows)
+        states = carried_starts(problem, stepper, windows, states, substeps)
+    here = _evaluate(problem, stepper, windows, states, None, substeps)
+    if here is None:
         return None
-    hold = 1e-4 * first.mean_square * windows.steps / _spread(problem, states) ** 2
-    here = first
-    reference, evaluations, damping, growth = states, 1, 1e-2, 2.0
+    hold = _weak_hold(problem, states, here.mean_square, windows.steps)
+    here = _held(here, hold)
+    evaluations, damping, growth = 1, 1e-2, 2.0
     for _ in range(settings.iterations):
         accepted = False
         for _ in range(settings.trials):
             trial, trial_states = _stepped(problem, here, states, damping)
             there = None
             if problem.admissible(trial.values):
-                there = _evaluate(trial, stepper, windows, trial_states, reference, hold, substeps)
+                there = _evaluate(trial, stepper, windows, trial_states, hold, substeps)
                 evaluations += 1
             if there is not None and there.cost < here.cost:
                 change = (here.cost - there.cost) / here.cost
@@ -80,7 +101,7 @@ def fit_windows(
             damping, growth = damping * growth, growth * 2.0
         if not accepted or change < settings.tolerance:
             break
-    return WindowFit(problem, windows, states, here.mean_square, evaluations)
+    return WindowFit(problem, windows, states, here.mean_square, here.energies, evaluations)
 
 
 def rough_starts(problem: Problem, windows: Windows) -> np.ndarray:
@@ -94,11 +115,50 @@ def rough_starts(problem: Problem, windows: Windows) -> np.ndarray:
     return states
 
 
-def _spread(problem: Problem, states: np.ndarray) -> np.ndarray:
-    """How far a start state may be from its first guess before it is held back: generous, so that the hold is weak."""
-    outputs = np.nanstd(problem.tape.y)
+def _starts_of(shorter: WindowFit, problem: Problem, windows: Windows) -> np.ndarray:
+    """Start states from a fit on shorter windows, where one of those begins; rough ones elsewhere and for states it does not have."""
+    states = rough_starts(problem, windows)
+    index = np.minimum(np.searchsorted(shorter.windows.start, windows.start), len(shorter.windows.start) - 1)
+    same = shorter.windows.start[index] == windows.start
+    common = min(shorter.starts.shape[1], states.shape[1])
+    states[same, :common] = shorter.starts[index[same], :common]
+    return states
+
+
+def carried_starts(
+    problem: Problem, stepper: Stepper, windows: Windows, starts: np.ndarray, substeps: int
+) -> np.ndarray:
+    """``starts`` (W, n_x) with the carried states brought along from window to window of each experiment."""
+    if not problem.carried.any():
+        return starts
+    starts, tape = starts.copy(), problem.driving_tape
+    experiment = np.searchsorted(tape.first, windows.start, side="right") - 1
+    chains = [np.flatnonzero(experiment == e) for e in range(len(tape.first))]
+    for k in range(max(len(c) for c in chains) - 1):
+        now = np.array([c[k] for c in chains if len(c) > k + 1])
+        following = np.array([c[k + 1] for c in chains if len(c) > k + 1])
+        ahead = windows.start[following] - windows.start[now]
+        part = Windows(windows.start[now], windows.last[now], int(ahead.max()) + 1)
+        run = stepper.run(tape, part, problem.values, starts[now], substeps=substeps, keep_states=True)
+        assert run.states is not None
+        reached = np.nan_to_num(run.states[np.arange(len(now)), ahead])
+        starts[np.ix_(following, problem.carried)] = reached[:, problem.carried]
+    return starts
+
+
+def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: int) -> _Hold:
+    """Holds that matter only where the data say nothing: start states within several times their spread, parameters within several
+    times their start value (without which a friction law's shape can wander off where no speed is visited).
+    """
+    measured = problem.tape.y * problem.weights[:, None]
+    mean_square = min(
+        mean_square, float(np.nanvar(measured, axis=1).mean())
+    )  # start values that explode must not freeze all
     spread = np.nanstd(states, axis=0)
-    return np.where(spread > 1e-9, spread, max(float(outputs), 1e-6))
+    spread = np.where(spread > 1e-9, spread, max(float(np.nanstd(problem.tape.y)), 1e-6))
+    values = problem.values[problem.free]
+    value_weights = np.where(values != 0.0, 10.0 * mean_square / np.where(values != 0.0, values, 1.0) ** 2, 0.0)
+    return _Hold(states, 1e-4 * mean_square * steps / spread**2, values, value_weights)
 
 
 def _evaluate(
@@ -106,30 +166,56 @@ def _evaluate(
     stepper: Stepper,
     windows: Windows,
     states: np.ndarray,
-    reference: np.ndarray,
-    hold: np.ndarray,
+    hold: _Hold | None,
     substeps: int,
 ) -> _Pass | None:
     count, n_x = states.shape
     n_p = int(problem.free.sum())
-    eye = np.broadcast_to(np.eye(n_x), (count, n_x, n_x))
+    open_states = np.flatnonzero(~problem.carried)
+    eye = np.broadcast_to(np.eye(n_x)[open_states], (count, len(open_states), n_x))
     run = stepper.run(
-        problem.driving_tape, windows, problem.values, states, tangents=True, start_directions=eye, substeps=substeps, weights=problem.weights
+        problem.driving_tape,
+        windows,
+        problem.values,
+        states,
+        tangents=True,
+        start_directions=eye,
+        substeps=substeps,
+        weights=problem.weights,
     )
     assert run.normal is not None
     if not np.isfinite(run.normal).all():
         return None
     h, g = run.normal[:, :-1, :-1], -run.normal[:, :-1, -1]
-    energy = float(run.normal[:, -1, -1].sum())
-    away = states - reference
-    return _Pass(
-        cost=0.5 * (energy + float((hold * away**2).sum())),
+    energies = run.normal[:, -1, -1]
+    found = _Pass(
+        cost=0.5 * float(energies.sum()),
         hpp=h[:, :n_p, :n_p].sum(0),
         gp=g[:, :n_p].sum(0),
-        hss=h[:, n_p:, n_p:] + np.diag(hold),
+        hss=h[:, n_p:, n_p:],
         hsp=h[:, n_p:, :n_p],
-        gs=g[:, n_p:] + hold * away,
-        mean_square=energy / max(_weighted_samples(problem, windows), 1),
+        gs=g[:, n_p:],
+        mean_square=float(energies.sum()) / max(_weighted_samples(problem, windows), 1),
+        energies=energies,
+        open_states=open_states,
+        away=states[:, open_states],
+        moved=problem.values[problem.free],
+    )
+    return found if hold is None else _held(found, hold)
+
+
+def _held(found: _Pass, hold: _Hold) -> _Pass:
+    """The pass with the weak holds added to cost, gradient and Hessian."""
+    weights = hold.weights[found.open_states]
+    away, moved = found.away - hold.starts[:, found.open_states], found.moved - hold.values
+    held = float((weights * away**2).sum() + (hold.value_weights * moved**2).sum())
+    return replace(
+        found,
+        cost=found.cost + 0.5 * held,
+        hpp=found.hpp + np.diag(hold.value_weights),
+        gp=found.gp + hold.value_weights * moved,
+        hss=found.hss + np.diag(weights),
+        gs=found.gs + weights * away,
     )
 
 
@@ -156,4 +242,6 @@ def _stepped(problem: Problem, here: _Pass, states: np.ndarray, damping: float) 
     low, high = problem.lower[problem.free], problem.upper[problem.free]
     values[problem.free] = np.clip(values[problem.free] + step, low, high)
     taken = values[problem.free] - problem.values[problem.free]
-    return problem.with_values(values), states - own - back @ taken
+    moved = states.copy()
+    moved[:, here.open_states] -= own + back @ taken
+    return problem.with_values(values), moved

@@ -27,7 +27,7 @@ class InputLag(Mechanism):
         return [Parameter("T", 3 * step, "s", lower=0.45 * step, upper=2000 * step, description="time constant")]
 
     def states(self, around: Surroundings) -> list[State]:
-        return [State("lagged", around.force_unit, initial="measured", fixed=True)]
+        return [State("lagged", around.force_unit, initial="measured")]
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
         return {"lagged": (s.input - z.lagged) / p.T}

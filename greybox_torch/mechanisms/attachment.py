@@ -71,6 +71,9 @@ class AugmentedModel(GreyBoxModel):
         )
         super().__init__()
         self.base = base
+        self._parameter_names = {
+            a.prefix: [q.name for q in a.mechanism.parameters(self.surroundings[a.port])] for a in self.attachments
+        }
 
     def parameter_name(self, attachment: Attachment, parameter: str) -> str:
         return f"{attachment.prefix}.{parameter}"

@@ -24,7 +24,7 @@ class SensorLag(Mechanism):
         return [Parameter("T", 3 * step, "s", lower=0.45 * step, upper=2000 * step, description="time constant")]
 
     def states(self, around: Surroundings) -> list[State]:
-        return [State("lagged", around.units.get("output", ""), initial="measured", fixed=True)]
+        return [State("lagged", around.units.get("output", ""), initial="measured")]
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
         return {"lagged": (s.output - z.lagged) / p.T}

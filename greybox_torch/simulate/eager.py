@@ -138,7 +138,9 @@ def _normal(tape: Tape, windows: Windows, y: np.ndarray, dy: np.ndarray, weights
     measured = np.moveaxis(tape.y[:, np.minimum(index, windows.last[:, None])], 0, -1)
     known = inside & ~np.isnan(measured)
     error = np.where(known, (measured - y) * weights, 0.0)[..., None]
-    rows = np.concatenate([np.where(known[..., None], dy * weights[:, None], 0.0), error], axis=-1).reshape(len(y), -1, dy.shape[-1] + 1)
+    rows = np.concatenate([np.where(known[..., None], dy * weights[:, None], 0.0), error], axis=-1).reshape(
+        len(y), -1, dy.shape[-1] + 1
+    )
     return np.swapaxes(rows, 1, 2) @ rows
 
 

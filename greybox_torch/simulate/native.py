@@ -26,7 +26,25 @@ class _Job(ctypes.Structure):
 
     _fields_ = [
         *[(n, _LONG) for n in ("groups", "steps", "substeps", "foh", "samples", "directions", "threads")],
-        *[(n, _POINTER) for n in ("u", "dt", "start", "last", "column", "p", "x", "dx", "y", "dy", "trace", "measured", "weight", "normal")],
+        *[
+            (n, _POINTER)
+            for n in (
+                "u",
+                "dt",
+                "start",
+                "last",
+                "column",
+                "p",
+                "x",
+                "dx",
+                "y",
+                "dy",
+                "trace",
+                "measured",
+                "weight",
+                "normal",
+            )
+        ],
     ]
 
 
@@ -102,7 +120,9 @@ class NativeStepper:
             x_end=_windows(packed["x"], count),
             dx_end=_windows(packed["dx"], count) if n_d else None,
             states=_windows(packed["trace"], count) if keep_states else None,
-            normal=None if packed["normal"] is None else _mirrored(_windows(packed["normal"], count)[:, : n_d + 1, : n_d + 1]),
+            normal=None
+            if packed["normal"] is None
+            else _mirrored(_windows(packed["normal"], count)[:, : n_d + 1, : n_d + 1]),
         )
 
 
@@ -122,8 +142,10 @@ def _zeros(shape: tuple[int, ...], real: type) -> np.ndarray:
 
 def _mirrored(lower: np.ndarray) -> np.ndarray:
     """Symmetric matrices (W, d, d) from their lower triangles."""
-    low = np.tril(lower)
-    return low + np.swapaxes(np.tril(lower, -1), 1, 2)
+    result = np.ascontiguousarray(lower)
+    above = np.triu_indices(result.shape[1], 1)
+    result[:, above[0], above[1]] = result[:, above[1], above[0]]
+    return result
 
 
 def _aligned(values: np.ndarray, real: type) -> np.ndarray:

@@ -119,21 +119,20 @@ def whole_records(tape: Tape) -> Windows:
 
 
 def cut(tape: Tape, length: int) -> Windows:
-    """All experiments cut into windows of ``length`` samples; a remainder shorter than half of that joins no window of its own.
+    """All experiments cut into windows of ``length`` samples, each beginning at a multiple of it.
 
-    The last window of an experiment is moved back to end with the record, so that every window has the full length (unless the record
-    itself is shorter).
+    A remainder shorter than half a window is joined to the window before it.
     """
     starts: list[int] = []
     lasts: list[int] = []
     for first, last in zip(tape.first, tape.last, strict=True):
         total = int(last - first + 1)
-        count = max(1, round(total / length))
-        for k in range(count):
-            start = int(first) + min(k * length, max(total - length, 0))
-            starts.append(start)
-            lasts.append(min(start + length - 1, int(last)))
-    return Windows(np.array(starts), np.array(lasts), min(length, int(tape.lengths.max())))
+        count = max(1, int(total / length + 0.5))
+        begins = [int(first) + k * length for k in range(count)]
+        starts += begins
+        lasts += [b - 1 for b in begins[1:]] + [int(last)]
+    sizes = np.array(lasts) - np.array(starts) + 1
+    return Windows(np.array(starts), np.array(lasts), int(sizes.max()))
 
 
 __all__ = ["Run", "Stepper", "Windows", "cut", "make_stepper", "whole_records"]

@@ -56,9 +56,9 @@ class RobotArm(GreyBoxModel):
         Parameter("d_a", 0.00987527995798, unit="N m s/rad", lower=0.0, description="arm damping"),
     ]
     ports = [
-        Body("motor", speed="motor_speed", load=lambda x, u, p: gear_torque(x, p)),
-        Body("gearbox", speed="gearbox_speed", load=lambda x, u, p: gear_torque(x, p)),
-        Body("arm", speed="arm_speed", load=lambda x, u, p: arm_torque(x, p)),
+        Body("motor", speed="motor_speed", load=lambda x, u, p: gear_spring_torque(x, p)),
+        Body("gearbox", speed="gearbox_speed", load=lambda x, u, p: gear_spring_torque(x, p)),
+        Body("arm", speed="arm_speed", load=lambda x, u, p: arm_spring_torque(x, p)),
         Coupling("gear_spring", deflection="gear_twist", rate=lambda x, u, p: x.motor_speed - x.gearbox_speed),
         Coupling("arm_spring", deflection="arm_twist", rate=lambda x, u, p: x.gearbox_speed - x.arm_speed),
     ]
@@ -111,11 +111,21 @@ class RobotArm(GreyBoxModel):
         return {name: value * ratio ** power.get(name, 0) for name, value in self.values().items()}
 
 
+def gear_spring_torque(x: Any, p: Any) -> Any:
+    """Elastic torque through the gear, N m: the load that presses its teeth."""
+    return p.k_g1 * x.gear_twist + p.k_g3 * x.gear_twist**3
+
+
 def gear_torque(x: Any, p: Any) -> Any:
     """Torque through the gear, N m: cubic spring and damper."""
-    return p.k_g1 * x.gear_twist + p.k_g3 * x.gear_twist**3 + p.d_g * (x.motor_speed - x.gearbox_speed)
+    return gear_spring_torque(x, p) + p.d_g * (x.motor_speed - x.gearbox_speed)
+
+
+def arm_spring_torque(x: Any, p: Any) -> Any:
+    """Elastic torque through the arm, N m."""
+    return p.k_a * x.arm_twist
 
 
 def arm_torque(x: Any, p: Any) -> Any:
     """Torque through the arm, N m: linear spring and damper."""
-    return p.k_a * x.arm_twist + p.d_a * (x.gearbox_speed - x.arm_speed)
+    return arm_spring_torque(x, p) + p.d_a * (x.gearbox_speed - x.arm_speed)

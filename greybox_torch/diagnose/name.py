@@ -1,0 +1,187 @@
+"""Naming: full refits of the leading hypotheses, and the choice between them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.diagnose.curve import laws_on_curve
+from greybox_torch.diagnose.leaders import Leader
+from greybox_torch.diagnose.refit import POLISH_SETTINGS, Hypothesis, augmented, hypothesis, lengths
+from greybox_torch.estimate.levenberg_marquardt import Settings
+from greybox_torch.estimate.problem import Problem, problem_for
+from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.simulate.stepper import Stepper, make_stepper
+
+FINALISTS = 3
+"""Hypotheses that are fitted at all window lengths, after a first round at the middle one."""
+
+TRIAL_SETTINGS = Settings(iterations=14, tolerance=1e-3, trials=5)
+TRIAL_STARTS = 3
+FEWEST_WINDOWS = 8
+"""Windows that a standard error needs."""
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """A refitted hypothesis with its newest effect, its score (lower is better) and how surely it improves on the one before."""
+
+    leader: Leader
+    fitted: Hypothesis
+    gain: float
+    surely: float
+
+    @property
+    def unknown(self) -> bool:
+        return isinstance(self.leader.attachment.mechanism, Unknown)
+
+
+def rank(
+    base: Problem,
+    current: Hypothesis,
+    found: Sequence[Leader],
+    surroundings: Mapping[str, Surroundings],
+    *,
+    substeps: int,
+    device: str = "cpu",
+    progress: Callable[[str], None] = lambda text: None,
+) -> list[Ranked]:
+    """Refit every leader on top of ``current`` and rank them, best first."""
+    steppers = _compiled(base, current, found, surroundings, device)
+    at = lengths(base)
+    middle = at[min(1, len(at) - 1) :][:1]
+    first: list[tuple[float, Leader, Hypothesis, Stepper]] = []
+    for leader, stepper in zip(found, steppers, strict=True):
+        progress(f"refitting {leader.attachment.prefix}")
+        tried = hypothesis(
+            base,
+            (*current.effects, leader.attachment),
+            surroundings,
+            leader.starts[:TRIAL_STARTS],
+            substeps=substeps,
+            at=middle,
+            shorter=current.fits[0],
+            settings=TRIAL_SETTINGS,
+            stepper=stepper,
+            device=device,
+        )
+        if tried is not None:
+            first.append((tried.score, leader, tried, stepper))
+    first.sort(key=lambda entry: entry[0])
+    final = []
+    for _, leader, tried, stepper in _finalists(first):
+        progress(f"refitting {leader.attachment.prefix} in full")
+        fitted = hypothesis(
+            base,
+            tried.effects,
+            surroundings,
+            [tried.values(), *leader.starts[:TRIAL_STARTS]],
+            substeps=substeps,
+            shorter=current.fits[0],
+            stepper=stepper,
+            device=device,
+        )
+        if fitted is not None:
+            final.append(Ranked(leader, fitted, current.score - fitted.score, sureness(current, fitted)))
+    return sorted(
+        [*final, *_distilled(base, current, final, surroundings, substeps, device, progress)],
+        key=lambda r: r.fitted.score,
+    )
+
+
+def _distilled(
+    base: Problem,
+    current: Hypothesis,
+    final: Sequence[Ranked],
+    surroundings: Mapping[str, Surroundings],
+    substeps: int,
+    device: str,
+    progress: Callable[[str], None],
+) -> list[Ranked]:
+    """Where a free curve leads: the named laws of the same signal at the same port, refitted from what the curve has learned."""
+    best = min(final, key=lambda r: r.fitted.score, default=None)
+    if best is None or not best.unknown:
+        return []
+    tried = []
+    for leader in laws_on_curve(base.model, best.fitted, best.leader.attachment, surroundings):
+        progress(f"refitting {leader.attachment.prefix} from the curve")
+        effects = (*current.effects, leader.attachment)
+        fitted = hypothesis(
+            base, effects, surroundings, leader.starts, substeps=substeps, shorter=best.fitted.fits[0], device=device
+        )
+        if fitted is not None:
+            tried.append(Ranked(leader, fitted, current.score - fitted.score, sureness(current, fitted)))
+    return tried
+
+
+def polished(
+    base: Problem,
+    fitted: Hypothesis,
+    surroundings: Mapping[str, Surroundings],
+    starts: Sequence[Mapping[str, float]] = (),
+    *,
+    substeps: int,
+    device: str = "cpu",
+) -> Hypothesis:
+    """``fitted`` refitted to convergence, also from further start values; the better of the two."""
+    again = hypothesis(
+        base,
+        fitted.effects,
+        surroundings,
+        [fitted.values(), *starts],
+        substeps=substeps,
+        shorter=fitted.fits[0],
+        settings=POLISH_SETTINGS,
+        stepper=fitted.stepper,
+        device=device,
+    )
+    return fitted if again is None or again.score > fitted.score else again
+
+
+def sureness(before: Hypothesis, after: Hypothesis) -> float:
+    """How many standard errors the improvement is away from none: the largest over the window lengths.
+
+    Judged over windows, so that errors which are correlated within a window count once, by the mean difference of the windows'
+    energies and by the mean of their logarithmic ratio: the first sees an effect that is everywhere, the second also one that shows in
+    few windows, whose energies differ by orders of magnitude.
+    """
+    best = 0.0
+    for old, new in zip(before.fits, after.fits, strict=True):
+        if len(old.energies) >= FEWEST_WINDOWS:
+            least = 1e-12 * float(old.energies.max())
+            ratio = np.log(np.maximum(old.energies, least)) - np.log(np.maximum(new.energies, least))
+            best = max(best, _standard_errors(old.energies - new.energies), _standard_errors(ratio))
+    return best
+
+
+def _standard_errors(values: np.ndarray) -> float:
+    spread = float(np.std(values, ddof=1)) / np.sqrt(len(values))
+    return float(values.mean()) / max(spread, 1e-300)
+
+
+def _finalists(
+    first: list[tuple[float, Leader, Hypothesis, Stepper]],
+) -> list[tuple[float, Leader, Hypothesis, Stepper]]:
+    """The best few, with at least one named hypothesis and one curve among them where there are any."""
+    chosen = first[:FINALISTS]
+    for unknown in (True, False):
+        if not any(isinstance(e[1].attachment.mechanism, Unknown) == unknown for e in chosen):
+            chosen += [e for e in first if isinstance(e[1].attachment.mechanism, Unknown) == unknown][:1]
+    return chosen
+
+
+def _compiled(
+    base: Problem, current: Hypothesis, found: Sequence[Leader], surroundings: Mapping[str, Surroundings], device: str
+) -> list[Stepper]:
+    """Steppers of all leaders, compiled side by side."""
+
+    def build(leader: Leader) -> Stepper:
+        model = augmented(base, (*current.effects, leader.attachment), surroundings)
+        return make_stepper(model, problem_for(base, model, {}).free_names, device=device)
+
+    with ThreadPoolExecutor(max_workers=2) as pool:
+        return list(pool.map(build, found))

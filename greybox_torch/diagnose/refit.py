@@ -1,0 +1,125 @@
+"""Refitting a hypothesis: the model with its effects, on windows of several lengths."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.estimate.levenberg_marquardt import Settings
+from greybox_torch.estimate.problem import Problem, problem_for
+from greybox_torch.estimate.window_fit import WindowFit, carried_starts, fit_windows
+from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
+from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulate.stepper import Stepper, make_stepper
+
+FACTORS = (1, 4, 16)
+"""Window lengths as multiples of the shortest, a 64th of the longest record: short windows forgive a wrong trajectory, long ones show
+slow effects. Multiples, so that the start states of short windows serve the long ones."""
+
+FIRST_SETTINGS = Settings(iterations=5, tolerance=1e-3, trials=5)
+WINDOW_SETTINGS = Settings(iterations=30, tolerance=3e-4, trials=6)
+POLISH_SETTINGS = Settings(iterations=120, tolerance=1e-6, trials=8)
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """A model with some effects attached, fitted: its problem, stepper, and window fits from short to long."""
+
+    effects: tuple[Attachment, ...]
+    model: GreyBoxModel
+    stepper: Stepper
+    fits: tuple[WindowFit, ...]
+
+    @property
+    def score(self) -> float:
+        """Mean of the logarithms of the mean squared errors over the window lengths; lower is better."""
+        return float(np.mean([np.log(max(f.mean_square, 1e-300)) for f in self.fits]))
+
+    def values(self) -> dict[str, float]:
+        """Parameter values by name, from the longest windows."""
+        return dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
+
+    @property
+    def problem(self) -> Problem:
+        """The problem with the parameters of the longest windows."""
+        return self.fits[-1].problem
+
+
+def lengths(problem: Problem) -> list[int]:
+    """Window lengths for a problem's records, in samples."""
+    longest = int(problem.tape.lengths.max())
+    shortest = max(20, round(longest / 64))
+    return [shortest * factor for factor in FACTORS if shortest * factor <= longest // 2] or [shortest]
+
+
+def hypothesis(
+    base: Problem,
+    effects: Sequence[Attachment],
+    surroundings: Mapping[str, Surroundings],
+    starts: Sequence[Mapping[str, float]],
+    *,
+    substeps: int,
+    at: Sequence[int] | None = None,
+    shorter: WindowFit | None = None,
+    settings: Settings = WINDOW_SETTINGS,
+    stepper: Stepper | None = None,
+    device: str = "cpu",
+) -> Hypothesis | None:
+    """Fit ``base`` with ``effects`` attached, on windows of every length, from each of several start values; None where none simulates.
+
+    At every length all the start values and the result of the length before get a few iterations each; the best goes on to the end.
+
+    Args:
+        starts: parameter values by name, of the base and of the effects.
+        at: window lengths; by default :func:`lengths`.
+        shorter: a fit on shorter windows that the start states are taken from.
+        stepper: one made for this model before.
+    """
+    model = augmented(base, effects, surroundings)
+    problems = [problem_for(base, model, start) for start in starts]
+    stepper = stepper or make_stepper(model, problems[0].free_names, device=device)
+    fits: list[WindowFit] = []
+    for length in at or lengths(base):
+        trials = _distinct([*([fits[-1].problem] if fits else []), *problems])
+        fit = _best_fit(trials, stepper, length, shorter, substeps, settings)
+        if fit is None:
+            return None
+        fits.append(fit)
+        shorter = fit
+    return Hypothesis(tuple(effects), model, stepper, tuple(fits))
+
+
+def augmented(base: Problem, effects: Sequence[Attachment], surroundings: Mapping[str, Surroundings]) -> GreyBoxModel:
+    """The model of ``base`` with ``effects`` attached, the model itself where there are none."""
+    return AugmentedModel(base.model, effects, surroundings) if effects else base.model
+
+
+def _best_fit(
+    trials: Sequence[Problem],
+    stepper: Stepper,
+    length: int,
+    shorter: WindowFit | None,
+    substeps: int,
+    settings: Settings,
+) -> WindowFit | None:
+    begun = [
+        fit_windows(t, stepper, length, shorter=shorter, substeps=substeps, settings=FIRST_SETTINGS) for t in trials
+    ]
+    found = [fit for fit in begun if fit is not None]
+    if not found:
+        return None
+    best = min(found, key=lambda f: f.mean_square)
+    starts = carried_starts(best.problem, stepper, best.windows, best.starts, substeps)
+    again = fit_windows(best.problem, stepper, length, starts=starts, substeps=substeps, settings=settings)
+    return best if again is None or again.mean_square > best.mean_square else again
+
+
+def _distinct(problems: Sequence[Problem]) -> list[Problem]:
+    kept: list[Problem] = []
+    for p in problems:
+        if p.admissible(p.values) and not any(np.allclose(p.values, q.values, rtol=1e-3, atol=0) for q in kept):
+            kept.append(p)
+    return kept

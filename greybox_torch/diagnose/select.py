@@ -1,0 +1,181 @@
+"""Which effects the data ask for: one at a time while it pays, then each tried without."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from greybox_torch.diagnose.candidates import candidates, periodic_candidates
+from greybox_torch.diagnose.leaders import leaders
+from greybox_torch.diagnose.name import Ranked, polished, rank, sureness
+from greybox_torch.diagnose.orders import scan_orders
+from greybox_torch.diagnose.refit import POLISH_SETTINGS, Hypothesis, hypothesis
+from greybox_torch.diagnose.screen import Look, Screen
+from greybox_torch.diagnose.surroundings import survey
+from greybox_torch.errors import NumericalError
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.mechanism import Surroundings
+
+MOST_EFFECTS = 4
+LEAST_GAIN = 0.01
+"""Improvement of the mean squared error (as a share, averaged over window lengths) below which nothing is claimed."""
+
+LEAST_SURENESS = 3.0
+"""Standard errors (over windows) by which an effect must improve the prediction."""
+
+CURVE_MARGIN = 0.1
+"""How much better, in the logarithm of the mean squared error, a free curve must be than every named mechanism to be preferred."""
+
+
+@dataclass(frozen=True)
+class Round:
+    """One round of the search: what the screen saw, what the refits said, and which of them was taken (None: nothing)."""
+
+    looks: tuple[tuple[Look, ...], ...]
+    ranked: tuple[Ranked, ...]
+    taken: Ranked | None
+
+
+@dataclass
+class Search:
+    """The search for effects that a problem's data ask for, beyond its model.
+
+    Use: ``search = Search(problem, substeps); search.run()``; then ``search.current`` is the final hypothesis, ``search.plain`` the
+    model without effects, ``search.rounds`` how it came about.
+    """
+
+    problem: Problem
+    substeps: int
+    device: str = "cpu"
+    progress: Callable[[str], None] = lambda text: None
+    rounds: list[Round] = field(default_factory=list)
+
+    def run(self) -> Hypothesis:
+        """Search until nothing pays any more."""
+        self.begin()
+        while len(self.current.effects) < MOST_EFFECTS and self.step():
+            pass
+        self.prune()
+        return self.current
+
+    def begin(self) -> None:
+        """Fit the model as it stands.
+
+        Raises:
+            NumericalError: it overflows even over short windows.
+        """
+        self.progress("refitting the model as it stands")
+        card = dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
+        plain = hypothesis(
+            self.problem, (), {}, [card], substeps=self.substeps, settings=POLISH_SETTINGS, device=self.device
+        )
+        if plain is None:
+            raise NumericalError(
+                f"simulating {self.problem.model.title}: the simulation overflows even over windows of a 64th of the record; "
+                "try start values nearer to the truth, or tighter bounds"
+            )
+        self.plain = self.current = plain
+        self.surroundings: dict[str, Surroundings] = survey(
+            self.problem.model, plain.problem, plain.stepper, self.substeps
+        )
+
+    def step(self) -> bool:
+        """One round: screen, refit the leaders, take the best if it pays. Whether one was taken."""
+        looks = self._screened()
+        found = leaders(looks, self.current.fits, self.surroundings)
+        ranked = rank(
+            self.problem,
+            self.current,
+            found,
+            self.surroundings,
+            substeps=self.substeps,
+            device=self.device,
+            progress=self.progress,
+        )
+        best = _chosen(ranked)
+        if best is not None:
+            best = self._fairly(best)
+        taken = best if best is not None and best.gain > LEAST_GAIN and best.surely > LEAST_SURENESS else None
+        self.rounds.append(Round(tuple(tuple(at) for at in looks), tuple(ranked), taken))
+        if taken is not None:
+            self.current = taken.fitted
+        return taken is not None
+
+    def prune(self) -> None:
+        """Drop every effect whose loss the rest make up for."""
+        for effect in self.current.effects:
+            if len(self.current.effects) == 1:
+                break
+            self.progress(f"trying without {effect.prefix}")
+            rest = tuple(e for e in self.current.effects if e is not effect)
+            without = self._refitted(rest, self.current)
+            if without is None:
+                continue
+            gain = without.score - self.current.score
+            if gain < LEAST_GAIN or sureness(without, self.current) < LEAST_SURENESS:
+                self.current = without
+
+    def _screened(self) -> list[list[Look]]:
+        self.progress("screening every port and mechanism")
+        model, at, free = self.problem.model, self.current, self.current.problem.free_names
+        middle = at.fits[min(1, len(at.fits) - 1)]
+        common = {"substeps": self.substeps, "device": self.device}
+        orders = scan_orders(model, at.effects, self.surroundings, free, middle, **common)[:2]
+        offered = [
+            *candidates(model, self.plain.problem, self.surroundings, flexible=False),
+            *periodic_candidates(model, self.plain.problem, orders),
+            *candidates(model, self.plain.problem, self.surroundings, flexible=True),
+        ]
+        there = {(e.port, e.mechanism.name) for e in at.effects}
+        offered = [a for a in offered if (a.port, a.mechanism.name) not in there]
+        screen = Screen.of(model, at.effects, offered, self.surroundings, free, device=self.device)
+        return [screen.look(fit, self.substeps) for fit in at.fits]
+
+    def _fairly(self, best: Ranked) -> Ranked:
+        """The best hypothesis polished, and compared with its parent refitted from the same values.
+
+        Without this, an effect of next to no size can win merely because its refit got out of a local minimum that the parent sits in.
+        """
+        shapes = self._shapes(best)
+        fitted = polished(
+            self.problem, best.fitted, self.surroundings, shapes, substeps=self.substeps, device=self.device
+        )
+        parent = polished(
+            self.problem, self.current, self.surroundings, [fitted.values()], substeps=self.substeps, device=self.device
+        )
+        if parent.score < self.current.score:
+            self.current = parent
+            if not parent.effects:
+                self.plain = parent
+        return Ranked(best.leader, fitted, self.current.score - fitted.score, sureness(self.current, fitted))
+
+    def _shapes(self, best: Ranked) -> list[dict[str, float]]:
+        """The hypothesis' values with the newest effect's shape as each probe of the screen has it, against local minima of the shape."""
+        effect, values = best.leader.attachment, best.fitted.values()
+        probes = effect.mechanism.probes(self.surroundings[effect.port])
+        shapes = [{f"{effect.prefix}.{n}": v for n, v in probe.values.items() if n != "order"} for probe in probes]
+        distinct = {tuple(sorted(shape.items())) for shape in shapes if shape}
+        return [{**values, **dict(shape)} for shape in sorted(distinct)]
+
+    def _refitted(self, effects: Sequence[Attachment], start: Hypothesis) -> Hypothesis | None:
+        found = hypothesis(
+            self.problem,
+            effects,
+            self.surroundings,
+            [start.values()],
+            substeps=self.substeps,
+            shorter=start.fits[0],
+            settings=POLISH_SETTINGS,
+            device=self.device,
+        )
+        return found
+
+
+def _chosen(ranked: Sequence[Ranked]) -> Ranked | None:
+    """The best hypothesis: a named mechanism, unless a free curve is better by a margin and takes at least half again as much."""
+    named = next((r for r in ranked if not r.unknown), None)
+    curve = next((r for r in ranked if r.unknown), None)
+    if named is None or curve is None:
+        return named or curve
+    return curve if curve.gain > named.gain + CURVE_MARGIN and curve.gain > 1.5 * named.gain else named

@@ -1,0 +1,175 @@
+"""The verdict: what `diagnose` says, in the form that `verdict.json` and the report are made from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from greybox_torch.estimate.comparison import Score
+
+SCHEMA = "greybox-verdict/1"
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """A hypothesis that was considered and not chosen, with its probability."""
+
+    port: str
+    mechanism: str
+    probability: float
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Where an effect's gain lies along one signal: bin edges (n + 1,) in the signal's unit, share of the explained energy per bin (n,)."""
+
+    signal: str
+    unit: str
+    edges: np.ndarray
+    share: np.ndarray
+
+
+@dataclass(frozen=True)
+class Curve:
+    """The effect's own law: ``force`` (n,) over ``signal`` (n,); ``force_unit`` as at the port. ``spread`` (n,) one standard deviation."""
+
+    signal: str
+    unit: str
+    values: np.ndarray
+    force: np.ndarray
+    force_unit: str
+    spread: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class Effect:
+    """One finding. ``explained`` is the share of the repeatable validation error that it removes."""
+
+    port: str
+    mechanism: str
+    probability: float
+    signals: tuple[str, ...]
+    where: str
+    parameters: Mapping[str, Mapping[str, Any]]
+    explained: float
+    alternatives: tuple[Alternative, ...]
+    curve: Curve | None
+    profiles: tuple[Profile, ...] = ()
+    explanation: str = ""
+    source: str = ""
+    separating_experiment: str = ""
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One output of one experiment: time (N,) s, measured (N,) with NaN = missing, and simulated by the three models (N,)."""
+
+    experiment: str
+    role: str
+    output: str
+    unit: str
+    time: np.ndarray
+    measured: np.ndarray
+    start: np.ndarray
+    refit: np.ndarray
+    augmented: np.ndarray
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Everything that a diagnosis found.
+
+    ``scores`` by model name ("start", "refit", "augmented"), each a list in the same order; ``evidence`` sentences for a reader;
+    ``stages`` seconds by stage; ``ranking`` rows (port, mechanism, share explained in the screen, gain after refit or None).
+    """
+
+    dataset: str
+    model: str
+    seed: int
+    seconds: float
+    confidence: float
+    effects: tuple[Effect, ...]
+    scores: Mapping[str, tuple[Score, ...]]
+    evidence: tuple[str, ...]
+    stages: Mapping[str, float]
+    ranking: tuple[tuple[str, str, float, float | None], ...]
+    traces: tuple[Trace, ...] = field(repr=False, default=())
+
+    @property
+    def mismatch(self) -> bool:
+        """Whether something is missing."""
+        return bool(self.effects)
+
+    @property
+    def sentence(self) -> str:
+        """The verdict in one sentence."""
+        if not self.effects:
+            return f"Nothing is missing from {self.model} that these recordings can show (confidence {self.confidence:.2f})."
+        parts = [
+            f"{'an unknown effect' if e.mechanism == 'unknown' else e.mechanism.replace('_', ' ')} at {e.port} (probability {e.probability:.2f})"
+            for e in self.effects
+        ]
+        found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
+        return f"The mismatch is {found}{self._gain()}."
+
+    def _gain(self) -> str:
+        pairs = [
+            (before.fit, after.fit)
+            for before, after in zip(self.scores["refit"], self.scores["augmented"], strict=True)
+            if before.role == "validation"
+        ]
+        if not pairs:
+            return ""
+        before, after = (float(np.mean(side)) for side in zip(*pairs, strict=True))
+        return f"; with it the validation fit goes from {before:.1f} % to {after:.1f} %"
+
+    def as_json(self) -> dict[str, Any]:
+        """The dictionary of `verdict.json` (contract section 4)."""
+        rows = []
+        for start, refit, augmented in zip(*(self.scores[m] for m in ("start", "refit", "augmented")), strict=True):
+            row: dict[str, Any] = {"experiment": start.experiment, "role": start.role, "output": start.output}
+            for name, score in (("start", start), ("refit", refit), ("augmented", augmented)):
+                row[name] = {"fit": score.fit, "rmse": score.rmse}
+            rows.append(row)
+        return {
+            "schema": SCHEMA,
+            "dataset": self.dataset,
+            "model": self.model,
+            "seed": self.seed,
+            "seconds": self.seconds,
+            "mismatch": self.mismatch,
+            "confidence": self.confidence,
+            "sentence": self.sentence,
+            "effects": [_effect(e) for e in self.effects],
+            "fit": rows,
+            "evidence": list(self.evidence),
+            "stages": dict(self.stages),
+        }
+
+
+def _effect(effect: Effect) -> dict[str, Any]:
+    result: dict[str, Any] = {
+        "port": effect.port,
+        "mechanism": effect.mechanism,
+        "probability": effect.probability,
+        "signals": list(effect.signals),
+        "where": effect.where,
+        "parameters": {n: dict(v) for n, v in effect.parameters.items()},
+        "explained": effect.explained,
+        "alternatives": [
+            {"port": a.port, "mechanism": a.mechanism, "probability": a.probability} for a in effect.alternatives
+        ],
+    }
+    if effect.curve is not None and effect.mechanism == "unknown":
+        curve = effect.curve
+        result["curve"] = {
+            "signal": curve.signal,
+            "unit": curve.unit,
+            "values": [float(v) for v in curve.values],
+            "force": [float(v) for v in curve.force],
+            "force_unit": curve.force_unit,
+        }
+    return result
