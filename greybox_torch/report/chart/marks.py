@@ -1,0 +1,86 @@
+"""Curves, bands and bars as SVG paths."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.report.chart.scale import Scale
+
+WIDTH, HEIGHT = 2000, 1000
+"""The picture's own coordinates; the page stretches them."""
+
+BINS = 700
+"""A curve with more than four samples to a bin is drawn by the extremes in each: what the eye would see, in a fraction of the bytes."""
+
+
+@dataclass(frozen=True)
+class Mark:
+    """``kind`` is "line", "area" or "bars"; ``series`` says whose it is and so its colour; ``path`` is SVG."""
+
+    kind: str
+    series: str
+    path: str
+
+
+def line(x: Scale, y: Scale, xs: np.ndarray, ys: np.ndarray, series: str) -> Mark:
+    """A curve through (xs, ys); it breaks where a value is not finite."""
+    xs, ys = thinned(xs, np.where(np.isfinite(ys), ys, np.nan))
+    across, up = _pixels(x, y, xs, ys)
+    pieces, pen_down = [], False
+    for a, b, ok in zip(across, up, np.isfinite(ys) & np.isfinite(xs), strict=True):
+        if ok:
+            pieces.append(f"{'L' if pen_down else 'M'}{a:.0f} {b:.0f}")
+        pen_down = bool(ok)
+    return Mark("line", series, "".join(pieces))
+
+
+def band(x: Scale, y: Scale, xs: np.ndarray, low: np.ndarray, high: np.ndarray, series: str) -> Mark:
+    """The area between two curves; samples where either is not finite are passed over."""
+    known = np.isfinite(low) & np.isfinite(high)
+    around = np.concatenate([xs[known], xs[known][::-1]])
+    across, up = _pixels(x, y, around, np.concatenate([low[known], high[known][::-1]]))
+    points = "L".join(f"{a:.0f} {b:.0f}" for a, b in zip(across, up, strict=True))
+    return Mark("area", series, f"M{points}Z" if points else "")
+
+
+def span(x: Scale, begin: float, end: float, series: str) -> Mark:
+    """A stretch of the horizontal axis, over the whole height."""
+    (a, b) = np.round(WIDTH * np.clip(x.place(np.array([begin, end])), 0.0, 1.0))
+    return Mark("area", series, f"M{a:.0f} 0H{b:.0f}V{HEIGHT}H{a:.0f}Z")
+
+
+def bars(x: Scale, y: Scale, edges: np.ndarray, heights: np.ndarray, series: str) -> Mark:
+    """Bars from zero, between consecutive edges (n + 1,), of heights (n,)."""
+    foot = float(_pixels(x, y, edges[:1], np.zeros(1))[1][0])
+    across = WIDTH * np.clip(x.place(edges), 0.0, 1.0)
+    tops = _pixels(x, y, edges[:-1], np.nan_to_num(heights))[1]
+    gap = 0.06 * float(np.min(np.diff(across))) if len(across) > 1 else 0.0
+    boxes = [
+        f"M{a + gap:.0f} {foot:.0f}V{top:.0f}H{b - gap:.0f}V{foot:.0f}Z"
+        for a, b, top in zip(across[:-1], across[1:], tops, strict=True)
+    ]
+    return Mark("bars", series, "".join(boxes))
+
+
+def thinned(xs: np.ndarray, ys: np.ndarray, bins: int = BINS) -> tuple[np.ndarray, np.ndarray]:
+    """At most two samples a bin, its smallest and its largest in their order; bins without any known sample leave a gap."""
+    size = len(ys) // bins
+    if size < 4:
+        return xs, ys
+    count = -(-len(ys) // size)
+    padded = np.full(count * size, np.nan)
+    padded[: len(ys)] = ys
+    boxes = padded.reshape(count, size)
+    low = np.argmin(np.where(np.isnan(boxes), np.inf, boxes), axis=1)
+    high = np.argmax(np.where(np.isnan(boxes), -np.inf, boxes), axis=1)
+    both = np.sort(np.stack([low, high], axis=1), axis=1) + size * np.arange(count)[:, None]
+    index = np.minimum(np.unique(both), len(ys) - 1)
+    return xs[index], ys[index]
+
+
+def _pixels(x: Scale, y: Scale, xs: np.ndarray, ys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Coordinates of the picture; what lies far outside is held just outside, where it is cut off."""
+    across, up = x.place(np.asarray(xs, dtype=float)), y.place(np.asarray(ys, dtype=float))
+    return WIDTH * np.clip(across, -1.0, 2.0), HEIGHT * (1.0 - np.clip(up, -1.0, 2.0))

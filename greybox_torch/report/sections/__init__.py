@@ -1,0 +1,1 @@
+"""The sections of the page: one file each, with what its template of the same name prints."""

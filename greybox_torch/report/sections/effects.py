@@ -1,0 +1,171 @@
+"""What was found: one card an effect."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from markupsafe import Markup
+
+from greybox_torch.diagnose.verdict import Curve, Effect, Profile, Verdict
+from greybox_torch.report import text
+from greybox_torch.report.chart.marks import band, bars, line
+from greybox_torch.report.chart.panel import Chart, Panel, side_by_side
+from greybox_torch.report.chart.scale import linear
+
+
+@dataclass(frozen=True)
+class ParameterRow:
+    symbol: Markup
+    description: str
+    value: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Share:
+    """A hypothesis and its probability. ``rest`` marks what is left over for hypotheses that are not listed."""
+
+    mechanism: str
+    port: str
+    probability: float
+    chosen: bool = False
+    rest: bool = False
+
+
+@dataclass(frozen=True)
+class Card:
+    """An effect as its card shows it."""
+
+    title: str
+    port: str
+    probability: float
+    explanation: str
+    where: str
+    signals: tuple[str, ...]
+    explained: str
+    parameters: tuple[ParameterRow, ...]
+    shares: tuple[Share, ...]
+    experiment: str
+    source: str
+    unknown: bool
+    curve: Chart | None
+    profiles: Chart | None
+
+
+@dataclass(frozen=True)
+class Effects:
+    """The cards of all effects."""
+
+    cards: tuple[Card, ...]
+    template: str = "effects.html.j2"
+
+    @classmethod
+    def of(cls, verdict: Verdict) -> Effects | None:
+        return cls(tuple(_card(e) for e in verdict.effects)) if verdict.effects else None
+
+
+def _card(effect: Effect) -> Card:
+    unknown = effect.mechanism == "unknown"
+    return Card(
+        title="An unknown effect" if unknown else text.first_capital(text.mechanism(effect.mechanism)),
+        port=effect.port,
+        probability=effect.probability,
+        explanation=effect.explanation,
+        where=effect.where,
+        signals=effect.signals,
+        explained=text.percent(effect.explained),
+        parameters=() if unknown else _parameters(effect),
+        shares=_shares(effect),
+        experiment=effect.separating_experiment,
+        source=effect.source,
+        unknown=unknown,
+        curve=None if effect.curve is None else _curve(effect, effect.curve),
+        profiles=_profiles(effect),
+    )
+
+
+def _parameters(effect: Effect) -> tuple[ParameterRow, ...]:
+    rows = []
+    for name, entry in effect.parameters.items():
+        value, deviation = entry.get("value"), entry.get("std")
+        shown = text.measured(
+            math.nan if value is None else float(value), None if deviation is None else float(deviation)
+        )
+        rows.append(
+            ParameterRow(text.symbol(name), entry.get("description", ""), shown, text.unit(entry.get("unit", "")))
+        )
+    return tuple(rows)
+
+
+def _shares(effect: Effect) -> tuple[Share, ...]:
+    """The chosen hypothesis, its rivals, and what probability is left for all others."""
+    rivals = sorted(effect.alternatives, key=lambda a: -a.probability)
+    if not rivals:
+        return ()
+    listed = [Share(text.mechanism(effect.mechanism), effect.port, effect.probability, chosen=True)]
+    listed += [Share(text.mechanism(a.mechanism), a.port, a.probability) for a in rivals]
+    left = 1.0 - sum(share.probability for share in listed)
+    return (*listed, Share("anything else", "", left, rest=True)) if left > 0.005 else tuple(listed)
+
+
+def _curve(effect: Effect, curve: Curve) -> Chart:
+    spread = np.zeros_like(curve.force) if curve.spread is None else 2.0 * np.nan_to_num(curve.spread)
+    x = linear(curve.values, room=0.0)
+    y = linear(
+        curve.force,
+        np.zeros(1),
+        np.clip(curve.force - spread, *_around(curve.force)),
+        np.clip(curve.force + spread, *_around(curve.force)),
+    )
+    marks = [line(x, y, curve.values, curve.force, "effect")]
+    if curve.spread is not None:
+        marks.insert(0, band(x, y, curve.values, curve.force - spread, curve.force + spread, "effect"))
+    low, high = float(np.nanmin(curve.force)), float(np.nanmax(curve.force))
+    alt = (
+        f"Curve of the effect over {text.words(curve.signal)}: between {text.with_unit(text.number(low), curve.force_unit)} and "
+        f"{text.with_unit(text.number(high), curve.force_unit)}."
+    )
+    panel = Panel(
+        x,
+        y,
+        text.axis(curve.signal, curve.unit),
+        text.axis("effect", curve.force_unit),
+        tuple(marks),
+        alt,
+        "tall",
+        zero=True,
+    )
+    what = "The effect's own curve" + (
+        ", with two standard deviations on either side" if curve.spread is not None else ""
+    )
+    return side_by_side([panel], f"{what}: what it adds at {effect.port} over {text.words(curve.signal)}.")
+
+
+def _around(force: np.ndarray) -> tuple[float, float]:
+    """The reach of a curve and as much again on both sides: where its spread is wider, the axis does not follow."""
+    low, high = float(np.nanmin(force)), float(np.nanmax(force))
+    return low - (high - low), high + (high - low)
+
+
+def _profiles(effect: Effect) -> Chart | None:
+    if not effect.profiles:
+        return None
+    caption = "Where the gain lies: how the error energy that the effect explains spreads over each signal's range."
+    return side_by_side([_profile(p) for p in effect.profiles], caption)
+
+
+def _profile(profile: Profile) -> Panel:
+    hundred = 100.0 * np.asarray(profile.share, dtype=float)
+    x, y = linear(profile.edges, room=0.0), linear(hundred, zero=not (hundred < 0).any())
+    peak = int(np.argmax(hundred))
+    begin, end = profile.edges[peak], profile.edges[peak + 1]
+    alt = (
+        f"Share of the explained error energy over {text.words(profile.signal)}: most of it, {hundred[peak]:.0f} %, between "
+        f"{text.number(float(begin))} and {text.with_unit(text.number(float(end)), profile.unit)}."
+    )
+    marks = (bars(x, y, np.asarray(profile.edges), hundred, "effect"),)
+    return Panel(
+        x, y, text.axis(profile.signal, profile.unit), "share of explained error [%]", marks, alt, "low", zero=True
+    )

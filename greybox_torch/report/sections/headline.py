@@ -1,0 +1,90 @@
+"""The top of the page: the verdict in one sentence, and the few numbers that matter most."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.diagnose.verdict import Verdict
+from greybox_torch.estimate.comparison import Score
+from greybox_torch.report import text
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A number with its name; ``before`` is empty where there is nothing to compare it with."""
+
+    label: str
+    before: str
+    after: str
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Headline:
+    """``answer`` is "found", "nothing" or "unknown"."""
+
+    dataset: str
+    model: str
+    sentence: str
+    answer: str
+    figures: tuple[Figure, ...]
+    template: str = "headline.html.j2"
+
+    @classmethod
+    def of(cls, verdict: Verdict) -> Headline:
+        unknown = any(e.mechanism == "unknown" for e in verdict.effects)
+        answer = "nothing" if not verdict.mismatch else "unknown" if unknown else "found"
+        figures = (_fit(verdict), *_errors(verdict), _confidence(verdict))
+        return cls(verdict.dataset, verdict.model, verdict.sentence, answer, figures)
+
+
+def held_out(verdict: Verdict, model: str, output: str | None = None) -> list[Score]:
+    """The scores that a model reached on validation experiments, where there are any; on all otherwise."""
+    rows = [s for s in verdict.scores[model] if output is None or s.output == output]
+    return [s for s in rows if s.role == "validation"] or rows
+
+
+def units(verdict: Verdict) -> dict[str, str]:
+    """Units by output."""
+    return {trace.output: trace.unit for trace in verdict.traces}
+
+
+def pooled(scores: list[Score]) -> float:
+    """Root mean square over experiments of their root mean square errors."""
+    return float(np.sqrt(np.mean([s.rmse**2 for s in scores])))
+
+
+def digits_of_fit(verdict: Verdict) -> int:
+    """Decimals that a fit in % is given with: more where some come so close to 100 that one would hide the difference."""
+    return 2 if any(s.fit > 99 for scores in verdict.scores.values() for s in scores) else 1
+
+
+def _fit(verdict: Verdict) -> Figure:
+    digits = digits_of_fit(verdict)
+    before, after = (
+        text.fit(float(np.mean([s.fit for s in held_out(verdict, m)])), digits) for m in ("refit", "augmented")
+    )
+    many = len(held_out(verdict, "refit")) > 1
+    label = "Validation fit" + (", mean" if many else "")
+    if not verdict.mismatch:
+        return Figure(label, "", before, "the model re-estimated, nothing added")
+    return Figure(label, before, after, "re-estimated as it was → with the effects attached")
+
+
+def _errors(verdict: Verdict) -> list[Figure]:
+    figures = []
+    outputs = list(dict.fromkeys(s.output for s in verdict.scores["refit"]))
+    for output in outputs:
+        of = units(verdict).get(output, "")
+        before, after = (text.number(pooled(held_out(verdict, m, output))) for m in ("refit", "augmented"))
+        label = f"Validation error of {text.words(output)}"
+        note = f"root mean square, {text.unit(of)}" if of else "root mean square"
+        figures.append(Figure(label, before if verdict.mismatch else "", after if verdict.mismatch else before, note))
+    return figures
+
+
+def _confidence(verdict: Verdict) -> Figure:
+    what = "that something is missing" if verdict.mismatch else "that these recordings show nothing more"
+    return Figure("Confidence", "", f"{verdict.confidence:.2f}", what)

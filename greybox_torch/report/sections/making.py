@@ -1,0 +1,67 @@
+"""How to use the model, and how this page came about."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from greybox_torch.diagnose.verdict import Verdict
+from greybox_torch.report import text
+from greybox_torch.report.about import About
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A stage's duration; ``length`` of its bar in % of the longest."""
+
+    name: str
+    seconds: str
+    length: float
+
+
+@dataclass(frozen=True)
+class Value:
+    name: Markup
+    owner: str
+    value: str
+    unit: str
+
+
+@dataclass(frozen=True)
+class Making:
+    facts: tuple[tuple[str, str], ...]
+    stages: tuple[Stage, ...]
+    values: tuple[Value, ...]
+    command: str
+    template: str = "making.html.j2"
+
+    @classmethod
+    def of(cls, verdict: Verdict, about: About) -> Making:
+        facts = (
+            ("Data set", verdict.dataset),
+            ("Model", verdict.model),
+            ("Made", about.created.strftime("%Y-%m-%d %H:%M %Z").strip()),
+            ("By", f"greybox_torch {about.version}"),
+            ("Seed", str(verdict.seed)),
+            ("Device", about.device),
+            ("Time", text.seconds(verdict.seconds)),
+        )
+        longest = max([*verdict.stages.values(), 1e-12])
+        stages = [Stage(text.words(n), text.seconds(s), 100.0 * s / longest) for n, s in verdict.stages.items()]
+        return cls(facts, tuple(stages), tuple(_values(about)), about.command)
+
+
+def _values(about: About) -> list[Value]:
+    units, rows = about.units or {}, []
+    for name, value in (about.values or {}).items():
+        owner, _, own = name.rpartition(".")
+        rows.append(
+            Value(
+                text.symbol(own),
+                owner.replace(".", ": ").replace("_", " "),
+                text.number(value, 5),
+                text.unit(units.get(name, "")),
+            )
+        )
+    return rows

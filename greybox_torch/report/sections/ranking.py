@@ -1,0 +1,52 @@
+"""What else was considered: the hypotheses of the screen, ranked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greybox_torch.diagnose.verdict import Verdict
+from greybox_torch.report import text
+
+MOST_ROWS = 12
+
+
+@dataclass(frozen=True)
+class Row:
+    """A hypothesis; ``length`` of its bar in % of the longest."""
+
+    mechanism: str
+    port: str
+    explained: str
+    length: float
+    gain: str
+    chosen: bool
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """``left_out`` counts hypotheses that explain less than all that are shown."""
+
+    rows: tuple[Row, ...]
+    left_out: int
+    mismatch: bool
+    template: str = "ranking.html.j2"
+
+    @classmethod
+    def of(cls, verdict: Verdict) -> Ranking | None:
+        if not verdict.ranking:
+            return None
+        chosen = {(e.port, e.mechanism) for e in verdict.effects}
+        shown = [row for k, row in enumerate(verdict.ranking) if k < MOST_ROWS or (row[0], row[1]) in chosen]
+        longest = max(max(row[2] for row in shown), 1e-12)
+        rows = [
+            Row(
+                text.mechanism(mechanism),
+                port,
+                text.percent(explained),
+                100.0 * max(explained, 0.0) / longest,
+                "" if gain is None else text.percent(gain),
+                (port, mechanism) in chosen,
+            )
+            for port, mechanism, explained, gain in shown
+        ]
+        return cls(tuple(rows), len(verdict.ranking) - len(rows), verdict.mismatch)

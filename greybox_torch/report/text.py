@@ -1,0 +1,106 @@
+"""Numbers, units and names as a reader expects them in print."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from markupsafe import Markup, escape
+
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_GREEK = {"alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "theta": "θ", "mu": "μ", "sigma": "σ", "omega": "ω"}
+_PERSONS = ("coulomb", "stribeck")
+
+
+def number(value: float, digits: int = 3) -> str:
+    """So many significant digits, a true minus sign, a power of ten only where plain digits would be hard to read."""
+    if not math.isfinite(value):
+        return "—"
+    if value == 0:
+        return "0"
+    power = math.floor(math.log10(abs(value)))
+    if -4 <= power < 6:
+        rounded = round(value, digits - 1 - power)
+        return f"{rounded:.{max(0, digits - 1 - power)}f}".replace("-", "−")
+    return f"{value / 10.0**power:.{digits - 1}f}·10{str(power).translate(_SUPERSCRIPT)}".replace("-", "−")
+
+
+def measured(value: float, deviation: float | None) -> str:
+    """A value with its standard deviation: two digits of that, and the value to the same place."""
+    if deviation is None or not math.isfinite(deviation) or deviation <= 0 or not math.isfinite(value):
+        return number(value, 4)
+    place = 1 - math.floor(math.log10(deviation))
+    largest = math.floor(math.log10(max(abs(value), deviation)))
+    if -4 <= largest < 6 and place <= 7:
+        digits = max(0, place)
+        return f"{round(value, place):.{digits}f} ± {round(deviation, place):.{digits}f}".replace("-", "−")
+    scale, digits = 10.0**largest, max(0, place + largest)
+    ten = f"10{str(largest).translate(_SUPERSCRIPT)}"
+    return f"({value / scale:.{digits}f} ± {deviation / scale:.{digits}f})·{ten}".replace("-", "−")
+
+
+def percent(share: float) -> str:
+    """A share as a percentage: tenths below one percent and above ninety-nine, whole percents between."""
+    if not math.isfinite(share):
+        return "—"
+    hundred = 100.0 * share
+    if 0 < abs(hundred) < 0.1:
+        return "under 0.1 %" if hundred > 0 else "−0.1 %"
+    near_end = abs(hundred) < 1 or 99 < hundred < 100
+    text = f"{hundred:.1f}" if near_end and hundred != 0 else f"{hundred:.0f}"
+    return f"{text} %".replace("-", "−")
+
+
+def fit(value: float, digits: int = 1) -> str:
+    """A fit in percent; where the simulation overflows or is worlds away, words."""
+    if not math.isfinite(value):
+        return "overflow"
+    return f"{value:.{digits}f} %".replace("-", "−") if value > -1e4 else "far off"
+
+
+def unit(text: str) -> str:
+    """A unit as it is printed: `N m/(rad/s)^2` becomes N·m/(rad/s)²."""
+    raised = re.sub(r"\^(-?\d+)", lambda found: found.group(1).translate(_SUPERSCRIPT), text)
+    return re.sub(r"\s+", "·", raised.strip())
+
+
+def with_unit(text: str, of: str) -> str:
+    """A number with its unit; a unit that is empty adds nothing."""
+    return f"{text} {unit(of)}" if of else text
+
+
+def axis(name: str, of: str) -> str:
+    """A label for an axis: the quantity and its unit."""
+    return f"{words(name)} [{unit(of)}]" if of else words(name)
+
+
+def words(name: str) -> str:
+    """An identifier as words: `motor_speed` becomes motor speed."""
+    return name.replace("_", " ")
+
+
+def mechanism(name: str) -> str:
+    """A mechanism's name as words, with the names of persons in capitals."""
+    return " ".join(word.capitalize() if word in _PERSONS else word for word in name.split("_"))
+
+
+def first_capital(sentence: str) -> str:
+    """The text with its first letter in capitals, the rest as it is."""
+    return sentence[:1].upper() + sentence[1:]
+
+
+def symbol(name: str) -> Markup:
+    """A parameter's name as a formula would have it: F_c with a subscript, alpha as α; longer names as words."""
+    letter, underscore, index = name.partition("_")
+    letter = _GREEK.get(letter, letter)
+    if len(letter) == 1:
+        below = Markup("<sub>{}</sub>").format(index) if underscore else Markup("")
+        return Markup("<i>{}</i>{}").format(letter, below)
+    return escape(words(name))
+
+
+def seconds(value: float) -> str:
+    """A duration: tenths below ten seconds, minutes above two."""
+    if value < 10:
+        return f"{value:.1f} s"
+    return f"{value:.0f} s" if value < 120 else f"{int(value) // 60} min {int(value) % 60} s"
