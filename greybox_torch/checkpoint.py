@@ -10,7 +10,6 @@ import hashlib
 import json
 import re
 from collections.abc import Mapping, Sequence
-from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -22,7 +21,7 @@ from safetensors import SafetensorError
 from safetensors.numpy import load, save
 
 from greybox_torch.errors import UserError
-from greybox_torch.files import json_text, replacing, write_text
+from greybox_torch.files import json_text, write_all
 
 SCHEMA = "greybox-checkpoint/1"
 _SUFFIXES = (".safetensors", ".json")
@@ -51,18 +50,23 @@ class Checkpoint:
 def save_checkpoint(stem: Path, checkpoint: Checkpoint) -> tuple[Path, Path]:
     """Writes `stem`.safetensors and `stem`.json, and returns their paths.
 
-    The card carries the hash of the tensors, so that halves of different checkpoints are noticed. Raises UserError where they cannot
-    be written.
+    Raises UserError where they cannot be written.
+    """
+    write_all(checkpoint_files(stem, checkpoint))
+    return _halves(stem)
+
+
+def checkpoint_files(stem: Path, checkpoint: Checkpoint) -> dict[Path, str | bytes]:
+    """The contents of `stem`.safetensors and `stem`.json, to be written together, perhaps with other results.
+
+    The card carries the hash of the tensors, so that halves of different checkpoints are noticed.
     """
     tensors, card = _halves(stem)
     packed = save({name: np.asarray(value, dtype=np.float64) for name, value in checkpoint.values.items()})
     content = asdict(checkpoint)
     del content["values"]
     content |= {"schema": SCHEMA, "parameters": list(checkpoint.values), "tensors": hashlib.sha256(packed).hexdigest()}
-    with ExitStack() as together:
-        together.enter_context(replacing(tensors)).write_bytes(packed)
-        write_text(together.enter_context(replacing(card)), json_text(content))
-    return tensors, card
+    return {tensors: packed, card: json_text(content)}
 
 
 def load_checkpoint(path: Path) -> Checkpoint:

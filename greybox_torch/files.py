@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +39,16 @@ def write_text(path: Path, text: str) -> None:
     """Writes `text` to `path` as UTF-8, whole or not at all. Raises UserError where it cannot be written."""
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
+
+
+def write_all(contents: Mapping[Path, str | bytes]) -> None:
+    """Writes files that belong together: all of them, or none. Text is encoded as UTF-8. Raises UserError where one cannot be written."""
+    with ExitStack() as together:
+        for path, content in contents.items():
+            if path.is_dir():
+                raise UserError(f"{path}: cannot be written: it is a folder; expected a place for a file")
+            temporary = together.enter_context(replacing(path))
+            temporary.write_bytes(content.encode() if isinstance(content, str) else content)
 
 
 def json_text(result: Any) -> str:

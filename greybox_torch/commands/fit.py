@@ -14,8 +14,7 @@ from greybox_torch.checkpoint import Checkpoint, save_checkpoint
 from greybox_torch.commands.fit_summary import print_summary
 from greybox_torch.commands.free_runs import scores_json
 from greybox_torch.commands.options import Options
-from greybox_torch.commands.task import Task, load_task
-from greybox_torch.errors import UserError
+from greybox_torch.commands.task import Task, check_estimation, load_task
 from greybox_torch.estimate.comparison import Score, compare
 from greybox_torch.estimate.fit import FitResult, fit
 from greybox_torch.estimate.termination import Termination
@@ -34,10 +33,7 @@ def run(dataset: Path, options: Options) -> None:
     """
     began = time.perf_counter()
     task = load_task(dataset, options)
-    if not task.data.estimation():
-        raise UserError(
-            f'{dataset}: [[experiment]] role: no experiment has the role "estimation"; expected at least one'
-        )
+    check_estimation(dataset, task.data)
     problem = task.problem(task.data.estimation())
     stepper = make_stepper(task.model, problem.free_names, device=task.device)
     found = fit(problem, stepper=stepper, device=task.device, progress=_progress(Console(stderr=True, highlight=False)))

@@ -58,6 +58,14 @@ def load_task(dataset: Path, options: Options) -> Task:
     return task
 
 
+def check_estimation(dataset: Path, data: DataSet) -> None:
+    """Raises UserError where no experiment of the data set is there to estimate from."""
+    if not data.estimation():
+        raise UserError(
+            f'{dataset}: [[experiment]] role: no experiment has the role "estimation"; expected at least one'
+        )
+
+
 def absolute(name: str) -> str:
     """The name of a model with the file part absolute, so that it can be loaded from anywhere."""
     file, colon, model_class = name.rpartition(":")
