@@ -84,11 +84,8 @@ def _chart(trace: Trace, mismatch: bool) -> Chart:
             (span(x, float(trace.time[detail][0]), float(trace.time[detail][-1]), "detail"),) if part is whole else ()
         )
         columns.append((_signal(trace, runs, part, x, title, shade), _error(trace, runs, part, x, shade)))
-    rms = {name: root_mean_square(trace.measured, values) for name, values in runs.items()}
-    told = " before, ".join(text.with_unit(text.number(v), trace.unit) for v in rms.values()) + (
-        " after" if mismatch else ""
-    )
-    caption = f"{text.first_capital(text.words(trace.output))} measured and simulated, and the error between them: root mean square {told}."
+    what = text.first_capital(text.words(trace.output))
+    caption = f"{what} measured and simulated, and the error between them: {_told(trace, runs, whole)}."
     return Chart(tuple(columns), caption, (Key("measured", "measured"), *keys(mismatch)))
 
 
@@ -110,14 +107,18 @@ def _error(trace: Trace, runs: dict[str, np.ndarray], part: slice, x: Scale, sha
     pieces = {name: trace.measured[part] - values[part] for name, values in runs.items()}
     y = linear(*(np.clip(error, -reach, reach) for error in pieces.values()), np.zeros(1))
     marks = [line(x, y, time, error, name) for name, error in pieces.items()]
-    sizes = {
-        name: float(np.sqrt(np.nanmean(np.where(np.isfinite(e), e, np.nan) ** 2)))
-        for name, e in pieces.items()
-        if np.isfinite(e).any()
-    }
-    told = ", ".join(f"{text.with_unit(text.number(v), trace.unit)} {name}" for name, v in sizes.items())
-    alt = f"{trace.experiment}: error over time, root mean square {told}."
+    alt = f"{trace.experiment}: error over time, {_told(trace, runs, part)}."
     return Panel(x, y, "time [s]", text.axis("error", trace.unit), (*shade, *marks), alt, "medium", zero=True)
+
+
+def _told(trace: Trace, runs: dict[str, np.ndarray], part: slice) -> str:
+    """The size of the errors in words."""
+    sizes = []
+    for name, values in runs.items():
+        size = root_mean_square(trace.measured[part], values[part])
+        told = text.with_unit(text.number(size), trace.unit) if np.isfinite(size) else "overflow"
+        sizes.append(told if name == "model" else f"{told} {name}")
+    return f"root mean square {', '.join(sizes)}"
 
 
 def _extent(trace: Trace) -> tuple[float, float]:

@@ -1,0 +1,35 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnose.verdict import Verdict
+from greybox_torch.report.sections.spectrum import spectra
+
+
+def test_power_and_place(with_traces: Callable[..., Verdict]) -> None:
+    """The error before is a sine of 15 Hz and amplitude 1: half a unit of power, all of it there."""
+    (found,) = spectra(with_traces(("A", "validation", 1.0), ("B", "validation", 1.0, 5000), ("C", "estimation", 9.0)))
+    assert set(found.density) == {"output", "before", "after"}
+    assert found.frequency[int(np.argmax(found.density["before"]))] == pytest.approx(15.0, abs=1.5)
+    near = (found.frequency > 10) & (found.frequency < 20)
+    power = np.trapezoid(found.density["before"][near], found.frequency[near])
+    assert power == pytest.approx(0.5, rel=0.1)
+    high = found.frequency > 100
+    assert np.median(found.density["after"][high]) == pytest.approx(0.05**2 / 500.0, rel=0.2)
+    assert len(found.frequency) < 150
+
+
+def test_experiments_of_another_sample_time_have_their_own(with_traces: Callable[..., Verdict]) -> None:
+    verdict = with_traces(("A", "validation", 1.0), ("B", "validation", 1.0))
+    first, second = verdict.traces
+    verdict = replace(verdict, traces=(first, replace(second, time=2.0 * second.time)))
+    assert [s.frequency[-1] for s in spectra(verdict)] == pytest.approx([490, 245], rel=0.05)
+
+
+def test_nothing_missing(of_kind: Callable[[str], Verdict]) -> None:
+    (found,) = spectra(of_kind("nothing"))
+    assert set(found.density) == {"output", "model"}

@@ -1,0 +1,88 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from greybox_torch.report import text
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "shown"),
+    [
+        (0.0, 3, "0"),
+        (1.2345, 3, "1.23"),
+        (-1.2345, 3, "−1.23"),
+        (0.06012, 3, "0.0601"),
+        (123456.0, 3, "123000"),
+        (1234567.0, 3, "1.23·10⁶"),
+        (-0.0000123, 3, "−1.23·10⁻⁵"),
+        (math.nan, 3, "—"),
+        (math.inf, 3, "—"),
+    ],
+)
+def test_number(value: float, digits: int, shown: str) -> None:
+    assert text.number(value, digits) == shown
+
+
+@pytest.mark.parametrize(
+    ("value", "deviation", "shown"),
+    [
+        (0.031, 0.0004, "0.03100 ± 0.00040"),
+        (20.0774, 0.0263501, "20.077 ± 0.026"),
+        (-3.1648, 0.41, "−3.16 ± 0.41"),
+        (95.1, 12.3, "95 ± 12"),
+        (951.0, 123.0, "950 ± 120"),
+        (2.31e-7, 4e-9, "(2.310 ± 0.040)·10⁻⁷"),
+        (0.5, 3.0, "0.5 ± 3.0"),
+        (0.5, None, "0.5000"),
+        (0.5, math.inf, "0.5000"),
+        (0.5, 0.0, "0.5000"),
+        (math.nan, 0.1, "—"),
+    ],
+)
+def test_value_with_its_deviation(value: float, deviation: float | None, shown: str) -> None:
+    assert text.measured(value, deviation) == shown
+
+
+@pytest.mark.parametrize(
+    ("share", "shown"),
+    [
+        (0.972, "97 %"),
+        (0.9942, "99.4 %"),
+        (1.0, "100 %"),
+        (0.0062, "0.6 %"),
+        (0.0002, "under 0.1 %"),
+        (0.0, "0 %"),
+        (-0.05, "−5 %"),
+        (math.nan, "—"),
+    ],
+)
+def test_percent(share: float, shown: str) -> None:
+    assert text.percent(share) == shown
+
+
+def test_fit() -> None:
+    assert text.fit(90.26) == "90.3 %"
+    assert text.fit(99.7123, 2) == "99.71 %"
+    assert text.fit(-math.inf) == "overflow"
+    assert text.fit(-1e7) == "far off"
+
+
+def test_units_and_names() -> None:
+    assert text.unit("N m/(rad/s)^2") == "N·m/(rad/s)²"
+    assert text.unit("kg m^-1") == "kg·m⁻¹"
+    assert text.with_unit("3", "") == "3"
+    assert text.axis("motor_speed", "rad/s") == "motor speed [rad/s]"
+    assert text.axis("level", "") == "level"
+    assert text.mechanism("coulomb_asymmetry") == "Coulomb asymmetry"
+    assert text.first_capital("nonlinear stiffness") == "Nonlinear stiffness"
+    assert text.symbol("F_c") == "<i>F</i><sub>c</sub>"
+    assert text.symbol("alpha") == "<i>α</i>"
+    assert text.symbol("half_gap") == "half gap"
+    assert text.symbol("<b>") == "&lt;b&gt;"
+
+
+@pytest.mark.parametrize(("value", "shown"), [(0.62, "0.6 s"), (42.3, "42 s"), (119.0, "119 s"), (135.0, "2 min 15 s")])
+def test_seconds(value: float, shown: str) -> None:
+    assert text.seconds(value) == shown
