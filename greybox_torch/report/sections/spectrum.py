@@ -73,10 +73,12 @@ def _averaged(traces: list[Trace], step: float, mismatch: bool) -> Spectra:
         for name, signal in signals.items():
             frequency, density = _density(signal, step, segment)
             total[name] = total.get(name, 0.0) + weight * density
-    place = np.floor(PER_DECADE * np.log10(frequency[1:] / frequency[1]) + 1e-9)
+    inner = slice(1, -1)  # the ends of a one-sided density count half
+    frequency = frequency[inner]
+    place = np.floor(PER_DECADE * np.log10(frequency / frequency[0]) + 1e-9)
     _, index, count = np.unique(place, return_inverse=True, return_counts=True)
-    pooled = {name: np.bincount(index, density[1:]) / count for name, density in total.items()}
-    return Spectra(traces[0].output, traces[0].unit, np.bincount(index, frequency[1:]) / count, pooled)
+    pooled = {name: np.bincount(index, density[inner]) / count for name, density in total.items()}
+    return Spectra(traces[0].output, traces[0].unit, np.bincount(index, frequency) / count, pooled)
 
 
 def _density(signal: np.ndarray, step: float, segment: int) -> tuple[np.ndarray, np.ndarray]:
