@@ -24,7 +24,11 @@ MOST_LAWS = 3
 
 
 def laws_on_curve(
-    model: GreyBoxModel, fitted: Hypothesis, curve: Attachment, surroundings: Mapping[str, Surroundings]
+    model: GreyBoxModel,
+    fitted: Hypothesis,
+    curve: Attachment,
+    surroundings: Mapping[str, Surroundings],
+    card: Mapping[str, float],
 ) -> list[Leader]:
     """The named laws without memory that depend on the curve's signal alone, least-squares fitted to the curve, best matches first."""
     unknown = curve.mechanism
@@ -50,7 +54,7 @@ def laws_on_curve(
         if share > LEAST_MATCH and law.name not in found and len(found) < MOST_LAWS:
             attachment = attach(model, curve.port, law)
             values = {**base, **{f"{attachment.prefix}.{n}": v for n, v in start.items()}}
-            found[law.name] = Leader(attachment, (values,), share)
+            found[law.name] = Leader(attachment, ({**values, **card}, values), share)
     return list(found.values())
 
 

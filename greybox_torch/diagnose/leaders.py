@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,8 +16,6 @@ from greybox_torch.mechanisms.unknown import Unknown
 NAMED_PER_LENGTH = 5
 CURVES_PER_LENGTH = 1
 LEAST_SHARE = 0.003
-ALIKE = 0.7
-STARTS_PER_LENGTH = 2
 
 
 @dataclass(frozen=True)
@@ -30,31 +28,38 @@ class Leader:
 
 
 def leaders(
-    looks: Sequence[Sequence[Look]], fits: Sequence[WindowFit], surroundings: dict[str, Surroundings]
+    looks: Sequence[Sequence[Look]],
+    fits: Sequence[WindowFit],
+    surroundings: Mapping[str, Surroundings],
+    card: Mapping[str, float],
 ) -> list[Leader]:
     """The best candidates at any window length, each with start values from every length at which it leads.
 
     Args:
         looks: per window length, the looks of the screen.
         fits: per window length, the fit that was looked at.
+        card: the values that the problem began with. A model that lacks an effect bends its parameters to make up for it, at times into
+            a valley that the complete model cannot leave again; so every candidate is also refitted from where the user began.
     """
     found: dict[tuple, Leader] = {}
     for at_length, fit in zip(looks, fits, strict=True):
         best = _best_of_each(at_length, surroundings)
         named = [b for b in best if not isinstance(b.attachment.mechanism, Unknown)][:NAMED_PER_LENGTH]
         curves = [b for b in best if isinstance(b.attachment.mechanism, Unknown)][:CURVES_PER_LENGTH]
+        fitted = dict(zip(fit.problem.names, map(float, fit.problem.values), strict=True))
         for look in named + curves:
             if look.explained < LEAST_SHARE:
                 continue
             identity = identity_of(look.attachment)
-            alike = [
-                l for l in at_length if identity_of(l.attachment) == identity and l.explained > ALIKE * look.explained
-            ]
-            near = sorted(alike, key=lambda l: -l.explained)[:STARTS_PER_LENGTH]
-            new = tuple({**_values(fit), **_suggested(one, surroundings)} for one in near)
+            suggested = _suggested(look, surroundings)
+            starts = ({**fitted, **card, **suggested}, {**fitted, **suggested})
             before = found.get(identity)
-            starts = new if before is None else (*before.starts, *new)
-            found[identity] = Leader(look.attachment, starts, max(look.explained, before.explained if before else 0.0))
+            if before is None:
+                found[identity] = Leader(look.attachment, starts, look.explained)
+            else:
+                explained = max(look.explained, before.explained)
+                order = (*starts, *before.starts) if look.explained > before.explained else (*before.starts, *starts)
+                found[identity] = Leader(look.attachment, order, explained)
     return sorted(found.values(), key=lambda leader: -leader.explained)
 
 
@@ -70,7 +75,7 @@ def identity_of(attachment: Attachment) -> tuple:
     )
 
 
-def _best_of_each(looks: Sequence[Look], surroundings: dict[str, Surroundings]) -> list[Look]:
+def _best_of_each(looks: Sequence[Look], surroundings: Mapping[str, Surroundings]) -> list[Look]:
     best: dict[tuple, Look] = {}
     for look in looks:
         identity = identity_of(look.attachment)
@@ -80,7 +85,7 @@ def _best_of_each(looks: Sequence[Look], surroundings: dict[str, Surroundings]) 
     return sorted(best.values(), key=lambda look: -look.explained)
 
 
-def _physical(look: Look, surroundings: dict[str, Surroundings]) -> bool:
+def _physical(look: Look, surroundings: Mapping[str, Surroundings]) -> bool:
     """Whether the estimated size has the sign that the law allows (at least one of several directions)."""
     bounds = {p.name: p.bounds for p in look.attachment.mechanism.parameters(surroundings[look.attachment.port])}
     bounds[SHARE] = (0.0, np.inf)
@@ -90,13 +95,9 @@ def _physical(look: Look, surroundings: dict[str, Surroundings]) -> bool:
     return any(inside)
 
 
-def _suggested(look: Look, surroundings: dict[str, Surroundings]) -> dict[str, float]:
+def _suggested(look: Look, surroundings: Mapping[str, Surroundings]) -> dict[str, float]:
     prefix = look.attachment.prefix
     values = dict(look.probe.values)
     values |= {n: float(v) for n, v in zip(look.probe.directions, look.size, strict=True) if n != SHARE}
     bounds = {p.name: p.bounds for p in look.attachment.mechanism.parameters(surroundings[look.attachment.port])}
     return {f"{prefix}.{name}": float(np.clip(value, *bounds[name])) for name, value in values.items()}
-
-
-def _values(fit: WindowFit) -> dict[str, float]:
-    return dict(zip(fit.problem.names, map(float, fit.problem.values), strict=True))

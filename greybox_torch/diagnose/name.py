@@ -107,7 +107,8 @@ def _distilled(
     if best is None or not best.unknown:
         return []
     tried = []
-    for leader in laws_on_curve(base.model, best.fitted, best.leader.attachment, surroundings):
+    card = dict(zip(base.names, map(float, base.values), strict=True))
+    for leader in laws_on_curve(base.model, best.fitted, best.leader.attachment, surroundings, card):
         progress(f"refitting {leader.attachment.prefix} from the curve")
         effects = (*current.effects, leader.attachment)
         fitted = hypothesis(

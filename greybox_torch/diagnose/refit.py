@@ -19,8 +19,11 @@ FACTORS = (1, 4, 16)
 """Window lengths as multiples of the shortest, a 64th of the longest record: short windows forgive a wrong trajectory, long ones show
 slow effects. Multiples, so that the start states of short windows serve the long ones."""
 
-FIRST_SETTINGS = Settings(iterations=5, tolerance=1e-3, trials=5)
+FIRST_SETTINGS = Settings(iterations=10, tolerance=3e-3, trials=5)
 WINDOW_SETTINGS = Settings(iterations=30, tolerance=3e-4, trials=6)
+RIVAL = 4.0
+"""How many times the best mean squared error a start may be at, after its first iterations, and still be followed."""
+
 POLISH_SETTINGS = Settings(iterations=120, tolerance=1e-6, trials=8)
 
 
@@ -70,7 +73,7 @@ def hypothesis(
 ) -> Hypothesis | None:
     """Fit ``base`` with ``effects`` attached, on windows of every length, from each of several start values; None where none simulates.
 
-    At every length all the start values and the result of the length before get a few iterations each; the best goes on to the end.
+    At every length all the start values and the result of the length before get some iterations each; the best goes on to the end.
 
     Args:
         starts: parameter values by name, of the base and of the effects.
@@ -108,13 +111,29 @@ def _best_fit(
     begun = [
         fit_windows(t, stepper, length, shorter=shorter, substeps=substeps, settings=FIRST_SETTINGS) for t in trials
     ]
-    found = [fit for fit in begun if fit is not None]
+    found = sorted((fit for fit in begun if fit is not None), key=lambda f: f.mean_square)
     if not found:
         return None
-    best = min(found, key=lambda f: f.mean_square)
-    starts = carried_starts(best.problem, stepper, best.windows, best.starts, substeps)
-    again = fit_windows(best.problem, stepper, length, starts=starts, substeps=substeps, settings=settings)
-    return best if again is None or again.mean_square > best.mean_square else again
+    ended = [_continued(fit, stepper, length, substeps, settings) for fit in _apart(found)]
+    return min(ended, key=lambda f: f.mean_square)
+
+
+def _apart(found: Sequence[WindowFit]) -> list[WindowFit]:
+    """The best, and the next one that seems to be on its way to another optimum: being ahead early says little."""
+    best = found[0]
+    values = best.problem.values
+    rivals = [
+        f
+        for f in found[1:]
+        if f.mean_square < RIVAL * best.mean_square and not np.allclose(f.problem.values, values, rtol=0.02)
+    ]
+    return [best, *rivals[:1]]
+
+
+def _continued(fit: WindowFit, stepper: Stepper, length: int, substeps: int, settings: Settings) -> WindowFit:
+    starts = carried_starts(fit.problem, stepper, fit.windows, fit.starts, substeps)
+    again = fit_windows(fit.problem, stepper, length, starts=starts, substeps=substeps, settings=settings)
+    return fit if again is None or again.mean_square > fit.mean_square else again
 
 
 def _distinct(problems: Sequence[Problem]) -> list[Problem]:

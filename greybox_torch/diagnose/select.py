@@ -24,6 +24,11 @@ LEAST_GAIN = 0.01
 LEAST_SURENESS = 3.0
 """Standard errors (over windows) by which an effect must improve the prediction."""
 
+CLOSE = 0.5
+"""Difference in score (logarithm of the mean squared error) within which rivals are polished before they are compared."""
+
+FRONT_RUNNERS = 3
+
 CURVE_MARGIN = 0.1
 """How much better, in the logarithm of the mean squared error, a free curve must be than every named mechanism to be preferred."""
 
@@ -53,7 +58,8 @@ class Search:
 
     def run(self) -> Hypothesis:
         """Search until nothing pays any more."""
-        self.begin()
+        if not hasattr(self, "plain"):
+            self.begin()
         while len(self.current.effects) < MOST_EFFECTS and self.step():
             pass
         self.prune()
@@ -66,7 +72,7 @@ class Search:
             NumericalError: it overflows even over short windows.
         """
         self.progress("refitting the model as it stands")
-        card = dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
+        card = self._card()
         plain = hypothesis(
             self.problem, (), {}, [card], substeps=self.substeps, settings=POLISH_SETTINGS, device=self.device
         )
@@ -83,7 +89,7 @@ class Search:
     def step(self) -> bool:
         """One round: screen, refit the leaders, take the best if it pays. Whether one was taken."""
         looks = self._screened()
-        found = leaders(looks, self.current.fits, self.surroundings)
+        found = leaders(looks, self.current.fits, self.surroundings, self._card())
         ranked = rank(
             self.problem,
             self.current,
@@ -93,9 +99,8 @@ class Search:
             device=self.device,
             progress=self.progress,
         )
+        ranked = self._fairly(ranked)
         best = _chosen(ranked)
-        if best is not None:
-            best = self._fairly(best)
         taken = best if best is not None and best.gain > LEAST_GAIN and best.surely > LEAST_SURENESS else None
         self.rounds.append(Round(tuple(tuple(at) for at in looks), tuple(ranked), taken))
         if taken is not None:
@@ -132,38 +137,55 @@ class Search:
         screen = Screen.of(model, at.effects, offered, self.surroundings, free, device=self.device)
         return [screen.look(fit, self.substeps) for fit in at.fits]
 
-    def _fairly(self, best: Ranked) -> Ranked:
-        """The best hypothesis polished, and compared with its parent refitted from the same values.
+    def _fairly(self, ranked: Sequence[Ranked]) -> list[Ranked]:
+        """The front runners polished, and compared with their parent refitted from the best one's values.
 
-        Without this, an effect of next to no size can win merely because its refit got out of a local minimum that the parent sits in.
+        Without the first, the order among close rivals would be the luck of their start values; without the second, an effect of next
+        to no size could win merely because its refit got out of a local minimum that the parent sits in.
         """
-        shapes = self._shapes(best)
-        fitted = polished(
-            self.problem, best.fitted, self.surroundings, shapes, substeps=self.substeps, device=self.device
-        )
-        parent = polished(
-            self.problem, self.current, self.surroundings, [fitted.values()], substeps=self.substeps, device=self.device
-        )
+        if not ranked or ranked[0].gain < LEAST_GAIN:
+            return list(ranked)
+        least = ranked[0].fitted.score + CLOSE
+        front = [r for r in ranked if r.fitted.score < least][:FRONT_RUNNERS]
+        polish = [self._polished(r.fitted, self._shapes(r)) for r in front]
+        best = min(polish, key=lambda fitted: fitted.score)
+        parent = self._polished(self.current, [best.values(), {**best.values(), **self._card()}])
         if parent.score < self.current.score:
             self.current = parent
             if not parent.effects:
                 self.plain = parent
-        return Ranked(best.leader, fitted, self.current.score - fitted.score, sureness(self.current, fitted))
+        rest = [r.fitted for r in ranked[len(front) :]]
+        again = [self._judged(r, fitted) for r, fitted in zip(ranked, polish + rest, strict=True)]
+        return sorted(again, key=lambda r: r.fitted.score)
 
-    def _shapes(self, best: Ranked) -> list[dict[str, float]]:
-        """The hypothesis' values with the newest effect's shape as each probe of the screen has it, against local minima of the shape."""
-        effect, values = best.leader.attachment, best.fitted.values()
+    def _judged(self, ranked: Ranked, fitted: Hypothesis) -> Ranked:
+        return Ranked(ranked.leader, fitted, self.current.score - fitted.score, sureness(self.current, fitted))
+
+    def _polished(self, fitted: Hypothesis, starts: Sequence[dict[str, float]]) -> Hypothesis:
+        self.progress(f"polishing {' + '.join(e.prefix for e in fitted.effects) or 'the model as it stands'}")
+        return polished(self.problem, fitted, self.surroundings, starts, substeps=self.substeps, device=self.device)
+
+    def _shapes(self, ranked: Ranked) -> list[dict[str, float]]:
+        """Start values against local minima: the newest effect's shape as each probe of the screen has it, the base's from the card."""
+        effect, values = ranked.leader.attachment, ranked.fitted.values()
+        card = self._card()
         probes = effect.mechanism.probes(self.surroundings[effect.port])
-        shapes = [{f"{effect.prefix}.{n}": v for n, v in probe.values.items() if n != "order"} for probe in probes]
-        distinct = {tuple(sorted(shape.items())) for shape in shapes if shape}
-        return [{**values, **dict(shape)} for shape in sorted(distinct)]
+        shapes = {
+            tuple(sorted((f"{effect.prefix}.{n}", v) for n, v in probe.values.items() if n != "order"))
+            for probe in probes
+        }
+        return [{**values, **card, **dict(shape)} for shape in sorted(shapes)]
+
+    def _card(self) -> dict[str, float]:
+        """The parameter values that the problem began with."""
+        return dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
 
     def _refitted(self, effects: Sequence[Attachment], start: Hypothesis) -> Hypothesis | None:
         found = hypothesis(
             self.problem,
             effects,
             self.surroundings,
-            [start.values()],
+            [start.values(), {**start.values(), **self._card()}],
             substeps=self.substeps,
             shorter=start.fits[0],
             settings=POLISH_SETTINGS,

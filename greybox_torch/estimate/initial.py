@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,9 +17,14 @@ from greybox_torch.simulate.tape import Tape
 def estimate_initial(problem: Problem, stepper: Stepper, *, fraction: float = 0.1, substeps: int = 1) -> Problem:
     """The problem with the free start states of every experiment estimated on its first ``fraction``, parameters as they are.
 
+    Start values that a model knows only up to a few possibilities (the angle at which a periodic effect begins) are tried one by one.
     Where the simulation fails from the start states given, they are left as they are.
     """
-    if not problem.initial_free.any():
+    trials = problem.model.start_trials(problem.values)
+    names = [s.name for s in problem.model.states]
+    tried = np.isin(names, list(trials[0])) if trials else np.zeros(len(names), dtype=bool)
+    free = problem.initial_free | tried
+    if not free.any():
         return problem
     rows = []
     for e in range(len(problem.tape.first)):
@@ -26,12 +32,26 @@ def estimate_initial(problem: Problem, stepper: Stepper, *, fraction: float = 0.
             problem,
             tape=_beginning(problem.tape, e, fraction),
             initial=problem.initial[e : e + 1],
+            initial_free=free,
             free=np.zeros_like(problem.free),
         )
-        run = FreeRun(part, _AllFixed(stepper), substeps)
-        optimum = minimise(run.quadratic, run.start, *run.bounds, settings=Settings(iterations=30, tolerance=1e-8))
-        rows.append(part.initial[0] if optimum is None else run.at(optimum.point).initial[0])
+        rows.append(_best_start(part, trials, stepper, substeps))
     return problem.with_values(problem.values, np.array(rows))
+
+
+def _best_start(part: Problem, trials: Sequence[Mapping[str, float]], stepper: Stepper, substeps: int) -> np.ndarray:
+    """The start states (n_x,) of the one experiment of ``part`` that fit it best."""
+    names = [s.name for s in part.model.states]
+    best, cost = part.initial[0], np.inf
+    for trial in trials or [{}]:
+        initial = part.initial.copy()
+        for name, value in trial.items():
+            initial[0, names.index(name)] = value
+        run = FreeRun(replace(part, initial=initial), _AllFixed(stepper), substeps)
+        optimum = minimise(run.quadratic, run.start, *run.bounds, settings=Settings(iterations=30, tolerance=1e-8))
+        if optimum is not None and optimum.model.cost < cost:
+            best, cost = run.at(optimum.point).initial[0], optimum.model.cost
+    return best
 
 
 class _AllFixed:

@@ -31,6 +31,10 @@ class Attachment:
         return f"{self.port}.{self.mechanism.name}{self.label}"
 
 
+START_POSITIONS = 12
+"""Start positions tried over one period."""
+
+
 class AugmentedModel(GreyBoxModel):
     """``base`` with mechanisms attached.
 
@@ -123,6 +127,16 @@ class AugmentedModel(GreyBoxModel):
             delay = float(values[names.index(f"{a.prefix}.T")])
             rows += _delayed(tape, channel, delay)
         return tape if not rows else replace(tape, u=np.concatenate([tape.u, np.array(rows)]))
+
+    def start_trials(self, values: Any) -> list[dict[str, float]]:
+        """Positions at which a record may begin: those of bodies that no sensor sees, over one period of the slowest periodic effect."""
+        bodies = self._positions()
+        if not bodies:
+            return self.base.start_trials(values)
+        numbers = dict(zip((p.name for p in self.declared_parameters), values, strict=True))
+        orders = [abs(float(numbers.get(f"{a.prefix}.order", 1.0))) for a in self.attachments if a.position]
+        period = 2 * np.pi / max(min(orders), 1e-9)
+        return [{f"{b}.position": k * period / START_POSITIONS for b in bodies} for k in range(START_POSITIONS)]
 
     def curve(self, attachment: Attachment, signals: Mapping[str, torch.Tensor], p: Any) -> torch.Tensor:
         """The effect's own force for given local signals (without memory), for plots."""

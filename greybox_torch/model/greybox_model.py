@@ -65,6 +65,10 @@ class GreyBoxModel(torch.nn.Module):
         """The tape that drives the model at parameter ``values`` (n_p,): the recorded one, unless an effect shifts signals in time."""
         return tape
 
+    def start_trials(self, values: Any) -> list[dict[str, float]]:
+        """Start states to be tried one by one, where the data determine them only up to several possibilities."""
+        return []
+
     @property
     def title(self) -> str:
         """The model's name for reports."""

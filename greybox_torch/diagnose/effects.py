@@ -1,0 +1,133 @@
+"""The findings in the form of the verdict: parameters, place, share explained, alternatives."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from greybox_torch.diagnose.final import Final
+from greybox_torch.diagnose.locate import explained_energy, law_curve, local_signals, most_of, profile
+from greybox_torch.diagnose.probability import round_of, shared
+from greybox_torch.diagnose.refit import Hypothesis
+from greybox_torch.diagnose.select import Search
+from greybox_torch.diagnose.verdict import Effect, Profile
+from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.ports import Port
+
+
+def describe(search: Search, final: Final, substeps: int, sums: tuple[float, ...]) -> tuple[Effect, ...]:
+    """The effects of the search's final hypothesis.
+
+    Args:
+        final: that hypothesis fitted to whole records.
+        sums: mean squared validation errors of the plain and the augmented model, summed over experiments.
+    """
+    hypothesis = search.current
+    assert isinstance(hypothesis.model, AugmentedModel)
+    floor = min(f.mean_square for f in hypothesis.fits) * _experiments(search)
+    whole = max(0.0, (sums[0] - sums[1]) / max(sums[0] - floor, 1e-300))
+    parts = _parts(search)
+    return tuple(
+        _effect(search, hypothesis, hypothesis.model, e, final, substeps, min(1.0, whole * part))
+        for e, part in zip(hypothesis.effects, parts, strict=True)
+    )
+
+
+def _experiments(search: Search) -> int:
+    return max(1, len(search.problem.tape.first))
+
+
+def _parts(search: Search) -> list[float]:
+    """How the explained error divides among several effects, by the gain of the round in which each was taken."""
+    gains = []
+    for effect in search.current.effects:
+        taken = round_of(search, effect.prefix)
+        gains.append(1.0 if taken is None or taken.taken is None else max(taken.taken.gain, 1e-6))
+    return [g / sum(gains) for g in gains] if len(gains) > 1 else [1.0]
+
+
+def _effect(
+    search: Search,
+    hypothesis: Hypothesis,
+    model: AugmentedModel,
+    attachment: Attachment,
+    final: Final,
+    substeps: int,
+    explained: float,
+) -> Effect:
+    around = search.surroundings[attachment.port]
+    taken = round_of(search, attachment.prefix)
+    probability, alternatives = (0.5, ()) if taken is None or taken.taken is None else shared(taken.taken, taken.ranked)
+    site = next(p for p in model.base.all_ports if p.name == attachment.port)
+    profiles = _profiles(search, hypothesis, model, attachment, site, substeps)
+    mechanism = attachment.mechanism
+    return Effect(
+        port=attachment.port,
+        mechanism=mechanism.name,
+        probability=probability,
+        signals=tuple(signal_name(model.base, site, s) for s in mechanism.signals()),
+        where=_where(profiles),
+        parameters=_parameters(model, attachment, final),
+        explained=round(explained, 4),
+        alternatives=alternatives,
+        curve=law_curve(model, attachment, around, final.problem),
+        profiles=profiles,
+        explanation=mechanism.explanation,
+        source=mechanism.source,
+        separating_experiment=mechanism.experiment,
+    )
+
+
+def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:
+    """The model's own name of a port's signal, where it has one."""
+    given: Any = site.signals.get(signal)
+    if isinstance(given, str):
+        return given
+    if signal in ("input", "output"):
+        return str(getattr(site, signal, signal))
+    return signal if signal == "time" else f"{site.name}.{signal}"
+
+
+def _parameters(model: AugmentedModel, attachment: Attachment, final: Final) -> dict[str, dict[str, Any]]:
+    values, deviations = final.values(), final.deviations()
+    start = f"{attachment.prefix}."
+    units = {p.name: p.unit for p in model.declared_parameters}
+    result = {}
+    for name in units:
+        if name.startswith(start):
+            deviation = deviations.get(name)
+            known = deviation is not None and np.isfinite(deviation)
+            result[name.removeprefix(start)] = {
+                "value": values[name],
+                "std": deviation if known else None,
+                "unit": units[name],
+            }
+    return result
+
+
+def _profiles(
+    search: Search, hypothesis: Hypothesis, model: AugmentedModel, attachment: Attachment, site: Port, substeps: int
+) -> tuple[Profile, ...]:
+    energy = explained_energy(search.plain, hypothesis, substeps)
+    local = local_signals(model, attachment, hypothesis.fits[0], hypothesis.stepper, substeps)
+    units = search.surroundings[attachment.port].units
+    wanted = attachment.mechanism.signals() or tuple(site.signals)[:1]
+    return tuple(
+        profile(signal_name(model.base, site, name), units.get(name, ""), local[name], energy)
+        for name in wanted
+        if name in local and np.ptp(local[name]) > 0
+    )
+
+
+def _where(profiles: tuple[Profile, ...]) -> str:
+    """The first signal's interval that holds most of the explained error energy, in words."""
+    if not profiles:
+        return "everywhere along the records"
+    first = profiles[0]
+    low, high, share = most_of(first)
+    return (
+        f"{low:.3g} < {first.signal} < {high:.3g} {first.unit}".rstrip()
+        + f"; {100 * share:.0f} % of the explained error energy"
+    )

@@ -1,0 +1,61 @@
+"""What speaks for the verdict, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from greybox_torch.data import DataSet
+from greybox_torch.diagnose.select import LEAST_GAIN, Search
+from greybox_torch.mechanisms.attachment import Attachment
+
+if TYPE_CHECKING:
+    from greybox_torch.diagnose.verdict import Effect
+
+
+def sentences(
+    dataset: DataSet, search: Search, effects: Sequence[Effect], held: bool, interrupted: bool
+) -> tuple[str, ...]:
+    """The evidence for a reader: what was looked at, what it showed, and what limits it."""
+    plain, final = search.plain.fits, search.current.fits
+    looked = sum(len(r.looks[0]) for r in search.rounds if r.looks)
+    lengths = ", ".join(str(f.windows.steps) for f in plain)
+    lines = [
+        f"{looked} looks at mechanisms and ports, over windows of {lengths} samples with free start states.",
+        "Root mean square error over those windows, model as it stands: "
+        + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in plain)
+        + ("; with the effects: " + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in final) if effects else "")
+        + " (weighted output units).",
+    ]
+    for done in search.rounds:
+        best = done.ranked[0] if done.ranked else None
+        if done.taken is not None:
+            name = _name(done.taken.leader.attachment)
+            lines.append(
+                f"{name} lowers the mean squared error by a factor {np.exp(done.taken.gain):.3g}, "
+                f"{done.taken.surely:.1f} standard errors away from chance."
+            )
+        elif best is not None:
+            lines.append(
+                f"The best further candidate, {_name(best.leader.attachment)}, would lower it by {100 * (1 - np.exp(-best.gain)):.2g} % "
+                f"({best.surely:.1f} standard errors); claimed is what exceeds {100 * LEAST_GAIN:.0f} % and chance."
+            )
+        else:
+            lines.append("No candidate explains any of the remaining error.")
+    if not held:
+        lines.append(
+            "Effects found on the estimation experiments did not lower the error on the validation experiments: taken back."
+        )
+    if dataset.held_out_by_default:
+        lines.append(
+            "No experiment had the role 'validation': the last quarter of every experiment was held out for judging."
+        )
+    if interrupted:
+        lines.append("The search was stopped before it was done (time limit or interruption): the best verdict so far.")
+    return tuple(lines)
+
+
+def _name(attachment: Attachment) -> str:
+    return f"{attachment.mechanism.name.replace('_', ' ')} at {attachment.port}"

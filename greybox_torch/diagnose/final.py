@@ -1,0 +1,62 @@
+"""The final fits: whole records, from the values that the windows led to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from greybox_torch.diagnose.refit import Hypothesis
+from greybox_torch.estimate.free_run import FreeRun
+from greybox_torch.estimate.levenberg_marquardt import Settings, minimise
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.uncertainty import Uncertainty, uncertainty
+from greybox_torch.estimate.window_fit import WindowFit
+
+SETTINGS = Settings(iterations=60, tolerance=1e-8)
+
+
+@dataclass(frozen=True)
+class Final:
+    """A hypothesis fitted to whole estimation records: its problem there, and the uncertainty of the unknowns (None where unfitted)."""
+
+    problem: Problem
+    uncertainty: Uncertainty | None
+
+    def values(self) -> dict[str, float]:
+        """Parameter values by name."""
+        return dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
+
+    def deviations(self) -> dict[str, float]:
+        """Standard deviation of every free parameter: the larger of the plain and the sandwich one."""
+        if self.uncertainty is None:
+            return {}
+        both = np.maximum(self.uncertainty.deviations("plain"), self.uncertainty.deviations("sandwich"))
+        return dict(zip(self.problem.free_names, map(float, both), strict=False))
+
+
+def finish(hypothesis: Hypothesis, substeps: int) -> Final:
+    """Fit whole records by simulation error, from the values of every window length; the best of the results.
+
+    Where no whole record can be simulated, the values of the longest windows stand.
+    """
+    best, cost = None, np.inf
+    for fit in reversed(hypothesis.fits):
+        run = FreeRun(_from_windows(fit), hypothesis.stepper, substeps)
+        optimum = minimise(run.quadratic, run.start, *run.bounds, settings=SETTINGS, admissible=run.admissible)
+        if optimum is not None and optimum.model.cost < (1 - 1e-3) * cost:
+            best, cost = (run, optimum.point), optimum.model.cost
+    if best is None:
+        return Final(_from_windows(hypothesis.fits[-1]), None)
+    run, point = best
+    return Final(run.at(point), uncertainty(run, point))
+
+
+def _from_windows(fit: WindowFit) -> Problem:
+    """The problem with the start states of the windows that begin an experiment, where those are free."""
+    problem = fit.problem
+    initial = problem.initial.copy()
+    index = np.searchsorted(fit.windows.start, problem.tape.first)
+    free = problem.initial_free
+    initial[:, free] = fit.starts[index][:, free]
+    return replace(problem, initial=initial)

@@ -1,0 +1,63 @@
+"""From evidence to probability."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from greybox_torch.diagnose.name import Ranked, sureness
+from greybox_torch.diagnose.verdict import Alternative
+
+if TYPE_CHECKING:
+    from greybox_torch.diagnose.select import Round, Search
+    from greybox_torch.diagnose.verdict import Effect
+
+TEMPERATURE = 2.0
+"""Standard errors that count as one: windows are not independent, and no law of the library is exactly the machine's."""
+
+CEILING = 0.97
+"""The most that is ever claimed."""
+
+
+def shared(chosen: Ranked, ranked: Sequence[Ranked]) -> tuple[float, tuple[Alternative, ...]]:
+    """The probability of the chosen hypothesis of a round, and those of its rivals.
+
+    Rivals that the data cannot tell apart share it: a rival that the chosen one beats by z standard errors has the weight
+    exp(−(z / temperature)² / 2), and none at all unless it explains a good part of what the chosen one does.
+    """
+    weights: dict[tuple[str, str], float] = {}
+    for rival in ranked:
+        key = (rival.leader.attachment.port, rival.leader.attachment.mechanism.name)
+        same = (
+            rival.leader.attachment.port == chosen.leader.attachment.port
+            and key[1] == chosen.leader.attachment.mechanism.name
+        )
+        if not same:
+            weights[key] = max(weights.get(key, 0.0), _weight(chosen, rival))
+    total = 1.0 + sum(weights.values())
+    rivals = sorted(((CEILING * w / total, *key) for key, w in weights.items()), reverse=True)
+    found = tuple(Alternative(port, name, round(p, 4)) for p, port, name in rivals if p > 0.005)
+    return round(CEILING / total, 4), found
+
+
+def _weight(chosen: Ranked, rival: Ranked) -> float:
+    if rival.gain <= 0:
+        return 0.0
+    behind = sureness(rival.fitted, chosen.fitted)
+    share = min(1.0, rival.gain / max(chosen.gain, 1e-12))
+    return float(np.exp(-0.5 * (behind / TEMPERATURE) ** 2) * share)
+
+
+def round_of(search: Search, prefix: str) -> Round | None:
+    """The round in which an effect was taken."""
+    return next((r for r in search.rounds if r.taken is not None and r.taken.leader.attachment.prefix == prefix), None)
+
+
+def confidence(search: Search, effects: Sequence[Effect]) -> float:
+    """How sure the answer to "is anything missing?" is."""
+    if effects:
+        return CEILING
+    best = max((r.gain for r in search.rounds[-1].ranked), default=0.0) if search.rounds else 0.0
+    return 0.95 if best < 0.01 else 0.8

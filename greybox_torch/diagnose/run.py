@@ -1,0 +1,240 @@
+"""The whole diagnosis: detect, locate, name, model, show the improvement."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from greybox_torch.data import DataSet, Recording
+from greybox_torch.diagnose.effects import describe
+from greybox_torch.diagnose.evidence import sentences
+from greybox_torch.diagnose.final import Final, finish
+from greybox_torch.diagnose.probability import confidence
+from greybox_torch.diagnose.restore import attachment_json
+from greybox_torch.diagnose.select import Search
+from greybox_torch.diagnose.verdict import Trace, Verdict
+from greybox_torch.errors import UserError
+from greybox_torch.estimate.comparison import Comparison, compare
+from greybox_torch.estimate.initial import estimate_initial
+from greybox_torch.estimate.problem import Problem, make_problem, problem_for
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulate.stepper import Stepper, make_stepper
+from greybox_torch.simulate.substeps import choose_substeps
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The verdict, and the model that it recommends.
+
+    ``model`` with parameter ``values`` (the plain model where nothing is missing), start states ``initial`` by recording and state,
+    and ``attachments``, the effects in the form that a checkpoint keeps.
+    """
+
+    verdict: Verdict
+    model: GreyBoxModel
+    values: dict[str, float]
+    initial: dict[str, dict[str, float]]
+    attachments: list[dict[str, Any]]
+
+
+class _TimeIsUp(Exception):
+    """The time limit has passed; the best hypothesis so far stands."""
+
+
+@dataclass
+class _Clock:
+    """Time by stage, and the limit."""
+
+    limit: float | None
+    report: Callable[[str], None]
+    began: float = field(default_factory=time.perf_counter)
+    stages: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def seconds(self) -> float:
+        return time.perf_counter() - self.began
+
+    def progress(self, text: str) -> None:
+        self.report(text)
+        if self.limit is not None and self.seconds > self.limit:
+            raise _TimeIsUp
+
+    def stage(self, name: str, since: float) -> float:
+        now = self.seconds
+        self.stages[name] = self.stages.get(name, 0.0) + now - since
+        return now
+
+
+def diagnose(
+    dataset: DataSet,
+    model: GreyBoxModel,
+    *,
+    seed: int = 0,
+    device: str = "cpu",
+    time_limit: float | None = None,
+    progress: Callable[[str], None] = lambda text: None,
+) -> Diagnosis:
+    """Find what physics ``model`` leaves out, from the estimation experiments; judge it on the validation experiments.
+
+    Start states that the card does not mention are estimated, whatever the model's own default, so that a wrong start is not taken for
+    missing physics. Choosing uses the estimation experiments alone; the validation experiments can only take a finding back.
+
+    Args:
+        seed: kept in the verdict; the search itself draws no random numbers.
+        time_limit: seconds after which the search stops and the best verdict so far is given.
+
+    Raises:
+        UserError: there is no estimation experiment.
+        NumericalError: the model cannot be simulated from the start values even over short windows.
+    """
+    clock = _Clock(time_limit, progress)
+    if not dataset.estimation():
+        raise UserError(
+            f"{dataset.path}: [[experiment]] role: no experiment has the role 'estimation'; expected at least one"
+        )
+    problem = _all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
+    stepper = make_stepper(model, problem.free_names, device=device)
+    substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
+    search = Search(problem, substeps, device, clock.progress)
+    at = clock.stage("preparing", 0.0)
+    interrupted = _searched(search)
+    at = clock.stage("searching: screen, refit, select", at)
+    progress("fitting whole records")
+    plain = finish(search.plain, substeps)
+    augmented = finish(search.current, substeps) if search.current.effects else plain
+    at = clock.stage("final fits on whole records", at)
+    progress("judging on the validation experiments")
+    judged = _Judgement(dataset, problem, search, plain, augmented, substeps, device)
+    effects = describe(search, judged.augmented, substeps, judged.sums) if judged.holds else ()
+    if not judged.holds:
+        augmented = plain
+    clock.stage("validation and report data", at)
+    verdict = Verdict(
+        dataset=dataset.name,
+        model=model.title,
+        seed=seed,
+        seconds=clock.seconds,
+        confidence=confidence(search, effects),
+        effects=effects,
+        scores={name: comparison.scores for name, comparison in judged.comparisons(bool(effects)).items()},
+        evidence=sentences(dataset, search, effects, judged.holds, interrupted),
+        stages=clock.stages,
+        ranking=_ranking(search),
+        traces=judged.traces(bool(effects)),
+    )
+    final = augmented if effects else plain
+    chosen = search.current if effects else search.plain
+    attachments = [attachment_json(e, search.surroundings[e.port]) for e in chosen.effects]
+    return Diagnosis(verdict, chosen.model, final.values(), _starts(final.problem), attachments)
+
+
+def _searched(search: Search) -> bool:
+    """Run the search; whether the time limit or the user cut it short (the best hypothesis so far then stands)."""
+    search.begin()
+    try:
+        search.run()
+    except (_TimeIsUp, KeyboardInterrupt):
+        return True
+    return False
+
+
+def _all_starts_free(dataset: DataSet, problem: Problem) -> Problem:
+    named = [s.name in dataset.initial for s in problem.model.states]
+    return replace(problem, initial_free=np.where(named, problem.initial_free, True))
+
+
+def _starts(problem: Problem) -> dict[str, dict[str, float]]:
+    names = [s.name for s in problem.model.states]
+    return {
+        e: dict(zip(names, map(float, row), strict=True))
+        for e, row in zip(problem.tape.names, problem.initial, strict=True)
+    }
+
+
+def _ranking(search: Search) -> tuple[tuple[str, str, float, float | None], ...]:
+    """Rows (port, mechanism, share explained in the first screen, gain after refit) of the first round, best first."""
+    if not search.rounds:
+        return ()
+    first = search.rounds[0]
+    best: dict[tuple[str, str], float] = {}
+    for look in (look for at in first.looks for look in at):
+        key = (look.attachment.port, look.attachment.mechanism.name)
+        best[key] = max(best.get(key, 0.0), look.explained)
+    gains = {(r.leader.attachment.port, r.leader.attachment.mechanism.name): r.gain for r in reversed(first.ranked)}
+    rows = [(port, name, share, gains.get((port, name))) for (port, name), share in best.items()]
+    return tuple(sorted(rows, key=lambda row: -row[2])[:20])
+
+
+class _Judgement:
+    """The models on every experiment: the card's values, the plain refit, and the model with effects."""
+
+    def __init__(
+        self,
+        dataset: DataSet,
+        problem: Problem,
+        search: Search,
+        plain: Final,
+        augmented: Final,
+        substeps: int,
+        device: str,
+    ) -> None:
+        self.recordings = dataset.recordings
+        self.problem = _all_starts_free(dataset, make_problem(dataset, problem.model, dataset.recordings))
+        self.plain, self.augmented, self.substeps, self.device = plain, augmented, substeps, device
+        self.start = self._compared(problem, problem.values, None)
+        self.refit = self._compared(plain.problem, plain.problem.values, plain)
+        has_effects = bool(search.current.effects)
+        self.with_effects = (
+            self._compared(augmented.problem, augmented.problem.values, augmented) if has_effects else self.refit
+        )
+        self.sums = tuple(self._energy(c) for c in (self.refit, self.with_effects))
+
+    @property
+    def holds(self) -> bool:
+        """Whether the effects lower the error on the validation experiments."""
+        return self.sums[1] < self.sums[0]
+
+    def comparisons(self, effects: bool) -> dict[str, Comparison]:
+        return {"start": self.start, "refit": self.refit, "augmented": self.with_effects if effects else self.refit}
+
+    def traces(self, effects: bool) -> tuple[Trace, ...]:
+        last = self.with_effects if effects else self.refit
+        result = []
+        for e, recording in enumerate(self.recordings):
+            for k, output in enumerate(self.problem.model.outputs):
+                simulated = [c.simulated[e][:, k] for c in (self.start, self.refit, last)]
+                measured, time_axis = self.problem.tape.y[k, self.problem.tape.span(e)], self.problem.tape.time(e)
+                result.append(
+                    Trace(recording.name, recording.role, output.name, output.unit, time_axis, measured, *simulated)
+                )
+        return tuple(result)
+
+    def _compared(self, like: Problem, values: np.ndarray, final: Final | None) -> Comparison:
+        """Free runs of all experiments; start states fitted on whole estimation records where there are any, else on the first tenth."""
+        named = dict(zip(like.names, map(float, values), strict=True))
+        problem = (
+            self.problem.with_values(values)
+            if like.model is self.problem.model
+            else problem_for(self.problem, like.model, named)
+        )
+        stepper = make_stepper(like.model, (), device=self.device)
+        started = estimate_initial(problem, stepper, substeps=self.substeps)
+        if final is not None:
+            initial = started.initial.copy()
+            for row, name in zip(final.problem.initial, final.problem.tape.names, strict=True):
+                initial[started.tape.names.index(name)] = row
+            started = replace(started, initial=initial)
+        return _scored(started, self.recordings, stepper, self.substeps)
+
+    def _energy(self, comparison: Comparison) -> float:
+        roles = [s.role for s in comparison.scores]
+        judged = [s for s in comparison.scores if s.role == "validation" or "validation" not in roles]
+        return float(sum(s.rmse**2 for s in judged))
+
+
+def _scored(problem: Problem, recordings: tuple[Recording, ...], stepper: Stepper, substeps: int) -> Comparison:
+    return compare(problem, recordings, stepper, substeps=substeps, estimate_starts=False)
