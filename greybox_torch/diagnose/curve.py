@@ -40,8 +40,8 @@ def laws_on_curve(
     target = fitted.model.curve(curve, {unknown.signal: grid}, p).detach().numpy()
     weight = _visited(span.rms, grid.numpy())
     site = next(q for q in model.all_ports if q.name == curve.port)
-    matches = []
-    for law in (m() for m in LIBRARY.values()):
+    matches, there = [], {e.mechanism.name for e in fitted.effects if e.port == curve.port}
+    for law in (m() for name, m in LIBRARY.items() if name not in there):
         fits_port = site.kind in law.kinds and set(law.needs) <= {unknown.signal}
         if fits_port and not law.kinematic and not law.states(around):
             matches += [
