@@ -33,7 +33,8 @@ class Checkpoint:
 
     ``model`` is how to load the model (a built-in name, or "file.py:Class"), ``title`` its name for reports; ``values`` and ``units``
     are by parameter name, in declared order, values in those units. ``effects`` describe what is attached to its ports ([] for a
-    plain model). ``dataset`` is the SHA-256 of the samples that the values were estimated from, ``figures`` what was reached on them.
+    plain model). ``free_starts`` says that every start state was estimated, whatever the model holds fixed. ``dataset`` is the
+    SHA-256 of the samples that the values were estimated from, ``figures`` what was reached on them.
     """
 
     model: str
@@ -41,6 +42,7 @@ class Checkpoint:
     values: Mapping[str, float]
     units: Mapping[str, str]
     effects: Sequence[Mapping[str, Any]] = ()
+    free_starts: bool = False
     dataset: str = ""
     figures: Sequence[Mapping[str, Any]] = ()
     versions: Mapping[str, str] = field(default_factory=lambda: _versions())
@@ -93,7 +95,8 @@ def load_checkpoint(path: Path) -> Checkpoint:
         raise UserError(f"checkpoint {tensors}: holds {', '.join(found)}; {card.name} says {', '.join(names)}")
     values = {name: float(found[name]) for name in names}
     own = {
-        key: content[key] for key in ("model", "title", "units", "effects", "dataset", "figures", "versions", "created")
+        key: content[key]
+        for key in ("model", "title", "units", "effects", "free_starts", "dataset", "figures", "versions", "created")
     }
     return Checkpoint(values=values, **own)
 
@@ -121,6 +124,7 @@ _TYPES: dict[str, type] = {
     "parameters": list,
     "units": dict,
     "effects": list,
+    "free_starts": bool,
     "dataset": str,
     "figures": list,
     "versions": dict,

@@ -156,6 +156,41 @@ def residuals(
     residuals.run(dataset, checkpoint, Options(model, out, seed, device, json))
 
 
+@app.command()
+def diagnose(
+    dataset: DataSetFile,
+    time_limit: Annotated[
+        float | None,
+        typer.Option(min=1.0, metavar="SECONDS", help="When to stop searching and answer with the best found so far."),
+    ] = None,
+    model: Model = None,
+    out: Out = None,
+    seed: Seed = 0,
+    device: Device = "cpu",
+    json: Json = False,
+) -> None:
+    """Find the physics that is missing: where it acts, what it is, how sure that is, and the model with it."""
+    from greybox_torch.commands import diagnose
+
+    diagnose.run(dataset, time_limit, Options(model, out, seed, device, json))
+
+
+@app.command()
+def demo(
+    model: Model = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Where to write results.", show_default="results/demo")
+    ] = None,
+    seed: Seed = 0,
+    device: Device = "cpu",
+    json: Json = False,
+) -> None:
+    """Diagnose a small simulated arm with one concealed effect, which comes with the package."""
+    from greybox_torch.commands import demo
+
+    demo.run(Options(model, out, seed, device, json))
+
+
 def main() -> None:
     """The command `greybox`."""
     app()

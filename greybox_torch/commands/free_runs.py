@@ -4,23 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from rich.console import Console
 
-from greybox_torch.checkpoint import check_same_parameters, load_checkpoint
+from greybox_torch.commands.restored import restored
 from greybox_torch.commands.tables import print_table
 from greybox_torch.commands.task import Task
 from greybox_torch.data import DataSet
-from greybox_torch.errors import NumericalError, UserError
+from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.comparison import Comparison, Score, compare
 from greybox_torch.files import replacing
 from greybox_torch.simulate.stepper import make_stepper
 from greybox_torch.simulate.substeps import choose_substeps
-from greybox_torch.systems import load_model
 
 START = "start"
 """The name of the model with the card's values."""
@@ -37,34 +36,10 @@ class ModelRun:
 
 def free_run(task: Task, checkpoint: Path | None = None, name: str = START) -> ModelRun:
     """Simulates all experiments with the card's values or those of a checkpoint; start states from the first tenth of each."""
-    values = None
-    if checkpoint is not None:
-        task, values = _restored(task, checkpoint)
-    problem = task.problem(values=values)
+    task, problem = (task, task.problem()) if checkpoint is None else restored(task, checkpoint)
     stepper = make_stepper(task.model, (), device=task.device)
     substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
     return ModelRun(name, task.model_name, compare(problem, task.data.recordings, stepper, substeps=substeps))
-
-
-def _restored(task: Task, path: Path) -> tuple[Task, dict[str, float]]:
-    """The task with the checkpoint's own model, and its values.
-
-    A model that is not where it was when the checkpoint was written is taken to be the task's, if that has the same name.
-    """
-    checkpoint = load_checkpoint(path)
-    if checkpoint.effects:
-        names = ", ".join(str(effect.get("mechanism")) for effect in checkpoint.effects)
-        raise UserError(f"checkpoint {path}: has effects attached ({names}), which cannot be simulated yet")
-    same = checkpoint.title == task.model.title
-    if checkpoint.model != task.model_name:
-        file = Path(checkpoint.model.rpartition(":")[0])
-        if not (same and file.suffix == ".py" and not file.exists()):
-            data = (
-                task.data if same else replace(task.data, parameters={}, initial={})
-            )  # the card speaks of another model
-            task = replace(task, data=data, model=load_model(checkpoint.model), model_name=checkpoint.model)
-    check_same_parameters(path, checkpoint, task.model.title, [p.name for p in task.model.declared_parameters])
-    return task, dict(checkpoint.values)
 
 
 def refuse_overflow(task: Task, run: ModelRun) -> None:

@@ -20,7 +20,7 @@ from greybox_torch.diagnose.verdict import Trace, Verdict
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.initial import estimate_initial
-from greybox_torch.estimate.problem import Problem, make_problem, problem_for
+from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulate.stepper import Stepper, make_stepper
 from greybox_torch.simulate.substeps import choose_substeps
@@ -96,7 +96,7 @@ def diagnose(
         raise UserError(
             f"{dataset.path}: [[experiment]] role: no experiment has the role 'estimation'; expected at least one"
         )
-    problem = _all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
+    problem = all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
     stepper = make_stepper(model, problem.free_names, device=device)
     substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
     search = Search(problem, substeps, device, clock.progress)
@@ -142,11 +142,6 @@ def _searched(search: Search) -> bool:
     return False
 
 
-def _all_starts_free(dataset: DataSet, problem: Problem) -> Problem:
-    named = [s.name in dataset.initial for s in problem.model.states]
-    return replace(problem, initial_free=np.where(named, problem.initial_free, True))
-
-
 def _starts(problem: Problem) -> dict[str, dict[str, float]]:
     names = [s.name for s in problem.model.states]
     return {
@@ -183,7 +178,7 @@ class _Judgement:
         device: str,
     ) -> None:
         self.recordings = dataset.recordings
-        self.problem = _all_starts_free(dataset, make_problem(dataset, problem.model, dataset.recordings))
+        self.problem = all_starts_free(dataset, make_problem(dataset, problem.model, dataset.recordings))
         self.plain, self.augmented, self.substeps, self.device = plain, augmented, substeps, device
         self.start = self._compared(problem, problem.values, None)
         self.refit = self._compared(plain.problem, plain.problem.values, plain)

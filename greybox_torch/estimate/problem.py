@@ -108,8 +108,20 @@ def make_problem(
     return problem
 
 
+def all_starts_free(dataset: DataSet, problem: Problem, base: GreyBoxModel | None = None) -> Problem:
+    """``problem`` with every start state estimated that the card does not mention, whatever the model's own default.
+
+    Args:
+        base: the model without effects, where ``problem`` is of one with effects: their memory starts as they say.
+    """
+    own = {s.name for s in (base or problem.model).states} - set(dataset.initial)
+    return replace(
+        problem, initial_free=problem.initial_free | np.array([s.name in own for s in problem.model.states], dtype=bool)
+    )
+
+
 def problem_for(problem: Problem, model: GreyBoxModel, values: Mapping[str, float]) -> Problem:
-    """``problem`` restated for an augmented ``model``: its own parameters as in ``problem``, those of effects free unless declared fixed."""
+    """``problem`` restated for an augmented ``model``: own parameters as in ``problem``, those of effects free unless declared fixed."""
     own = {n: i for i, n in enumerate(problem.names)}
     declared = list(model.declared_parameters)
     count = len(problem.model.states)

@@ -81,6 +81,8 @@ def words(name: str) -> str:
 
 def mechanism(name: str) -> str:
     """A mechanism's name as words, with the names of persons in capitals."""
+    if name == "unknown":
+        return "unknown effect"
     return " ".join(word.capitalize() if word in _PERSONS else word for word in name.split("_"))
 
 

@@ -34,17 +34,18 @@ class Scale:
         return (values - self.low) / (self.high - self.low)
 
     def ticks(self, most: int = 6) -> tuple[Tick, ...]:
-        """At most about ``most`` marks at round values."""
+        """Marks at round values: ``most``, or one more, or fewer."""
         values = self._decades(most) if self.logarithmic else self._steps(most)
         labels = [_power(v) for v in values] if self.logarithmic else _decimals(values)
         places = self.place(np.array(values, dtype=float))
         return tuple(Tick(float(p), label) for p, label in zip(places, labels, strict=True))
 
     def _steps(self, most: int) -> list[float]:
-        rough = (self.high - self.low) / most
-        size = 10.0 ** np.floor(np.log10(rough))
-        step = next(float(factor * size) for factor in (1.0, 2.0, 5.0, 10.0) if factor * size >= rough)
-        first, last = np.ceil(self.low / step - 1e-9), np.floor(self.high / step + 1e-9)
+        size = 10.0 ** np.floor(np.log10((self.high - self.low) / most))
+        for step in (factor * size for factor in (1.0, 2.0, 5.0, 10.0)):
+            first, last = np.ceil(self.low / step - 1e-9), np.floor(self.high / step + 1e-9)
+            if last - first <= most:
+                break
         return [float(k * step) for k in np.arange(first, last + 1)]
 
     def _decades(self, most: int) -> list[float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from greybox_torch.diagnose.verdict import Verdict
@@ -12,7 +13,7 @@ MOST_ROWS = 12
 
 @dataclass(frozen=True)
 class Row:
-    """A hypothesis; ``length`` of its bar in % of the longest."""
+    """A hypothesis: what it explains in the screen; ``length`` of its bar in % of the longest; ``gain``, what its refit removes."""
 
     mechanism: str
     port: str
@@ -44,7 +45,7 @@ class Ranking:
                 port,
                 text.percent(explained),
                 100.0 * max(explained, 0.0) / longest,
-                "" if gain is None else text.percent(gain),
+                "" if gain is None else text.percent(-math.expm1(-gain)),
                 (port, mechanism) in chosen,
             )
             for port, mechanism, explained, gain in shown

@@ -11,7 +11,7 @@ from greybox_torch.report.about import About
 from greybox_torch.report.sections.headline import digits_of_fit, units
 
 _TITLES = {
-    "validation": "Validation: held out, had no part in choosing or tuning",
+    "validation": "Validation: held out while effects were chosen and tuned",
     "estimation": "Estimation: what everything was tuned on",
 }
 _COLUMNS = {

@@ -1,0 +1,12 @@
+"""`greybox demo`: `diagnose` on the data set that comes with the package."""
+
+from __future__ import annotations
+
+from greybox_torch.commands import diagnose
+from greybox_torch.commands.options import Options
+from greybox_torch.demo import DATASET
+
+
+def run(options: Options) -> None:
+    """Diagnoses a simulated arm with one concealed effect; results go to results/demo unless --out says otherwise."""
+    diagnose.run(DATASET, None, options)

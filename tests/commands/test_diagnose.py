@@ -1,0 +1,210 @@
+"""`diagnose` and what it leaves behind; the search itself is replaced, but for the demo, which runs it whole."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner, Result
+
+from greybox_torch.checkpoint import load_checkpoint
+from greybox_torch.cli import app
+from greybox_torch.commands import diagnose as command
+from greybox_torch.data import DataSet
+from greybox_torch.diagnose.verdict import Alternative, Curve, Effect, Trace, Verdict
+from greybox_torch.errors import NumericalError
+from greybox_torch.estimate.comparison import Score
+from greybox_torch.files import json_text
+from greybox_torch.model import GreyBoxModel
+
+Make = Callable[..., Path]
+Edit = Callable[[Path, str, str], None]
+FILES = ["model.json", "model.safetensors", "report.html", "verdict.json"]
+
+DEADZONE = Effect(
+    port="actuator",
+    mechanism="actuator_deadzone",
+    probability=0.91,
+    signals=("voltage",),
+    where="|voltage| < 0.4 V",
+    parameters={
+        "half_width": {"value": 0.4, "std": 0.01, "unit": "V"},
+        "slope": {"value": 1.0, "std": float("inf"), "unit": ""},
+    },
+    explained=0.98,
+    alternatives=(Alternative("rotor", "coulomb_friction", 0.07),),
+    curve=Curve("voltage", "V", np.linspace(-1, 1, 5), np.zeros(5), "V"),
+    separating_experiment="slow reversals",
+)
+
+
+def made_up(data: DataSet, model: GreyBoxModel, seed: int, effects: tuple[Effect, ...]) -> Any:
+    """A diagnosis with invented numbers, of the form that the real one has."""
+    scores = {
+        name: tuple(Score(r.name, r.role, "speed", fit, 1.0 - fit / 100.0) for r in data.recordings)
+        for name, fit in (("start", 71.0), ("refit", 90.0), ("augmented", 99.5))
+    }
+    traces = []
+    for r in data.recordings:
+        y = r.signals["speed"]
+        traces.append(Trace(r.name, r.role, "speed", "rad/s", r.time, y, 0.7 * y, 0.9 * y, 0.995 * y))
+    verdict = Verdict(
+        data.name, model.title, seed, 12.3, 0.99, effects, scores, ("Nothing explains more than chance.",), {}, (), tuple(traces)
+    )  # fmt: skip
+    values = {p.name: p.value for p in model.declared_parameters}
+    return SimpleNamespace(verdict=verdict, model=model, values=values, initial={}, attachments=[])
+
+
+@pytest.fixture
+def finding(monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, Any]]:
+    """Makes the search find the given effects; returns the options that it will have been called with."""
+
+    def find(*effects: Effect) -> dict[str, Any]:
+        called: dict[str, Any] = {}
+
+        def diagnose(data: DataSet, model: GreyBoxModel, *, progress: Callable[[str], None], **options: Any) -> Any:
+            called.update(options)
+            progress("screening [every] port")
+            return made_up(data, model, options["seed"], effects)
+
+        monkeypatch.setattr(command, "diagnose", diagnose)
+        return called
+
+    return find
+
+
+def diagnose(folder: Path, *options: str) -> Result:
+    return CliRunner().invoke(app, ["diagnose", str(folder / "dataset.toml"), "--out", str(folder / "out"), *options])
+
+
+def written(folder: Path) -> list[str]:
+    return sorted(path.name for path in (folder / "out").iterdir()) if (folder / "out").exists() else []
+
+
+def test_what_is_printed(motor_folder: Make, finding: Callable[..., dict[str, Any]]) -> None:
+    finding(DEADZONE)
+    folder = motor_folder()
+    result = diagnose(folder)
+    assert result.exit_code == 0
+    lines = [" ".join(line.split()) for line in result.stdout.splitlines()]
+    assert any(line.startswith("The mismatch is actuator deadzone at actuator") for line in lines)
+    assert "actuator actuator_deadzone 0.91 98 half_width 0.4 0.01 V" in lines
+    assert "slope 1 undetermined" in lines
+    assert "actuator_deadzone at actuator: |voltage| < 0.4 V" in lines
+    rivals = "actuator_deadzone at actuator: it could also be coulomb_friction at rotor (0.07); to tell them apart: slow reversals"
+    assert rivals in lines
+    assert "Sweep validation speed 71 0.29 90 0.1 99.5 0.005 rad/s" in lines
+    assert f"Written to {folder / 'out'}: report.html, verdict.json, model.safetensors, model.json" in lines
+    assert "s  screening [every] port" in result.stderr
+
+
+def test_nothing_missing(motor_folder: Make, finding: Callable[..., dict[str, Any]]) -> None:
+    finding()
+    folder = motor_folder()
+    result = diagnose(folder)
+    assert result.exit_code == 0
+    assert "Nothing is missing from Motor that these recordings can show" in result.stdout
+    assert "- Nothing explains more than chance." in result.stdout
+    verdict = json.loads((folder / "out" / "verdict.json").read_text())
+    assert (verdict["mismatch"], verdict["effects"]) == (False, [])
+
+
+def test_what_is_written(motor_folder: Make, finding: Callable[..., dict[str, Any]]) -> None:
+    called = finding(DEADZONE)
+    folder = motor_folder()
+    result = diagnose(folder, "--json", "--seed", "5", "--time-limit", "30")
+    assert result.exit_code == 0
+    assert called == {"seed": 5, "device": "cpu", "time_limit": 30.0}
+    assert written(folder) == FILES
+    text = (folder / "out" / "verdict.json").read_text()
+    assert result.stdout == text
+    verdict = json.loads(text)
+    contract = {"schema", "dataset", "model", "seed", "seconds", "mismatch", "confidence", "effects", "fit"}
+    assert contract <= set(verdict)
+    assert (verdict["schema"], verdict["seed"], verdict["mismatch"]) == ("greybox-verdict/1", 5, True)
+    (effect,) = verdict["effects"]
+    fields = {"port", "mechanism", "probability", "signals", "where", "parameters", "explained", "alternatives"}
+    assert set(effect) == fields
+    assert effect["parameters"]["slope"] == {"value": 1.0, "std": None, "unit": ""}
+    assert verdict["fit"][2] == {
+        "experiment": "Sweep",
+        "role": "validation",
+        "output": "speed",
+        "start": {"fit": 71.0, "rmse": pytest.approx(0.29)},
+        "refit": {"fit": 90.0, "rmse": pytest.approx(0.1)},
+        "augmented": {"fit": 99.5, "rmse": pytest.approx(0.005)},
+    }
+    saved = load_checkpoint(folder / "out" / "model")
+    assert (saved.title, saved.figures) == ("Motor", verdict["fit"])
+    page = (folder / "out" / "report.html").read_text()
+    assert "actuator deadzone at actuator (probability 0.91)" in page
+    assert f"greybox compare {folder}/dataset.toml {folder}/out/model" in page
+
+
+def test_a_failing_page_leaves_nothing_behind(
+    motor_folder: Make, finding: Callable[..., dict[str, Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    finding(DEADZONE)
+    folder = motor_folder()
+    monkeypatch.setattr(command, "render_page", lambda *_: 1 / 0)
+    assert isinstance(diagnose(folder).exception, ZeroDivisionError)
+    assert written(folder) == []
+
+
+@pytest.mark.parametrize("blocked", FILES)
+def test_all_files_or_none(motor_folder: Make, finding: Callable[..., dict[str, Any]], blocked: str) -> None:
+    finding(DEADZONE)
+    folder = motor_folder()
+    (folder / "out" / blocked).mkdir(parents=True)
+    result = diagnose(folder)
+    assert result.exit_code == 2
+    assert f"{blocked}: cannot be written: it is a folder" in result.stderr
+    assert result.stdout == ""
+    assert written(folder) == [blocked]
+
+
+def test_numbers_that_fail(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: Any, **__: Any) -> None:
+        raise NumericalError("the simulation overflows; try tighter bounds")
+
+    monkeypatch.setattr(command, "diagnose", fail)
+    folder = motor_folder()
+    result = diagnose(folder)
+    assert result.exit_code == 3
+    assert result.stderr.endswith("the numbers failed: the simulation overflows; try tighter bounds\n")
+    assert (result.stdout, written(folder)) == ("", [])
+
+
+def test_input_at_fault(motor_folder: Make, edit: Edit) -> None:
+    folder = motor_folder()
+    edit(folder / "dataset.toml", "speed = {", "sped = {")
+    result = diagnose(folder)
+    assert result.exit_code == 2
+    assert "[channels] has no 'speed'" in result.stderr
+    assert (result.stdout, written(folder)) == ("", [])
+
+
+def test_nothing_to_estimate_from(motor_folder: Make) -> None:
+    folder = motor_folder()
+    card = folder / "dataset.toml"
+    card.write_text(card.read_text().replace('"estimation"', '"validation"'))
+    result = diagnose(folder)
+    assert result.exit_code == 2
+    assert 'no experiment has the role "estimation"' in result.stderr
+
+
+@pytest.mark.parametrize("limit", ["0", "-3", "soon"])
+def test_time_limits_that_are_none(motor_folder: Make, limit: str) -> None:
+    assert diagnose(motor_folder(), "--time-limit", limit).exit_code == 2
+
+
+def test_strict_json(motor_folder: Make, finding: Callable[..., dict[str, Any]]) -> None:
+    finding(DEADZONE)
+    folder = motor_folder()
+    text = diagnose(folder, "--json").stdout
+    assert json_text(json.loads(text)) == text
