@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,11 +12,17 @@ from greybox_torch.diagnose.select import LEAST_GAIN, Search
 from greybox_torch.mechanisms.attachment import Attachment
 
 if TYPE_CHECKING:
+    from greybox_torch.diagnose.held_out import Gain
     from greybox_torch.diagnose.verdict import Effect
 
 
 def sentences(
-    dataset: DataSet, search: Search, effects: Sequence[Effect], held: bool, interrupted: bool
+    dataset: DataSet,
+    search: Search,
+    effects: Sequence[Effect],
+    gains: Mapping[str, Gain],
+    held: bool,
+    interrupted: bool,
 ) -> tuple[str, ...]:
     """The evidence for a reader: what was looked at, what it showed, and what limits it."""
     plain, final = search.plain.fits, search.current.fits
@@ -44,6 +50,12 @@ def sentences(
             )
         else:
             lines.append("No candidate explains any of the remaining error.")
+    for prefix, gain in gains.items():
+        low, high = gain.interval
+        lines.append(
+            f"Held out: {prefix} removes {100 * gain.share:.1f} % of the squared error that is left without it "
+            f"(95 % interval {100 * low:.1f} to {100 * high:.1f} %)."
+        )
     if not held:
         lines.append(
             "Effects found on the estimation experiments did not lower the error on the validation experiments: taken back."

@@ -13,9 +13,9 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
 
-NAMED_PER_LENGTH = 5
+NAMED_PER_LENGTH = 4
 CURVES_PER_LENGTH = 1
-LEAST_SHARE = 0.003
+LEAST_SHARE = 0.008
 
 
 @dataclass(frozen=True)

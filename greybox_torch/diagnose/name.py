@@ -21,7 +21,10 @@ FINALISTS = 3
 """Hypotheses that are fitted at all window lengths, after a first round at the middle one."""
 
 TRIAL_SETTINGS = Settings(iterations=14, tolerance=1e-3, trials=5)
-TRIAL_STARTS = 3
+TRIAL_STARTS = 2
+LEAST_RATIO_SPREAD = 0.02
+"""Scatter of the log ratio of window energies below which differences between windows mean nothing."""
+
 FEWEST_WINDOWS = 8
 """Windows that a standard error needs."""
 
@@ -146,17 +149,26 @@ def polished(
 def sureness(before: Hypothesis, after: Hypothesis) -> float:
     """How many standard errors the improvement is away from none: the largest over the window lengths.
 
-    Judged over windows, so that errors which are correlated within a window count once, by the mean difference of the windows'
-    energies and by the mean of their logarithmic ratio: the first sees an effect that is everywhere, the second also one that shows in
-    few windows, whose energies differ by orders of magnitude.
+    Judged over windows, so that errors which are correlated within a window count once: by the mean difference of the windows'
+    energies; by the mean of their logarithmic ratio, which sees an effect whose size varies by orders of magnitude; and by how far the
+    ratio of a single window stands out from that of the others, which sees an effect that acts at one place of the record (a stop).
     """
     best = 0.0
     for old, new in zip(before.fits, after.fits, strict=True):
         if len(old.energies) >= FEWEST_WINDOWS:
             least = 1e-12 * float(old.energies.max())
             ratio = np.log(np.maximum(old.energies, least)) - np.log(np.maximum(new.energies, least))
-            best = max(best, _standard_errors(old.energies - new.energies), _standard_errors(ratio))
+            best = max(
+                best, _standard_errors(old.energies - new.energies), _standard_errors(ratio), _standing_out(ratio)
+            )
     return best
+
+
+def _standing_out(ratio: np.ndarray) -> float:
+    """How far the largest log ratio lies from the middle, in robust standard deviations, halved because it is the largest of many."""
+    middle = float(np.median(ratio))
+    spread = 1.4826 * float(np.median(np.abs(ratio - middle))) + LEAST_RATIO_SPREAD
+    return 0.5 * (float(ratio.max()) - middle) / spread
 
 
 def _standard_errors(values: np.ndarray) -> float:

@@ -24,7 +24,7 @@ WINDOW_SETTINGS = Settings(iterations=30, tolerance=3e-4, trials=6)
 RIVAL = 4.0
 """How many times the best mean squared error a start may be at, after its first iterations, and still be followed."""
 
-POLISH_SETTINGS = Settings(iterations=120, tolerance=1e-6, trials=8)
+POLISH_SETTINGS = Settings(iterations=60, tolerance=1e-5, trials=6)
 
 
 @dataclass(frozen=True)

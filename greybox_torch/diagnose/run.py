@@ -13,6 +13,7 @@ from greybox_torch.data import DataSet, Recording
 from greybox_torch.diagnose.effects import describe
 from greybox_torch.diagnose.evidence import sentences
 from greybox_torch.diagnose.final import Final, finish
+from greybox_torch.diagnose.held_out import Gain, gain, held_out_fits
 from greybox_torch.diagnose.probability import confidence
 from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.diagnose.select import Search
@@ -24,6 +25,10 @@ from greybox_torch.estimate.problem import Problem, all_starts_free, make_proble
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulate.stepper import Stepper, make_stepper
 from greybox_torch.simulate.substeps import choose_substeps
+
+
+LEAST_HELD_OUT = 1.0
+"""Standard errors by which an effect must lower the error on held-out experiments to be kept."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +108,8 @@ def diagnose(
     at = clock.stage("preparing", 0.0)
     interrupted = _searched(search)
     at = clock.stage("searching: screen, refit, select", at)
+    gains = _confirmed(dataset, search, progress)
+    at = clock.stage("confirming on held-out experiments", at)
     progress("fitting whole records")
     plain = finish(search.plain, substeps)
     augmented = finish(search.current, substeps) if search.current.effects else plain
@@ -121,7 +128,7 @@ def diagnose(
         confidence=confidence(search, effects),
         effects=effects,
         scores={name: comparison.scores for name, comparison in judged.comparisons(bool(effects)).items()},
-        evidence=sentences(dataset, search, effects, judged.holds, interrupted),
+        evidence=sentences(dataset, search, effects, gains, judged.holds, interrupted),
         stages=clock.stages,
         ranking=_ranking(search),
         traces=judged.traces(bool(effects)),
@@ -132,12 +139,31 @@ def diagnose(
     return Diagnosis(verdict, chosen.model, final.values(), _starts(final.problem), attachments)
 
 
+def _confirmed(dataset: DataSet, search: Search, progress: Callable[[str], None]) -> dict[str, Gain]:
+    """Held-out gains by effect, after taking back, weakest first, every effect that gains nothing there."""
+    if not dataset.validation() or not search.current.effects:
+        return {}
+    progress("confirming on held-out experiments")
+    search.progress = progress
+    problem = all_starts_free(dataset, make_problem(dataset, search.problem.model, dataset.validation()))
+    while search.current.effects:
+        full = held_out_fits(search.current, problem, search.substeps)
+        gains = {p: gain(held_out_fits(h, problem, search.substeps), full) for p, h in search.without.items()}
+        weakest = min(gains, key=lambda p: gains[p].share / gains[p].error)
+        if gains[weakest].share > LEAST_HELD_OUT * gains[weakest].error:
+            return gains
+        search.drop(weakest)
+    return {}
+
+
 def _searched(search: Search) -> bool:
     """Run the search; whether the time limit or the user cut it short (the best hypothesis so far then stands)."""
     search.begin()
     try:
         search.run()
     except (_TimeIsUp, KeyboardInterrupt):
+        search.progress = lambda text: None
+        search.prune()
         return True
     return False
 

@@ -24,10 +24,11 @@ LEAST_GAIN = 0.01
 LEAST_SURENESS = 3.0
 """Standard errors (over windows) by which an effect must improve the prediction."""
 
-CLOSE = 0.5
+CLOSE = 0.35
 """Difference in score (logarithm of the mean squared error) within which rivals are polished before they are compared."""
 
 FRONT_RUNNERS = 3
+MOST_SHAPES = 3
 
 CURVE_MARGIN = 0.1
 """How much better, in the logarithm of the mean squared error, a free curve must be than every named mechanism to be preferred."""
@@ -55,6 +56,7 @@ class Search:
     device: str = "cpu"
     progress: Callable[[str], None] = lambda text: None
     rounds: list[Round] = field(default_factory=list)
+    without: dict[str, Hypothesis] = field(default_factory=dict)
 
     def run(self) -> Hypothesis:
         """Search until nothing pays any more."""
@@ -108,18 +110,33 @@ class Search:
         return taken is not None
 
     def prune(self) -> None:
-        """Drop every effect whose loss the rest make up for."""
-        for effect in self.current.effects:
-            if len(self.current.effects) == 1:
-                break
-            self.progress(f"trying without {effect.prefix}")
-            rest = tuple(e for e in self.current.effects if e is not effect)
-            without = self._refitted(rest, self.current)
-            if without is None:
-                continue
-            gain = without.score - self.current.score
-            if gain < LEAST_GAIN or sureness(without, self.current) < LEAST_SURENESS:
-                self.current = without
+        """Drop every effect whose loss the rest make up for, until none can go; ``without`` keeps what was compared with."""
+        dropped = True
+        while dropped:
+            dropped = False
+            self.without = {}
+            for effect in self.current.effects:
+                rest = self._without(effect)
+                gain = rest.score - self.current.score
+                if len(self.current.effects) > 1 and (
+                    gain < LEAST_GAIN or sureness(rest, self.current) < LEAST_SURENESS
+                ):
+                    self.current, dropped = rest, True
+                    break
+                self.without[effect.prefix] = rest
+
+    def drop(self, prefix: str) -> None:
+        """Take one effect back."""
+        self.current = self.without[prefix]
+        self.prune()
+
+    def _without(self, effect: Attachment) -> Hypothesis:
+        """The current hypothesis refitted without one of its effects."""
+        rest = tuple(e for e in self.current.effects if e is not effect)
+        if not rest:
+            return self.plain
+        self.progress(f"trying without {effect.prefix}")
+        return self._refitted(rest, self.current) or self.plain
 
     def _screened(self) -> list[list[Look]]:
         self.progress("screening every port and mechanism")
@@ -174,7 +191,7 @@ class Search:
             tuple(sorted((f"{effect.prefix}.{n}", v) for n, v in probe.values.items() if n != "order"))
             for probe in probes
         }
-        return [{**values, **card, **dict(shape)} for shape in sorted(shapes)]
+        return [{**values, **card, **dict(shape)} for shape in sorted(shapes)[:MOST_SHAPES]]
 
     def _card(self) -> dict[str, float]:
         """The parameter values that the problem began with."""

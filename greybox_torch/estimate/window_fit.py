@@ -178,7 +178,7 @@ def _evaluate(
         windows,
         problem.values,
         states,
-        tangents=True,
+        tangents=n_p > 0,
         start_directions=eye,
         substeps=substeps,
         weights=problem.weights,
