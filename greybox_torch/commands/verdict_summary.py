@@ -29,7 +29,8 @@ def print_verdict(console: Console, task: Task, verdict: Verdict) -> None:
         for sentence in verdict.evidence:
             console.print(Text(f"- {sentence}"), soft_wrap=True)
     console.print()
-    print_scores(console, task.data, dict(verdict.scores))
+    models = ("start", "refit", "augmented") if verdict.effects else ("start", "refit")
+    print_scores(console, task.data, {name: verdict.scores[name] for name in models})
     console.print(Text(f"{verdict.seconds:.1f} s, seed {verdict.seed}"))
     files = "report.html, verdict.json, model.safetensors, model.json"
     console.print(Text(f"Written to {task.folder}: {files}"), soft_wrap=True)

@@ -124,7 +124,8 @@ class Verdict:
         if not pairs:
             return ""
         before, after = (float(np.mean(side)) for side in zip(*pairs, strict=True))
-        return f"; with it the validation fit goes from {before:.1f} % to {after:.1f} %"
+        them = "it" if len(self.effects) == 1 else "them"
+        return f"; with {them} the validation fit goes from {before:.1f} % to {after:.1f} %"
 
     def as_json(self) -> dict[str, Any]:
         """The dictionary of `verdict.json` (contract section 4)."""

@@ -8,7 +8,17 @@ import re
 from markupsafe import Markup, escape
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_GREEK = {"alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "theta": "θ", "mu": "μ", "sigma": "σ", "omega": "ω"}
+_GREEK = {
+    "alpha": "α",
+    "beta": "β",
+    "gamma": "γ",
+    "delta": "δ",
+    "zeta": "ζ",
+    "theta": "θ",
+    "mu": "μ",
+    "sigma": "σ",
+    "omega": "ω",
+}
 _PERSONS = ("coulomb", "stribeck")
 
 

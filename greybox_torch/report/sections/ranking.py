@@ -13,7 +13,7 @@ MOST_ROWS = 12
 
 @dataclass(frozen=True)
 class Row:
-    """A hypothesis: what it explains in the screen; ``length`` of its bar in % of the longest; ``gain``, what its refit removes."""
+    """A hypothesis: what it explains in the screen; ``length`` of its bar in %; ``gain``, what its refit removes."""
 
     mechanism: str
     port: str
@@ -38,13 +38,12 @@ class Ranking:
             return None
         chosen = {(e.port, e.mechanism) for e in verdict.effects}
         shown = [row for k, row in enumerate(verdict.ranking) if k < MOST_ROWS or (row[0], row[1]) in chosen]
-        longest = max(max(row[2] for row in shown), 1e-12)
         rows = [
             Row(
                 text.mechanism(mechanism),
                 port,
                 text.percent(explained),
-                100.0 * max(explained, 0.0) / longest,
+                100.0 * min(max(explained, 0.0), 1.0),
                 "" if gain is None else text.percent(-math.expm1(-gain)),
                 (port, mechanism) in chosen,
             )
