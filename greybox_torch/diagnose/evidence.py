@@ -56,7 +56,7 @@ def sentences(
             f"Held out: {prefix} removes {100 * gain.share:.1f} % of the squared error that is left without it "
             f"(95 % interval {100 * low:.1f} to {100 * high:.1f} %)."
         )
-    if not held:
+    if not held and any(done.taken is not None for done in search.rounds):
         lines.append(
             "Effects found on the estimation experiments did not lower the error on the validation experiments: taken back."
         )

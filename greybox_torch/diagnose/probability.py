@@ -55,9 +55,11 @@ def round_of(search: Search, prefix: str) -> Round | None:
     return next((r for r in search.rounds if r.taken is not None and r.taken.leader.attachment.prefix == prefix), None)
 
 
-def confidence(search: Search, effects: Sequence[Effect]) -> float:
-    """How sure the answer to "is anything missing?" is."""
+def confidence(search: Search, effects: Sequence[Effect], complete: bool) -> float:
+    """How sure the answer to "is anything missing?" is; a search that was stopped before it found anything has no answer."""
     if effects:
         return CEILING
+    if not complete:
+        return 0.5
     best = max((r.gain for r in search.rounds[-1].ranked), default=0.0) if search.rounds else 0.0
     return 0.95 if best < 0.01 else 0.8

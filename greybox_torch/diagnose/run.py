@@ -125,13 +125,14 @@ def diagnose(
         model=model.title,
         seed=seed,
         seconds=clock.seconds,
-        confidence=confidence(search, effects),
+        confidence=confidence(search, effects, not interrupted),
         effects=effects,
         scores={name: comparison.scores for name, comparison in judged.comparisons(bool(effects)).items()},
         evidence=sentences(dataset, search, effects, gains, judged.holds, interrupted),
         stages=clock.stages,
         ranking=_ranking(search),
         traces=judged.traces(bool(effects)),
+        complete=not interrupted,
     )
     final = augmented if effects else plain
     chosen = search.current if effects else search.plain

@@ -97,6 +97,8 @@ class Verdict:
     stages: Mapping[str, float]
     ranking: tuple[tuple[str, str, float, float | None], ...]
     traces: tuple[Trace, ...] = field(repr=False, default=())
+    complete: bool = True
+    """Whether the search ran to its end, rather than into a time limit or an interruption."""
 
     @property
     def mismatch(self) -> bool:
@@ -106,6 +108,8 @@ class Verdict:
     @property
     def sentence(self) -> str:
         """The verdict in one sentence."""
+        if not self.effects and not self.complete:
+            return f"Nothing was found to be missing from {self.model} before the search was stopped: no answer yet."
         if not self.effects:
             return f"Nothing is missing from {self.model} that these recordings can show (confidence {self.confidence:.2f})."
         parts = [
@@ -142,6 +146,7 @@ class Verdict:
             "seed": self.seed,
             "seconds": self.seconds,
             "mismatch": self.mismatch,
+            "complete": self.complete,
             "confidence": self.confidence,
             "sentence": self.sentence,
             "effects": [_effect(e) for e in self.effects],
