@@ -203,6 +203,24 @@ def test_time_limits_that_are_none(motor_folder: Make, limit: str) -> None:
     assert diagnose(motor_folder(), "--time-limit", limit).exit_code == 2
 
 
+def test_a_users_own_model(motor_folder: Make) -> None:
+    """The real search, on the documentation's motor: the dead zone of 0.4 V that the model does not know."""
+    folder = motor_folder(dead_zone=0.4)
+    result = diagnose(folder, "--json")
+    assert result.exit_code == 0, result.stderr
+    (effect,) = json.loads(result.stdout)["effects"]
+    assert (effect["port"], effect["mechanism"]) == ("actuator", "actuator_deadzone")
+    assert effect["parameters"]["half_width"]["value"] == pytest.approx(0.4, rel=0.02)
+    assert written(folder) == FILES
+
+
+def test_stopped(motor_folder: Make) -> None:
+    folder = motor_folder(dead_zone=0.4)
+    verdict = json.loads(diagnose(folder, "--json", "--time-limit", "1").stdout)
+    assert verdict["complete"] is False
+    assert written(folder) == FILES
+
+
 def test_strict_json(motor_folder: Make, finding: Callable[..., dict[str, Any]]) -> None:
     finding(DEADZONE)
     folder = motor_folder()

@@ -91,6 +91,16 @@ def test_sections(of_kind: Callable[[str], Verdict], about: About, kind: str, se
         assert sentence in page.text
 
 
+def test_a_search_that_was_stopped(verdict: Verdict, about: About) -> None:
+    told = "The search was stopped before it was done."
+    assert told not in Page(render_page(verdict, about)).text
+    stopped = replace(verdict, complete=False)
+    text = Page(render_page(stopped, about)).text
+    assert told in text
+    assert ("no answer yet" in text) == (not verdict.mismatch)
+    assert ("Confidence" in text) == verdict.mismatch
+
+
 def test_every_picture_is_told_in_words(verdict: Verdict, about: About) -> None:
     page = Page(render_page(verdict, about))
     pictures = page.all("svg")

@@ -23,21 +23,24 @@ class Figure:
 
 @dataclass(frozen=True)
 class Headline:
-    """``answer`` is "found", "nothing" or "unknown"."""
+    """``answer`` is "found", "nothing" or "unknown"; ``complete`` whether the search ran to its end."""
 
     dataset: str
     model: str
     sentence: str
     answer: str
     figures: tuple[Figure, ...]
+    complete: bool
     template: str = "headline.html.j2"
 
     @classmethod
     def of(cls, verdict: Verdict) -> Headline:
         unknown = any(e.mechanism == "unknown" for e in verdict.effects)
         answer = "nothing" if not verdict.mismatch else "unknown" if unknown else "found"
-        figures = (_fit(verdict), *_errors(verdict), _confidence(verdict))
-        return cls(verdict.dataset, verdict.model, verdict.sentence, answer, figures)
+        figures = [_fit(verdict), *_errors(verdict)]
+        if verdict.mismatch or verdict.complete:
+            figures.append(_confidence(verdict))
+        return cls(verdict.dataset, verdict.model, verdict.sentence, answer, tuple(figures), verdict.complete)
 
 
 def held_out(verdict: Verdict, model: str, output: str | None = None) -> list[Score]:
