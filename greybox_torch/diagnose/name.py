@@ -22,6 +22,9 @@ FINALISTS = 3
 
 TRIAL_SETTINGS = Settings(iterations=14, tolerance=1e-3, trials=5)
 TRIAL_STARTS = 2
+PARSIMONY = 0.003
+"""Improvement of the logarithm of the mean squared error that a further parameter has to bring."""
+
 LEAST_RATIO_SPREAD = 0.02
 """Scatter of the log ratio of window energies below which differences between windows mean nothing."""
 
@@ -41,6 +44,17 @@ class Ranked:
     @property
     def unknown(self) -> bool:
         return isinstance(self.leader.attachment.mechanism, Unknown)
+
+    @property
+    def size(self) -> int:
+        """How many parameters the newest effect has to adjust."""
+        start = f"{self.leader.attachment.prefix}."
+        return sum(name.startswith(start) for name in self.fitted.problem.free_names)
+
+    @property
+    def cost(self) -> float:
+        """The score, with a little for every parameter: of laws that fit alike, the simpler one is meant."""
+        return self.fitted.score + PARSIMONY * self.size
 
 
 def rank(

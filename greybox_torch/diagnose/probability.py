@@ -25,7 +25,7 @@ def shared(chosen: Ranked, ranked: Sequence[Ranked]) -> tuple[float, tuple[Alter
     """The probability of the chosen hypothesis of a round, and those of its rivals.
 
     Rivals that the data cannot tell apart share it: a rival that the chosen one beats by z standard errors has the weight
-    exp(−(z / temperature)² / 2), and none at all unless it explains a good part of what the chosen one does.
+    exp(−(z / temperature)² / 2), times the share of the gain that it reaches, and 1/e for every parameter that it has more.
     """
     weights: dict[tuple[str, str], float] = {}
     for rival in ranked:
@@ -47,7 +47,8 @@ def _weight(chosen: Ranked, rival: Ranked) -> float:
         return 0.0
     behind = sureness(rival.fitted, chosen.fitted)
     share = min(1.0, rival.gain / max(chosen.gain, 1e-12))
-    return float(np.exp(-0.5 * (behind / TEMPERATURE) ** 2) * share)
+    simpler = np.exp(-max(0, rival.size - chosen.size))
+    return float(np.exp(-0.5 * (behind / TEMPERATURE) ** 2) * share * simpler)
 
 
 def round_of(search: Search, prefix: str) -> Round | None:

@@ -31,6 +31,10 @@ LEAST_HELD_OUT = 1.0
 """Standard errors by which an effect must lower the error on held-out experiments to be kept."""
 
 
+UNEXERCISED = 2e-3
+"""Share of the held-out error below which, either way, those experiments do not exercise an effect: they cannot take it back."""
+
+
 @dataclass(frozen=True)
 class Diagnosis:
     """The verdict, and the model that it recommends.
@@ -116,7 +120,8 @@ def diagnose(
     at = clock.stage("final fits on whole records", at)
     progress("judging on the validation experiments")
     judged = _Judgement(dataset, problem, search, plain, augmented, substeps, device)
-    effects = describe(search, judged.augmented, substeps, judged.sums) if judged.holds else ()
+    named = judged.holds and bool(search.current.effects)
+    effects = describe(search, judged.augmented, substeps, judged.sums) if named else ()
     if not judged.holds:
         augmented = plain
     clock.stage("validation and report data", at)
@@ -151,7 +156,8 @@ def _confirmed(dataset: DataSet, search: Search, progress: Callable[[str], None]
         full = held_out_fits(search.current, problem, search.substeps)
         gains = {p: gain(held_out_fits(h, problem, search.substeps), full) for p, h in search.without.items()}
         weakest = min(gains, key=lambda p: gains[p].share / gains[p].error)
-        if gains[weakest].share > LEAST_HELD_OUT * gains[weakest].error:
+        found = gains[weakest]
+        if found.share > LEAST_HELD_OUT * found.error or abs(found.share) < UNEXERCISED:
             return gains
         search.drop(weakest)
     return {}
@@ -217,8 +223,8 @@ class _Judgement:
 
     @property
     def holds(self) -> bool:
-        """Whether the effects lower the error on the validation experiments."""
-        return self.sums[1] < self.sums[0]
+        """Whether the effects do not raise the error on the validation experiments."""
+        return self.sums[1] < (1 + UNEXERCISED) * self.sums[0]
 
     def comparisons(self, effects: bool) -> dict[str, Comparison]:
         return {"start": self.start, "refit": self.refit, "augmented": self.with_effects if effects else self.refit}

@@ -173,7 +173,7 @@ class Search:
                 self.plain = parent
         rest = [r.fitted for r in ranked[len(front) :]]
         again = [self._judged(r, fitted) for r, fitted in zip(ranked, polish + rest, strict=True)]
-        return sorted(again, key=lambda r: r.fitted.score)
+        return sorted(again, key=lambda r: r.cost)
 
     def _judged(self, ranked: Ranked, fitted: Hypothesis) -> Ranked:
         return Ranked(ranked.leader, fitted, self.current.score - fitted.score, sureness(self.current, fitted))

@@ -49,7 +49,7 @@ def _best_start(part: Problem, trials: Sequence[Mapping[str, float]], stepper: S
             initial[0, names.index(name)] = value
         run = FreeRun(replace(part, initial=initial), _AllFixed(stepper), substeps)
         optimum = minimise(run.quadratic, run.start, *run.bounds, settings=Settings(iterations=30, tolerance=1e-8))
-        if optimum is not None and optimum.model.cost < cost:
+        if optimum is not None and optimum.model.cost < (1 - 1e-6) * cost:
             best, cost = run.at(optimum.point).initial[0], optimum.model.cost
     return best
 

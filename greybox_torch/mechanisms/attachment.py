@@ -31,6 +31,9 @@ class Attachment:
         return f"{self.port}.{self.mechanism.name}{self.label}"
 
 
+OFFSETS = (0.0, -0.25, 0.25, -0.5, 0.5, -0.75, 0.75)
+"""Start positions tried, in shares of the travel, where an effect acts at one place."""
+
 START_POSITIONS = 12
 """Start positions tried over one period."""
 
@@ -134,6 +137,10 @@ class AugmentedModel(GreyBoxModel):
         if not bodies:
             return self.base.start_trials(values)
         numbers = dict(zip((p.name for p in self.declared_parameters), values, strict=True))
+        if any(a.position and not _periodic(a.mechanism) for a in self.attachments):
+            travel = [a.position and self.surroundings[a.port].ranges["position"] for a in self.attachments]
+            span = max(r.high - r.low for r in travel if r)
+            return [{f"{b}.position": share * span for b in bodies} for share in OFFSETS]
         orders = [abs(float(numbers.get(f"{a.prefix}.order", 1.0))) for a in self.attachments if a.position]
         period = 2 * np.pi / max(min(orders), 1e-9)
         return [{f"{b}.position": k * period / START_POSITIONS for b in bodies} for k in range(START_POSITIONS)]
@@ -250,6 +257,10 @@ class AugmentedModel(GreyBoxModel):
             if a.prefix in self.probed:
                 result.append(Parameter(f"{a.prefix}.{SHARE}", 1.0))
         return result
+
+
+def _periodic(mechanism: Mechanism) -> bool:
+    return hasattr(mechanism, "order") or mechanism.name == "gravity"
 
 
 def position_unit(model: GreyBoxModel, body: Body) -> str:
