@@ -113,11 +113,7 @@ def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, poin
     for _ in range(points):
         x = torch.randn(n_x, dtype=torch.float64, generator=generator)
         u = scale_u * torch.randn(n_u, dtype=torch.float64, generator=generator)
-        slope = torch.func.jacfwd(lambda z: _deflection(model, port, z, u, p))(x)
-        by_state = torch.func.jacfwd(lambda z: model.rates(z, u, p))(x)
-        by_force = torch.func.jacfwd(lambda f: _forced(model, port.name, x, u, p, f))(
-            torch.zeros((), dtype=torch.float64)
-        )
+        slope, by_state, by_force = _slopes(model, port, x, u, p)
         for i in works:
             change = by_state[:, i]
             along = by_force * (change @ by_force) / (by_force @ by_force)
@@ -127,6 +123,16 @@ def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, poin
             signs[i] = float(slope[i])
     chosen = next((i for i, ok in works.items() if ok), None)
     return "" if chosen is None else ("+" if signs[chosen] > 0 else "-") + names[chosen]
+
+
+def _slopes(
+    model: GreyBoxModel, port: Coupling, x: torch.Tensor, u: torch.Tensor, p: Signals
+) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+    """Slope of the deflection over the states (n_x,), of the rates over the states (n_x, n_x), of the rates over the port's force (n_x,)."""
+    slope = torch.func.jacfwd(lambda z: _deflection(model, port, z, u, p))(x)
+    by_state = torch.func.jacfwd(lambda z: model.rates(z, u, p))(x)
+    by_force = torch.func.jacfwd(lambda f: _forced(model, port.name, x, u, p, f))(torch.zeros((), dtype=torch.float64))
+    return slope, by_state, by_force
 
 
 def _deflection(model: GreyBoxModel, port: Coupling, x: torch.Tensor, u: torch.Tensor, p: Signals) -> torch.Tensor:

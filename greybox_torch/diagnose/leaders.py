@@ -79,9 +79,9 @@ def _best_of_each(looks: Sequence[Look], surroundings: Mapping[str, Surroundings
     best: dict[tuple, Look] = {}
     for look in looks:
         identity = identity_of(look.attachment)
-        if np.isfinite(look.explained) and _physical(look, surroundings):
-            if identity not in best or look.explained > best[identity].explained:
-                best[identity] = look
+        before = best[identity].explained if identity in best else -np.inf
+        if np.isfinite(look.explained) and look.explained > before and _physical(look, surroundings):
+            best[identity] = look
     return sorted(best.values(), key=lambda look: -look.explained)
 
 

@@ -106,7 +106,7 @@ def rank(
             final.append(Ranked(leader, fitted, current.score - fitted.score, sureness(current, fitted)))
     return sorted(
         [*final, *_distilled(base, current, final, surroundings, substeps, device, progress)],
-        key=lambda r: r.fitted.score,
+        key=lambda r: r.cost,
     )
 
 

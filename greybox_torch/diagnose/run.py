@@ -26,7 +26,6 @@ from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulate.stepper import Stepper, make_stepper
 from greybox_torch.simulate.substeps import choose_substeps
 
-
 LEAST_HELD_OUT = 1.0
 """Standard errors by which an effect must lower the error on held-out experiments to be kept."""
 

@@ -83,7 +83,7 @@ class Screen:
         for group, (_, probe) in zip(self.directions, self.looks, strict=True):
             prefix = group[0].rpartition(".")[0]
             numbers |= {f"{prefix}.{name}": value for name, value in probe.values.items()}
-            numbers |= {name: 0.0 for name in group}
+            numbers |= dict.fromkeys(group, 0.0)
         return np.array([numbers.get(p.name, p.value) for p in self.model.declared_parameters])
 
     def look(self, fitted: WindowFit, substeps: int) -> list[Look]:

@@ -48,9 +48,10 @@ def _around(
     if isinstance(port, Coupling):
         body = driving_body(model)
         if body is not None:
-            speed = _evaluated(body.speed, x, u, p, times)
-            known = body.position is not None
-            values["position"] = _evaluated(body.position, x, u, p, times) if known else _integrated(speed, problem)
+            if body.position is not None:
+                values["position"] = _evaluated(body.position, x, u, p, times)
+            else:
+                values["position"] = _integrated(_evaluated(body.speed, x, u, p, times), problem)
     if isinstance(port, Sensor):
         row = [o.name for o in model.outputs].index(port.output)
         values["output"] = problem.tape.y[row][~np.isnan(problem.tape.y[row])]

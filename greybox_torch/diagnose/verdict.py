@@ -112,10 +112,7 @@ class Verdict:
             return f"Nothing was found to be missing from {self.model} before the search was stopped: no answer yet."
         if not self.effects:
             return f"Nothing is missing from {self.model} that these recordings can show (confidence {self.confidence:.2f})."
-        parts = [
-            f"{'an unknown effect' if e.mechanism == 'unknown' else e.mechanism.replace('_', ' ')} at {e.port} (probability {e.probability:.2f})"
-            for e in self.effects
-        ]
+        parts = [f"{_spoken(e.mechanism)} at {e.port} (probability {e.probability:.2f})" for e in self.effects]
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
         return f"The mismatch is {found}{self._gain()}."
 
@@ -154,6 +151,10 @@ class Verdict:
             "evidence": list(self.evidence),
             "stages": dict(self.stages),
         }
+
+
+def _spoken(mechanism: str) -> str:
+    return "an unknown effect" if mechanism == "unknown" else mechanism.replace("_", " ")
 
 
 def _effect(effect: Effect) -> dict[str, Any]:
