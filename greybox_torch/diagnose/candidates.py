@@ -128,7 +128,7 @@ def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, poin
 def _slopes(
     model: GreyBoxModel, port: Coupling, x: torch.Tensor, u: torch.Tensor, p: Signals
 ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
-    """Slope of the deflection over the states (n_x,), of the rates over the states (n_x, n_x), of the rates over the port's force (n_x,)."""
+    """Slopes over the states of the deflection (n_x,) and the rates (n_x, n_x), and of the rates over the port's force (n_x,)."""
     slope = torch.func.jacfwd(lambda z: _deflection(model, port, z, u, p))(x)
     by_state = torch.func.jacfwd(lambda z: model.rates(z, u, p))(x)
     by_force = torch.func.jacfwd(lambda f: _forced(model, port.name, x, u, p, f))(torch.zeros((), dtype=torch.float64))

@@ -138,8 +138,8 @@ class AugmentedModel(GreyBoxModel):
             return self.base.start_trials(values)
         numbers = dict(zip((p.name for p in self.declared_parameters), values, strict=True))
         if any(a.position and not _periodic(a.mechanism) for a in self.attachments):
-            travel = [a.position and self.surroundings[a.port].ranges["position"] for a in self.attachments]
-            span = max(r.high - r.low for r in travel if r)
+            travel = [self.surroundings[a.port].ranges["position"] for a in self.attachments if a.position]
+            span = max(r.high - r.low for r in travel)
             return [{f"{b}.position": share * span for b in bodies} for share in OFFSETS]
         orders = [abs(float(numbers.get(f"{a.prefix}.order", 1.0))) for a in self.attachments if a.position]
         period = 2 * np.pi / max(min(orders), 1e-9)
