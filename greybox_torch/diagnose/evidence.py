@@ -21,7 +21,6 @@ def sentences(
     search: Search,
     effects: Sequence[Effect],
     gains: Mapping[str, Gain],
-    held: bool,
     interrupted: bool,
 ) -> tuple[str, ...]:
     """The evidence for a reader: what was looked at, what it showed, and what limits it."""
@@ -56,10 +55,11 @@ def sentences(
             f"Held out: {prefix} removes {100 * gain.share:.1f} % of the squared error that is left without it "
             f"(95 % interval {100 * low:.1f} to {100 * high:.1f} %)."
         )
-    if not held and any(done.taken is not None for done in search.rounds):
-        lines.append(
-            "Effects found on the estimation experiments did not lower the error on the validation experiments: taken back."
-        )
+    kept = {(e.port, e.mechanism) for e in effects}
+    taken = [done.taken.leader.attachment for done in search.rounds if done.taken is not None]
+    lost = [_name(a) for a in taken if (a.port, a.mechanism.name) not in kept]
+    if lost:
+        lines.append(f"Taken back, as the other experiments or effects do not bear it out: {', '.join(lost)}.")
     if dataset.held_out_by_default:
         lines.append(
             "No experiment had the role 'validation': the last quarter of every experiment was held out for judging."

@@ -132,7 +132,7 @@ def diagnose(
         confidence=confidence(search, effects, not interrupted),
         effects=effects,
         scores={name: comparison.scores for name, comparison in judged.comparisons(bool(effects)).items()},
-        evidence=sentences(dataset, search, effects, gains, judged.holds, interrupted),
+        evidence=sentences(dataset, search, effects, gains, interrupted),
         stages=clock.stages,
         ranking=_ranking(search),
         traces=judged.traces(bool(effects)),
