@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.diagnose.verdict import Verdict
+from greybox_torch.estimate.metrics import root_mean_square
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.report import text
 from greybox_torch.report.sections.headline import held_out, pooled
@@ -15,6 +16,12 @@ from greybox_torch.report.sections.spectrum import Spectra, spectra
 from greybox_torch.report.sections.traces import validation_traces
 
 MOST_EXPERIMENTS = 4
+
+LARGE = 0.1
+"""Share of the signal's variation from which an error is called large."""
+
+FOREIGN = 3.0
+"""Ratio of validation to estimation errors from which the experiments are said to differ in kind."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +43,39 @@ class Limits:
     def of(cls, verdict: Verdict) -> Limits | None:
         if verdict.mismatch:
             return None
-        return cls((*_sizes(verdict), *map(_band, spectra(verdict))), tuple(_suggestions(verdict)))
+        sentences = (*_cautions(verdict), *_sizes(verdict), *map(_band, spectra(verdict)))
+        return cls(sentences, tuple(_suggestions(verdict)))
+
+
+def _cautions(verdict: Verdict) -> Iterator[str]:
+    """An error that is large, or much larger where the model was not tuned, has a reason, if not one that the search can name."""
+    for output in dict.fromkeys(t.output for t in verdict.traces):
+        sizes = {role: _relative_error(verdict, output, role) for role in ("estimation", "validation")}
+        worst = max(sizes.values())
+        if worst < LARGE:
+            continue
+        name, known = text.words(output), min(sizes.values()) > 0
+        size = f"up to {text.percent(worst)} of the signal's variation" if np.isfinite(worst) else "beyond all bounds"
+        yield (
+            f"The error in {name} is large all the same, {size}: something is at work that neither a law of the library nor a curve over "
+            "one signal describes in a way that repeats."
+        )
+        elsewhere = sizes["validation"] / sizes["estimation"] if known else 1.0
+        if elsewhere > FOREIGN:
+            yield (
+                f"It is {text.number(elsewhere, 2)} times larger in the validation experiments than in those the model was tuned on. They "
+                "may have been recorded under other conditions (load, temperature, sensors), or excite what the others do not: estimate "
+                "from both kinds."
+            )
+
+
+def _relative_error(verdict: Verdict, output: str, role: str) -> float:
+    """Root mean square error as a share of the measured signal's variation; 0 where there is no such experiment."""
+    traces = [t for t in verdict.traces if t.output == output and t.role == role]
+    if not traces:
+        return 0.0
+    error = np.mean([root_mean_square(t.measured, t.refit) ** 2 for t in traces])
+    return float(np.sqrt(error / max(np.mean([np.nanvar(t.measured) for t in traces]), 1e-300)))
 
 
 def _sizes(verdict: Verdict) -> Iterator[str]:

@@ -92,7 +92,8 @@ def _panel(found: Spectra) -> Panel:
     x: Scale = Scale(float(found.frequency[0]), float(found.frequency[-1]), logarithmic=True)
     y = logarithmic(*found.density.values())
     marks = tuple(line(x, y, found.frequency, density, name) for name, density in found.density.items())
-    unit = f"({found.unit})^2/Hz" if found.unit else "1/Hz"
+    squared = f"{found.unit}^2" if found.unit.isalpha() else f"({found.unit})^2"
+    unit = f"{squared}/Hz" if found.unit else "1/Hz"
     alt = f"Spectrum of the error of {text.words(found.output)} on logarithmic axes. {_told(found)}"
     return Panel(x, y, "frequency [Hz]", text.axis(f"power density of {found.output}", unit), marks, alt, "tall")
 

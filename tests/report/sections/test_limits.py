@@ -28,5 +28,19 @@ def test_mechanisms_of_the_user_may_suggest_nothing(of_kind: Callable[[str], Ver
     assert limits.suggestions == ()
 
 
+def test_a_large_error_is_not_passed_over(with_traces: Callable[..., Verdict]) -> None:
+    found = with_traces(("A", "estimation", 0.05), ("B", "validation", 3.0))
+    limits = Limits.of(replace(found, effects=()))
+    assert limits is not None
+    assert limits.sentences[0].startswith(
+        "The error in motor speed is large all the same, up to 30 % of the signal's variation"
+    )
+    assert limits.sentences[1].startswith("It is 35 times larger in the validation experiments")
+    alike = with_traces(("A", "estimation", 3.0), ("B", "validation", 3.0))
+    again = Limits.of(replace(alike, effects=()))
+    assert again is not None
+    assert sum("large" in sentence for sentence in again.sentences) == 1
+
+
 def test_only_where_nothing_is_missing(of_kind: Callable[[str], Verdict]) -> None:
     assert Limits.of(of_kind("found")) is None
