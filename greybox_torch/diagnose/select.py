@@ -24,8 +24,8 @@ LEAST_GAIN = 0.01
 LEAST_SURENESS = 3.0
 """Standard errors (over windows) by which an effect must improve the prediction."""
 
-CLOSE = 0.35
-"""Difference in score (logarithm of the mean squared error) within which rivals are polished before they are compared."""
+CLOSE = 0.7
+"""Share of the best gain from which a rival is polished before it is compared."""
 
 FRONT_RUNNERS = 3
 MOST_SHAPES = 3
@@ -162,8 +162,7 @@ class Search:
         """
         if not ranked or ranked[0].gain < LEAST_GAIN:
             return list(ranked)
-        least = ranked[0].fitted.score + CLOSE
-        front = [r for r in ranked if r.fitted.score < least][:FRONT_RUNNERS]
+        front = [r for r in ranked if r.gain > CLOSE * ranked[0].gain][:FRONT_RUNNERS]
         polish = [self._polished(r.fitted, self._shapes(r)) for r in front]
         best = min(polish, key=lambda fitted: fitted.score)
         parent = self._polished(self.current, [best.values(), {**best.values(), **self._card()}])

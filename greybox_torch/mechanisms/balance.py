@@ -49,10 +49,10 @@ class ThresholdFlow(Mechanism):
             Parameter("c", 0.0, around.per("level"), lower=0.0, description="flow per level above the threshold"),
             Parameter(
                 "threshold",
-                0.5 * (level.low + level.high),
+                level.low + 0.5 * level.span,
                 around.units.get("level", ""),
                 lower=level.low,
-                upper=level.high,
+                upper=level.low + level.span,
                 description="level at which the flow sets in",
             ),
         ]
@@ -62,6 +62,4 @@ class ThresholdFlow(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         level = around.ranges["level"]
-        return [
-            Probe(("c",), {"threshold": level.low + f * (level.high - level.low)}) for f in (0.3, 0.5, 0.7, 0.85, 0.95)
-        ]
+        return [Probe(("c",), {"threshold": level.low + f * level.span}) for f in (0.3, 0.5, 0.7, 0.85, 0.95)]

@@ -95,14 +95,15 @@ class EndStop(Mechanism):
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         travel = around.ranges["position"]
+        end = travel.low + travel.span
         return [
             Parameter("k", 0.0, around.per("position"), lower=0.0, description="stiffness of the stop"),
             Parameter(
                 "where",
-                travel.high,
+                end,
                 around.units.get("position", ""),
                 lower=travel.low,
-                upper=travel.high,
+                upper=end,
                 description="stop",
             ),
             Parameter("side", 1.0, "", fixed=True, description="+1: the stop is above, -1: below"),
@@ -114,7 +115,7 @@ class EndStop(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         travel = around.ranges["position"]
-        width = travel.high - travel.low
+        width = travel.span
         above = [Probe(("k",), {"where": travel.high - share * width, "side": 1.0}) for share in (0.03, 0.1, 0.25)]
         return above + [
             Probe(("k",), {"where": travel.low + share * width, "side": -1.0}) for share in (0.03, 0.1, 0.25)
@@ -132,7 +133,8 @@ class AdditionalMode(Mechanism):
     experiment = "broadband excitation around the resonance"
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
-        unit = around.per("speed").replace("/(rad/s)", " s^2/rad")
+        place = around.units.get("speed", "").replace("/s", "")
+        unit = f"{around.force_unit} s^2/{place}" if place else ""
         nyquist = torch.pi / around.sample_time
         return [
             Parameter("mass", 0.0, unit, lower=0.0, description="mass or inertia"),

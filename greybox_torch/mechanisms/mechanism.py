@@ -22,6 +22,11 @@ class Range:
         """The largest magnitude, never zero."""
         return max(abs(self.low), abs(self.high), 1e-12)
 
+    @property
+    def span(self) -> float:
+        """From the lowest to the highest value, never zero."""
+        return max(self.high - self.low, 1e-9 * self.reach)
+
 
 @dataclass(frozen=True)
 class Surroundings:

@@ -31,8 +31,8 @@ class Unknown(Mechanism):
 
     def centres(self, around: Surroundings) -> list[float]:
         """Centres of the bumps, in the signal's unit."""
-        span = around.ranges[self.signal]
-        return [span.low + (span.high - span.low) * k / (self.knots - 1) for k in range(self.knots)]
+        moved = around.ranges[self.signal]
+        return [moved.low + moved.span * k / (self.knots - 1) for k in range(self.knots)]
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         centres = self.centres(around)
