@@ -1,0 +1,78 @@
+"""Forces on a body that are no friction, and terms of a balance."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greybox_torch.mechanisms.balance import LinearLeak, ThresholdFlow
+from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndStop, Gravity, TorqueRipple
+
+ANGLES = np.linspace(-4.0, 4.0, 201)
+
+
+def test_bias_is_constant(law) -> None:
+    assert (law(ConstantBias(), {"bias": -0.7}, speed=ANGLES) == -0.7).all()
+
+
+def test_gravity_once_per_turn_and_pulls_back_to_hanging(law) -> None:
+    weight = law(Gravity(), {"a": 2.0, "b": 0.0}, position=ANGLES)
+    np.testing.assert_allclose(weight, -2.0 * np.sin(ANGLES))
+    leaning = {"a": 2.0, "b": 1.0}
+    here, a_turn_on = (law(Gravity(), leaning, position=ANGLES + turn) for turn in (0.0, 2 * np.pi))
+    np.testing.assert_allclose(here, a_turn_on, atol=1e-12)
+
+
+@pytest.mark.parametrize("order", [2.0, 7.3])
+def test_ripple_is_periodic_with_its_order_and_no_other(law, order) -> None:
+    values = {"a": 0.3, "b": -0.4}
+    here, on, half = (
+        law(TorqueRipple(order), values, position=ANGLES + shift * 2 * np.pi / order) for shift in (0.0, 1.0, 0.5)
+    )
+    np.testing.assert_allclose(here, on, atol=1e-12)
+    np.testing.assert_allclose(here, -half, atol=1e-12)
+    assert np.abs(here).max() == pytest.approx(0.5, rel=0.01)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_end_stop_pushes_back_beyond_and_is_absent_before(law, side) -> None:
+    force = law(EndStop(), {"k": 10.0, "where": 1.0, "side": side}, position=ANGLES)
+    beyond = side * (ANGLES - 1.0)
+    assert (force[beyond <= 0] == 0).all()
+    np.testing.assert_allclose(force[beyond > 0], -side * 10.0 * beyond[beyond > 0])
+    assert (force * side <= 0).all()
+
+
+MODE = {"mass": 0.5, "omega": 30.0, "zeta": 0.1}
+
+
+def test_additional_mode_reacts_with_what_accelerates_its_mass(law, rates, anywhere) -> None:
+    memory = {"stretch": anywhere["deflection"], "speed": np.flip(anywhere["speed"]).copy()}
+    force = law(AdditionalMode(), MODE, memory, speed=anywhere["speed"])
+    np.testing.assert_allclose(force, -0.5 * rates(AdditionalMode(), MODE, memory, speed=anywhere["speed"])[1])
+
+
+def test_additional_mode_is_a_mass_to_slow_motion_and_rings_at_its_frequency(law, rates) -> None:
+    def simulated(speed, x, seconds, step=1e-4):
+        forces = []
+        for t in np.arange(0.0, seconds, step):
+            memory = {"stretch": np.array(x[0]), "speed": np.array(x[1])}
+            forces.append(float(law(AdditionalMode(), MODE, memory, speed=np.array(speed(t)))))
+            x = x + step * rates(AdditionalMode(), MODE, memory, speed=np.array(speed(t)))
+        return np.array(forces)
+
+    accelerated = simulated(lambda t: 2.0 * t, np.zeros(2), 3.0, 1e-3)
+    assert accelerated[-1] == pytest.approx(-0.5 * 2.0, rel=0.01)
+    ringing = simulated(lambda t: 0.0, np.array([0.01, 0.0]), 0.5)
+    crossings = np.flatnonzero(np.diff(np.sign(ringing))) * 1e-4
+    assert np.pi / np.diff(crossings).mean() == pytest.approx(30.0 * np.sqrt(1 - 0.1**2), rel=0.01)
+
+
+def test_leak_is_proportional_and_loses(law) -> None:
+    level = np.linspace(0.0, 4.0, 9)
+    np.testing.assert_allclose(law(LinearLeak(), {"c": 0.5}, level=level), -0.5 * level)
+
+
+def test_threshold_flow_begins_at_its_threshold(law) -> None:
+    flow = law(ThresholdFlow(), {"c": 2.0, "threshold": 1.5}, level=np.array([0.0, 1.5, 2.0, 2.5]))
+    np.testing.assert_allclose(flow, [0.0, 0.0, -1.0, -2.0], atol=1e-12)

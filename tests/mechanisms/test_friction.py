@@ -1,0 +1,158 @@
+"""Laws of friction: limits, symmetry, and that friction never drives."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from greybox_torch.mechanisms.friction import (
+    CoulombAsymmetry,
+    CoulombFriction,
+    FrictionWarmup,
+    LoadDependentFriction,
+    PositionDependentFriction,
+    PreslidingHysteresis,
+    QuadraticDrag,
+    StribeckFriction,
+    ViscousFriction,
+)
+
+SPEEDS = np.linspace(-15.0, 15.0, 301)
+
+speeds = st.floats(-50.0, 50.0)
+levels = st.floats(0.0, 20.0)
+widths = st.floats(0.05, 5.0)
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "values"),
+    [
+        (ViscousFriction(), {"c": 0.3}),
+        (CoulombFriction(), {"F_c": 2.0}),
+        (StribeckFriction(), {"F_c": 2.0, "F_s": 1.0, "c": 0.1}),
+        (QuadraticDrag(), {"c": 0.3}),
+        (LoadDependentFriction(), {"c": 0.3}),
+        (FrictionWarmup(), {"delta": 2.0}),
+        (PositionDependentFriction(), {"a": 0.4, "b": -0.2}),
+    ],
+    ids=lambda value: getattr(value, "name", ""),
+)
+def test_odd_in_speed(mechanism, values, law) -> None:
+    others = {name: np.full(301, 1.3) for name in mechanism.needs if name != "speed"}
+    forward = law(mechanism, values, speed=SPEEDS, **others)
+    np.testing.assert_allclose(law(mechanism, values, speed=-SPEEDS, **others), -forward, rtol=1e-14)
+    assert np.abs(forward).max() > 0.01
+
+
+def test_viscous_is_proportional(law) -> None:
+    np.testing.assert_allclose(law(ViscousFriction(), {"c": 0.3}, speed=SPEEDS), -0.3 * SPEEDS)
+
+
+def test_coulomb_saturates(law) -> None:
+    force = law(CoulombFriction(), {"F_c": 2.0, "v_0": 0.1}, speed=SPEEDS)
+    np.testing.assert_allclose(force[SPEEDS > 1.0], -2.0, rtol=1e-8)
+    assert law(CoulombFriction(), {"F_c": 2.0, "v_0": 0.1}, speed=np.array(0.1)) == pytest.approx(-2.0 * np.tanh(1.0))
+
+
+def test_drag_is_quadratic(law) -> None:
+    slow, fast = law(QuadraticDrag(), {"c": 0.3}, speed=np.array([2.0, 4.0]))
+    assert (slow, fast) == (pytest.approx(-1.2), pytest.approx(-4.8))
+
+
+def test_asymmetry_is_even_and_vanishes_at_standstill(law) -> None:
+    force = law(CoulombAsymmetry(), {"delta": 0.5}, speed=SPEEDS)
+    np.testing.assert_allclose(force, law(CoulombAsymmetry(), {"delta": 0.5}, speed=-SPEEDS))
+    assert force[0] == pytest.approx(-0.5) and force[150] == 0.0
+
+
+def test_stribeck_falls_then_rises(law) -> None:
+    values = {"F_c": 1.0, "F_s": 2.0, "c": 0.1, "v_s": 1.0, "v_0": 0.01}
+    speed = np.linspace(0.1, 30.0, 3000)
+    drag = -law(StribeckFriction(), values, speed=speed)
+    lowest = int(np.argmin(drag))
+    assert drag[0] == pytest.approx(3.0, abs=0.02)
+    assert 1.5 < speed[lowest] < 3.0 and drag[lowest] < 1.3
+    assert (np.diff(drag[:lowest]) < 0).all() and (np.diff(drag[lowest:]) > 0).all()
+    assert drag[-1] == pytest.approx(1.0 + 0.1 * 30.0)
+
+
+def test_load_counts_by_its_magnitude(law) -> None:
+    values = {"c": 0.2, "v_0": 0.1}
+    force = law(LoadDependentFriction(), values, speed=np.full(3, 5.0), load=np.array([-4.0, 0.0, 4.0]))
+    np.testing.assert_allclose(force, [-0.8, 0.0, -0.8], atol=1e-12)
+
+
+def test_warmup_decays(law) -> None:
+    values = {"delta": 3.0, "T": 2.0, "v_0": 0.1}
+    force = law(FrictionWarmup(), values, speed=np.full(3, 5.0), time=np.array([0.0, 2.0, 60.0]))
+    np.testing.assert_allclose(force, [-3.0, -3.0 / np.e, 0.0], atol=1e-9)
+
+
+def test_position_dependence_is_periodic(law) -> None:
+    mechanism, values = PositionDependentFriction(3.0), {"a": 0.4, "b": -0.2, "v_0": 0.1}
+    angle = np.linspace(0.0, 2.0, 100)
+    force = law(mechanism, values, speed=np.full(100, 5.0), position=angle)
+    again = law(mechanism, values, speed=np.full(100, 5.0), position=angle + 2 * np.pi / 3)
+    np.testing.assert_allclose(force, again, atol=1e-12)
+    assert np.ptp(force) == pytest.approx(2 * np.hypot(0.4, 0.2), rel=0.01)
+
+
+@given(v=speeds, c=levels, F_c=levels, F_s=levels, v_s=widths, v_0=widths, load=speeds, t=st.floats(0.0, 100.0))
+def test_friction_never_drives(law, v, c, F_c, F_s, v_s, v_0, load, t) -> None:
+    v, load, t = np.array(v), np.array(load), np.array(t)
+    forces = [
+        law(ViscousFriction(), {"c": c}, speed=v),
+        law(CoulombFriction(), {"F_c": F_c, "v_0": v_0}, speed=v),
+        law(StribeckFriction(), {"F_c": F_c, "F_s": F_s, "c": c, "v_s": v_s, "v_0": v_0}, speed=v),
+        law(QuadraticDrag(), {"c": c}, speed=v),
+        law(LoadDependentFriction(), {"c": c, "v_0": v_0}, speed=v, load=load),
+        law(FrictionWarmup(), {"delta": F_c, "v_0": v_0}, speed=v, time=t),
+    ]
+    assert all(force * v <= 0 for force in forces)
+
+
+@given(v=speeds, a=st.floats(-5.0, 5.0), b=st.floats(-5.0, 5.0), v_0=widths, angle=st.floats(-10.0, 10.0))
+def test_what_varies_a_coulomb_level_does_not_drive_with_it(law, v, a, b, v_0, angle) -> None:
+    """An asymmetry or a periodic part alone drives in places; on top of a level at least as high it does not."""
+    v, angle = np.array(v), np.array(angle)
+    level = law(CoulombFriction(), {"F_c": np.hypot(a, b) * (1 + 1e-12), "v_0": v_0}, speed=v)
+    varied = law(PositionDependentFriction(2.0), {"a": a, "b": b, "v_0": v_0}, speed=v, position=angle)
+    assert (level + varied) * v <= 1e-12
+    level = law(CoulombFriction(), {"F_c": abs(a), "v_0": v_0}, speed=v)
+    assert (level + law(CoulombAsymmetry(), {"delta": a, "v_0": v_0}, speed=v)) * v <= 0
+
+
+BRISTLE = {"F": 2.0, "z_0": 0.05}
+
+
+@given(v=speeds, z=st.floats(-1.0, 1.0))
+def test_bristle_only_stores_and_dissipates(law, rates, v, z) -> None:
+    v, memory = np.array(v), {"bristle": np.array(z * 0.05)}
+    force = law(PreslidingHysteresis(), BRISTLE, memory, speed=v)
+    rate = rates(PreslidingHysteresis(), BRISTLE, memory, speed=v)[0]
+    stored = 2.0 / 0.05 * memory["bristle"] * rate  # d/dt of F z² / (2 z_0)
+    assert force * v + stored <= 1e-12
+    assert abs(z) < 1.0 or z * rate <= 1e-9  # bent by no more than z_0
+
+
+def test_bristle_dissipates_over_a_closed_cycle(law, rates) -> None:
+    step, bristle, work = 1e-4, 0.0, []
+    for t in np.arange(0.0, 4.0, step):
+        v, memory = np.array(3.0 * np.cos(2 * np.pi * t)), {"bristle": np.array(bristle)}
+        work.append(float(law(PreslidingHysteresis(), BRISTLE, memory, speed=v) * v) * step)
+        bristle += step * float(rates(PreslidingHysteresis(), BRISTLE, memory, speed=v)[0])
+    per_cycle = np.array(work).reshape(4, -1).sum(axis=1)
+    assert per_cycle[3] == pytest.approx(per_cycle[2], rel=1e-3)
+    travel = 4 * 3.0 / (2 * np.pi)
+    assert -2.0 * travel < per_cycle[3] < -0.8 * 2.0 * travel  # at most that of full sliding, and a good part of it
+
+
+def test_bristle_becomes_coulomb_in_sliding(law, rates) -> None:
+    bristle = 0.0
+    for _ in range(4000):
+        bristle += 1e-4 * float(rates(PreslidingHysteresis(), BRISTLE, {"bristle": np.array(bristle)}, speed=1.0)[0])
+    assert law(PreslidingHysteresis(), BRISTLE, {"bristle": np.array(bristle)}, speed=1.0) == pytest.approx(
+        -2, rel=1e-3
+    )

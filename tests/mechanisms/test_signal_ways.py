@@ -1,0 +1,58 @@
+"""The ways of signals in and out: actuators and sensors. Their law is the change of the signal."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greybox_torch.mechanisms.actuator import (
+    ActuatorDeadzone,
+    InputBias,
+    InputDelay,
+    InputGain,
+    InputLag,
+    TorqueSaturation,
+)
+from greybox_torch.mechanisms.sensor import SensorBias, SensorGain, SensorLag
+
+INPUT = np.linspace(-5.0, 5.0, 101)
+
+
+def test_saturation_clips(law) -> None:
+    acting = INPUT + law(TorqueSaturation(), {"limit": 2.0}, input=INPUT)
+    np.testing.assert_allclose(acting, np.clip(INPUT, -2.0, 2.0), atol=1e-15)
+
+
+def test_dead_zone_of_the_actuator(law) -> None:
+    acting = INPUT + law(ActuatorDeadzone(), {"half_width": 1.0}, input=INPUT)
+    np.testing.assert_allclose(acting, np.sign(INPUT) * np.maximum(np.abs(INPUT) - 1.0, 0.0), atol=1e-14)
+
+
+@pytest.mark.parametrize(("bias", "signal"), [(InputBias(), "input"), (SensorBias(), "output")])
+def test_bias(law, bias, signal) -> None:
+    np.testing.assert_allclose(law(bias, {"bias": 0.3}, **{signal: INPUT}), 0.3)
+
+
+@pytest.mark.parametrize(("gain", "signal"), [(InputGain(), "input"), (SensorGain(), "output")])
+def test_gain(law, gain, signal) -> None:
+    np.testing.assert_allclose(law(gain, {"gain_error": -0.2}, **{signal: INPUT}), -0.2 * INPUT)
+
+
+@pytest.mark.parametrize(("lag", "signal"), [(InputLag(), "input"), (SensorLag(), "output")])
+def test_lag_settles_to_its_signal_with_its_time_constant(law, rates, lag, signal) -> None:
+    lagged, after = 0.0, {}
+    for k in range(20_000):
+        now = {signal: np.array(3.0)}
+        after[k] = 3.0 + float(law(lag, {"T": 0.1}, {"lagged": np.array(lagged)}, **now))
+        lagged += 1e-4 * float(rates(lag, {"T": 0.1}, {"lagged": np.array(lagged)}, **now)[0])
+        if k > 1000:
+            break
+    assert after[0] == 0.0
+    assert after[1000] == pytest.approx(3.0 * (1 - np.exp(-1.0)), rel=1e-3)
+    settled = law(lag, {"T": 0.1}, {"lagged": np.array(3.0)}, **{signal: np.array(3.0)})
+    assert settled == 0.0
+
+
+def test_delay_acts_by_the_delayed_input(law) -> None:
+    acting = INPUT + law(InputDelay(), {"T": 0.01}, input=INPUT, delayed=INPUT - 0.4)
+    np.testing.assert_allclose(acting, INPUT - 0.4)

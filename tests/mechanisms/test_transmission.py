@@ -1,0 +1,77 @@
+"""Laws of couplings. A coupling's force is a restoring one: positive where the deflection is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from greybox_torch.mechanisms.transmission import (
+    Backlash,
+    HystereticSpring,
+    NonlinearDamping,
+    NonlinearStiffness,
+    TransmissionError,
+)
+
+TWIST = np.linspace(-0.06, 0.06, 241)
+RATES = np.linspace(-2.0, 2.0, 81)
+
+
+def test_dead_zone_is_zero_inside_and_has_slope_one_outside(law) -> None:
+    seen = law(Backlash(), {"half_gap": 0.02}, deflection=TWIST)
+    assert (np.abs(seen[np.abs(TWIST) < 0.02]) < 1e-15).all()
+    np.testing.assert_allclose(seen, -seen[::-1], atol=1e-15)
+    outside = TWIST > 0.021
+    np.testing.assert_allclose(np.diff(seen[outside]) / np.diff(TWIST[outside]), 1.0)
+    assert seen[-1] == pytest.approx(0.04)
+
+
+def test_stiffening(law) -> None:
+    force = law(NonlinearStiffness(), {"k_2": 100.0, "k_3": 2000.0}, deflection=TWIST)
+    np.testing.assert_allclose(force, -force[::-1], atol=1e-15)
+    assert (force * TWIST >= 0).all()
+    assert force[-1] == pytest.approx(100 * 0.06**2 + 2000 * 0.06**3)
+    assert (np.diff(force)[121:] > np.diff(force)[120]).all()
+
+
+def test_nonlinear_damping_opposes_the_rate(law) -> None:
+    force = law(NonlinearDamping(), {"d_2": 0.5, "d_0": 0.2, "r_0": 0.01}, rate=RATES)
+    np.testing.assert_allclose(force, -force[::-1], atol=1e-15)
+    assert (force * RATES >= 0).all()
+    assert force[-1] == pytest.approx(0.5 * 4 + 0.2)
+
+
+def test_transmission_error_is_periodic_in_position_and_leaves_the_rest(law) -> None:
+    mechanism, values = TransmissionError(4.5), {"a": 0.003, "b": 0.004}
+    position = np.linspace(0.0, 3.0, 241)
+    here, on = (
+        law(mechanism, values, deflection=TWIST, position=position + shift) - TWIST for shift in (0.0, 2 * np.pi / 4.5)
+    )
+    np.testing.assert_allclose(here, on, atol=1e-15)
+    assert np.abs(here).max() == pytest.approx(0.005, rel=0.01)
+
+
+SLIP = {"F": 1.5, "z_0": 0.01}
+
+
+@given(rate=st.floats(-50.0, 50.0), z=st.floats(-1.0, 1.0))
+def test_slip_only_stores_and_dissipates(law, rates, rate, z) -> None:
+    memory = {"slip": np.array(0.01 * z)}
+    force = law(HystereticSpring(), SLIP, memory, rate=np.array(rate))
+    change = rates(HystereticSpring(), SLIP, memory, rate=np.array(rate))[0]
+    stored = 1.5 / 0.01 * memory["slip"] * change  # d/dt of F z² / (2 z_0)
+    assert force * rate - stored >= -1e-12
+
+
+def test_hysteretic_spring_dissipates_over_a_closed_cycle_and_saturates(law, rates) -> None:
+    step, slip, work, forces = 1e-4, 0.0, 0.0, []
+    for t in np.arange(0.0, 3.0, step):
+        rate, memory = np.array(0.4 * np.cos(2 * np.pi * t)), {"slip": np.array(slip)}
+        forces.append(float(law(HystereticSpring(), SLIP, memory, rate=rate)))
+        work += forces[-1] * float(rate) * step * (t >= 2.0)
+        slip += step * float(rates(HystereticSpring(), SLIP, memory, rate=rate)[0])
+    travel = 4 * 0.4 / (2 * np.pi)
+    assert 0.5 * 1.5 * travel < work < 1.5 * travel
+    assert 1.4 < max(forces) < 1.5

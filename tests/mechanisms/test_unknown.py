@@ -1,0 +1,31 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greybox_torch.mechanisms.unknown import Unknown
+
+
+def test_follows_any_smooth_curve_over_its_range(law, around) -> None:
+    curve = Unknown("speed")
+    span = around.ranges["speed"]
+    speed = np.linspace(span.low, span.high, 300)
+    bumps = np.stack([law(curve, {f"w_{k}": 1.0}, speed=speed) for k in range(14)], axis=1)
+    for target in (np.tanh(speed / 4), 0.01 * speed**2, np.exp(-((speed / 5) ** 2))):
+        heights = np.linalg.lstsq(bumps, target, rcond=None)[0]
+        fitted = law(curve, {f"w_{k}": float(h) for k, h in enumerate(heights)}, speed=speed)
+        assert np.std(fitted - target) < 0.05 * np.std(target)
+
+
+def test_centres_span_the_range_and_do_not_move(around) -> None:
+    curve = Unknown("deflection", knots=5)
+    centres = curve.centres(around)
+    assert (centres[0], centres[-1]) == (around.ranges["deflection"].low, around.ranges["deflection"].high)
+    np.testing.assert_allclose(np.diff(centres), np.diff(centres)[0])
+    fixed = {p.name: p for p in curve.parameters(around) if p.fixed}
+    assert set(fixed) == {"first", "spacing"}
+    assert fixed["first"].unit == "rad" and fixed["spacing"].value == pytest.approx(0.11 / 4)
+
+
+def test_signal_of_the_curve_is_what_it_is_told() -> None:
+    assert Unknown("input").signals() == ("input",)
