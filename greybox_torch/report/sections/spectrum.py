@@ -46,7 +46,7 @@ class Spectrum:
         what = "of the error before and after" if verdict.mismatch else "of the error that remains"
         caption = f"Power spectral density {what}, and of the measured output for comparison (Welch's method, all validation experiments)."
         errors = (
-            Key(key.series, f"error {key.label}" if verdict.mismatch else "error that remains")
+            Key(key.series, f"error {key.series}" if verdict.mismatch else "error that remains")
             for key in keys(verdict.mismatch)
         )
         legend = (Key("output", "measured output"), *errors)
