@@ -1,0 +1,130 @@
+"""How sure an improvement is, what it is on held-out windows, and the probabilities that follow."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnose.held_out import Gain, gain
+from greybox_torch.diagnose.leaders import Leader
+from greybox_torch.diagnose.name import Ranked, sureness
+from greybox_torch.diagnose.probability import CEILING, shared
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction
+
+
+@pytest.fixture
+def fitted(stub):
+    """A hypothesis of which only window energies are known."""
+    return lambda *energies, free=(): stub(
+        fits=tuple(stub(energies=np.asarray(e, dtype=float)) for e in energies),
+        problem=stub(free_names=free),
+        score=float(np.log(np.mean(energies[0]))),
+    )
+
+
+def energies(seed: int, count: int = 64, samples: int = 100) -> np.ndarray:
+    """Energies of windows of noise."""
+    return np.random.default_rng(seed).chisquare(samples, count) / samples
+
+
+def test_chance_is_not_sure(fitted) -> None:
+    """A parameter that is not there takes up one degree of freedom: here it lowers some windows' energies a little, raises others."""
+    high = 0
+    for seed in range(200):
+        before = energies(seed)
+        after = before + np.random.default_rng(seed + 1000).normal(0, 0.01, 64)
+        high += sureness(fitted(before), fitted(after)) > 3.0
+    assert high <= 4
+
+
+def test_everywhere_is_sure(fitted) -> None:
+    before = energies(0)
+    assert sureness(fitted(before), fitted(0.7 * before)) > 10.0
+
+
+def test_an_effect_that_varies_by_orders_of_magnitude_is_sure(fitted) -> None:
+    before = energies(0) * np.geomspace(1.0, 1e6, 64)
+    after = before * np.random.default_rng(1).uniform(0.6, 0.9, 64)
+    assert sureness(fitted(before), fitted(after)) > 5.0
+
+
+def test_one_window_is_sure(fitted) -> None:
+    noise = np.random.default_rng(2).normal(1.0, 0.01, 64)
+    before = energies(0)
+    after = before * noise
+    before[20] += 5.0
+    assert sureness(fitted(before), fitted(after)) > 3.0
+
+
+def test_worse_is_not_sure(fitted) -> None:
+    before = energies(0)
+    assert sureness(fitted(before), fitted(1.3 * before)) < 0.5
+
+
+def test_few_windows_say_nothing_and_the_surest_length_counts(fitted) -> None:
+    few, many = energies(0, 4), energies(1)
+    assert sureness(fitted(few), fitted(0.1 * few)) == 0.0
+    assert sureness(fitted(many, few), fitted(0.7 * many, few)) == sureness(fitted(many), fitted(0.7 * many))
+
+
+def test_share_that_is_gained_on_held_out_windows(fitted) -> None:
+    before, after = fitted([4.0, 6.0, 10.0]).fits, fitted([1.0, 2.0, 3.0]).fits
+    assert gain(before, after).share == pytest.approx(14 / 20)
+    scaled = gain(fitted([40.0, 60.0, 100.0]).fits, fitted([10.0, 20.0, 30.0]).fits)
+    assert scaled.share == pytest.approx(14 / 20)
+    assert scaled.error == pytest.approx(gain(before, after).error)
+
+
+def test_standard_error_of_the_share_is_that_of_repeats(fitted) -> None:
+    def one(seed: int) -> Gain:
+        before = 1.0 + 0.2 * np.random.default_rng(seed).normal(size=40)
+        return gain(fitted(before).fits, fitted(before - 0.1 * np.random.default_rng(seed + 500).normal(1, 3, 40)).fits)
+
+    gains = [one(seed) for seed in range(300)]
+    assert np.mean([g.error for g in gains]) == pytest.approx(np.std([g.share for g in gains]), rel=0.15)
+    low, high = gains[0].interval
+    assert high - low == pytest.approx(2 * 1.96 * gains[0].error)
+
+
+def test_one_window_or_none_is_no_evidence(fitted) -> None:
+    assert gain(fitted([4.0]).fits, fitted([1.0]).fits) == Gain(0.75, float("inf"))
+    assert gain((), ()) == Gain(0.0, float("inf"))
+
+
+def test_length_that_is_surest_counts(fitted) -> None:
+    noisy, clear = ([9.0, 1.0, 5.0], [1.0, 5.0, 4.0]), ([4.0, 5.0, 6.0], [1.0, 2.1, 2.9])
+    both = gain(fitted(noisy[0], clear[0]).fits, fitted(noisy[1], clear[1]).fits)
+    assert both == gain(fitted(clear[0]).fits, fitted(clear[1]).fits)
+
+
+def ranked(mechanism, fitted, gained: float, window_energies, port="rotor") -> Ranked:
+    attachment = Attachment(port, mechanism)
+    free = (f"{attachment.prefix}.size",)
+    return Ranked(Leader(attachment, (), 0.5), fitted(window_energies, free=free), gained, 10.0)
+
+
+def test_equal_rivals_share_equally(fitted) -> None:
+    same = energies(0)
+    chosen, twin = ranked(ConstantBias(), fitted, 1.0, same), ranked(CoulombAsymmetry(), fitted, 1.0, same)
+    probability, alternatives = shared(chosen, [chosen, twin])
+    assert probability == pytest.approx(CEILING / 2, abs=1e-3)
+    assert [(a.mechanism, a.probability) for a in alternatives] == [("coulomb_asymmetry", probability)]
+
+
+def test_a_far_rival_gets_none(fitted) -> None:
+    same = energies(0)
+    chosen, far = ranked(ConstantBias(), fitted, 1.0, same), ranked(CoulombFriction(), fitted, 0.5, 3.0 * same)
+    useless = ranked(CoulombAsymmetry(), fitted, -0.1, same)
+    assert shared(chosen, [chosen, far, useless]) == (CEILING, ())
+
+
+def test_the_same_mechanism_at_another_order_is_no_rival_but_at_another_port_is(fitted) -> None:
+    same = energies(0)
+    chosen = ranked(TorqueRipple(4.0), fitted, 1.0, same)
+    assert shared(chosen, [chosen, ranked(TorqueRipple(5.0), fitted, 1.0, same)])[0] == CEILING
+    elsewhere = ranked(TorqueRipple(4.0), fitted, 1.0, same, port="load")
+    probability, alternatives = shared(chosen, [chosen, elsewhere])
+    assert [(a.port, a.mechanism) for a in alternatives] == [("load", "torque_ripple")]
+    assert probability + alternatives[0].probability == pytest.approx(CEILING, abs=1e-3)
