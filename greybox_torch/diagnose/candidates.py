@@ -74,7 +74,7 @@ def attach(model: GreyBoxModel, port: str, mechanism: Mechanism, shifted: str = 
     if "position" in mechanism.signals() or "position" in mechanism.needs:
         body = site if isinstance(site, Body) else driving_body(model)
         position = body.name if body is not None else ""
-    return Attachment(port, mechanism, position=position, shifted_state=shifted if mechanism.kinematic else "")
+    return Attachment(port, mechanism, position=position, shifted_state=shifted)
 
 
 def _curves(port: Port) -> Iterable[Unknown]:

@@ -55,7 +55,27 @@ def laws_on_curve(
             attachment = attach(model, curve.port, law)
             values = {**base, **{f"{attachment.prefix}.{n}": v for n, v in start.items()}}
             found[law.name] = Leader(attachment, ({**values, **card}, values), share)
-    return list(found.values())
+    return [*found.values(), *_kinematic(model, curve, surroundings, base, card)]
+
+
+def _kinematic(
+    model: GreyBoxModel,
+    curve: Attachment,
+    surroundings: Mapping[str, Surroundings],
+    base: Mapping[str, float],
+    card: Mapping[str, float],
+) -> list[Leader]:
+    """Kinematic laws of the curve's signal: what they do to the force depends on the spring, so their size is tried, not fitted."""
+    unknown, around = curve.mechanism, surroundings[curve.port]
+    assert isinstance(unknown, Unknown)
+    found = []
+    for law in (m() for m in LIBRARY.values()):
+        if law.kinematic and curve.shifted_state and set(law.needs) <= {unknown.signal}:
+            attachment = attach(model, curve.port, law, curve.shifted_state)
+            sizes = [probe.values for probe in law.probes(around) if probe.values]
+            starts = [{f"{attachment.prefix}.{n}": v for n, v in values.items()} for values in sizes]
+            found.append(Leader(attachment, tuple({**base, **card, **start} for start in starts), 0.0))
+    return found
 
 
 def _visited(rms: float, grid: np.ndarray) -> np.ndarray:

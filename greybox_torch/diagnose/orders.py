@@ -7,7 +7,7 @@ highest peaks, a coherent look over the record gives the order finely.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -50,11 +50,16 @@ def scan_orders(
         for k in _highest(scores, peaks):
             found.append(_refined(screen, fitted, float(grid[k]), float(grid[1] - grid[0]), substeps))
     found.sort(reverse=True)
-    orders: list[float] = []
-    for _, order in found:
-        if all(abs(order - o) > 0.05 * o for o in orders):
-            orders.append(order)
-    return orders
+    return distinct_orders(order for _, order in found)
+
+
+def distinct_orders(orders: Iterable[float]) -> list[float]:
+    """Orders in the sequence given, without those within 5 % of one before."""
+    kept: list[float] = []
+    for order in orders:
+        if all(abs(order - other) > 0.05 * other for other in kept):
+            kept.append(order)
+    return kept
 
 
 def _grid(around: Surroundings, fitted: WindowFit) -> np.ndarray:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from greybox_torch.diagnose.candidates import candidates, periodic_candidates
 from greybox_torch.diagnose.leaders import leaders
 from greybox_torch.diagnose.name import Ranked, polished, rank, sureness
-from greybox_torch.diagnose.orders import scan_orders
+from greybox_torch.diagnose.orders import distinct_orders, scan_orders
 from greybox_torch.diagnose.refit import POLISH_SETTINGS, Hypothesis, hypothesis
 from greybox_torch.diagnose.screen import Look, Screen
 from greybox_torch.diagnose.surroundings import survey
@@ -141,9 +141,9 @@ class Search:
     def _screened(self) -> list[list[Look]]:
         self.progress("screening every port and mechanism")
         model, at, free = self.problem.model, self.current, self.current.problem.free_names
-        middle = at.fits[min(1, len(at.fits) - 1)]
         common = {"substeps": self.substeps, "device": self.device}
-        orders = scan_orders(model, at.effects, self.surroundings, free, middle, **common)[:2]
+        scanned = [scan_orders(model, at.effects, self.surroundings, free, fit, **common)[:2] for fit in at.fits[:2]]
+        orders = distinct_orders(order for found in scanned for order in found)
         offered = [
             *candidates(model, self.plain.problem, self.surroundings, flexible=False),
             *periodic_candidates(model, self.plain.problem, orders),

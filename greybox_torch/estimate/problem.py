@@ -139,7 +139,7 @@ def problem_for(problem: Problem, model: GreyBoxModel, values: Mapping[str, floa
         initial=np.hstack([problem.initial, extra]),
         initial_free=np.concatenate([problem.initial_free, [not s.fixed for s in model.states[count:]]]).astype(bool),
         weights=problem.weights,
-        carried=np.concatenate([problem.carried[:count], [s.fixed for s in model.states[count:]]]).astype(bool),
+        carried=np.isin([s.name for s in model.states], model.carried_states()),
     )
     return replace(fresh, values=np.clip(fresh.values, fresh.lower, fresh.upper), initial=_memory_starts(fresh, count))
 

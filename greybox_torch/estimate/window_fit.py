@@ -17,6 +17,9 @@ from greybox_torch.estimate.levenberg_marquardt import ROUGH, Settings
 from greybox_torch.estimate.problem import Problem, measured_at
 from greybox_torch.simulate.stepper import Stepper, Windows, cut
 
+CARRY_EVERY = 4
+"""Accepted steps after which carried states are brought along anew, with the parameters as they then are."""
+
 
 @dataclass(frozen=True)
 class WindowFit:
@@ -84,7 +87,7 @@ def fit_windows(
         return None
     hold = _weak_hold(problem, states, here.mean_square, windows.steps)
     here = _held(here, hold)
-    evaluations, damping, growth = 1, 1e-2, 2.0
+    evaluations, accepted_steps, damping, growth = 1, 0, 1e-2, 2.0
     for _ in range(settings.iterations):
         accepted = False
         for _ in range(settings.trials):
@@ -97,10 +100,16 @@ def fit_windows(
                 change = (here.cost - there.cost) / here.cost
                 problem, states, here, accepted = trial, trial_states, there, True
                 damping, growth = max(damping / 5.0, 1e-9), 2.0
+                accepted_steps += 1
                 break
             damping, growth = damping * growth, growth * 2.0
         if not accepted or change < settings.tolerance:
             break
+        if problem.carried.any() and accepted_steps % CARRY_EVERY == 0:
+            states = carried_starts(problem, stepper, windows, states, substeps)
+            again = _evaluate(problem, stepper, windows, states, hold, substeps)
+            here = here if again is None else again
+            evaluations += 1
     return WindowFit(problem, windows, states, here.mean_square, here.energies, evaluations)
 
 

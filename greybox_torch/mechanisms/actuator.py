@@ -18,6 +18,7 @@ class InputLag(Mechanism):
     name = "input_lag"
     kinds = ("actuator",)
     needs = ("input",)
+    fades = True
     explanation = "The input acts through a first-order lag (current loop, valve)."
     source = "L. Ljung, System Identification, 2nd ed., 1999"
     experiment = "a step or a chirp of the input, to tell a lag from a delay"

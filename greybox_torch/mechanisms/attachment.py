@@ -131,6 +131,12 @@ class AugmentedModel(GreyBoxModel):
             rows += _delayed(tape, channel, delay)
         return tape if not rows else replace(tape, u=np.concatenate([tape.u, np.array(rows)]))
 
+    def carried_states(self) -> tuple[str, ...]:
+        """Positions, time and lasting memories: free in every window, they would explain anything."""
+        fading = tuple(f"{a.prefix}." for a in self.attachments if a.mechanism.fades)
+        own = [s.name for s in self.states[len(self.base.states) :]]
+        return (*self.base.carried_states(), *(n for n in own if not n.startswith(fading)))
+
     def start_trials(self, values: Any) -> list[dict[str, float]]:
         """Positions at which a record may begin: those of bodies that no sensor sees, over one period of the slowest periodic effect."""
         bodies = self._positions()

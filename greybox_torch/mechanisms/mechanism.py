@@ -75,6 +75,8 @@ class Mechanism:
     source: ClassVar[str] = ""
     kinematic: ClassVar[bool] = False
     """Whether the law changes a coupling's deflection (:meth:`deflection`) instead of adding a force."""
+    fades: ClassVar[bool] = False
+    """Whether the memory is gone after a few samples, so that a window may begin with any."""
     experiment: ClassVar[str] = ""
     """Which experiment would tell this mechanism from its look-alikes."""
 

@@ -15,6 +15,7 @@ class SensorLag(Mechanism):
     name = "sensor_lag"
     kinds = ("sensor",)
     needs = ("output",)
+    fades = True
     explanation = "The output is recorded through a first-order lag (filter, sensor dynamics)."
     source = "L. Ljung, System Identification, 2nd ed., 1999"
     experiment = "a second sensor, or a known motion"

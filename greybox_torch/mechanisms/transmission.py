@@ -7,7 +7,7 @@ from typing import Any
 
 import torch
 
-from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
+from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals, State
 
 
@@ -37,7 +37,7 @@ class Backlash(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         reach = around.ranges["deflection"].reach
-        return [Probe(("half_gap",)), *(Probe(("share",), {"half_gap": f * reach}) for f in (0.1, 0.3))]
+        return [Probe(("half_gap",)), *(Probe((SHARE,), {"half_gap": f * reach}) for f in (0.03, 0.1, 0.3))]
 
 
 class NonlinearStiffness(Mechanism):

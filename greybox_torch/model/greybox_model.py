@@ -69,6 +69,10 @@ class GreyBoxModel(torch.nn.Module):
         """Start states to be tried one by one, where the data determine them only up to several possibilities."""
         return []
 
+    def carried_states(self) -> tuple[str, ...]:
+        """States that a window of a record does not begin with freely but takes over from the window before."""
+        return ()
+
     @property
     def title(self) -> str:
         """The model's name for reports."""
