@@ -10,15 +10,16 @@ import pytest
 import torch
 
 from greybox_torch.errors import UserError
+from greybox_torch.estimate.problem import make_problem, problem_for
 from greybox_torch.mechanisms.actuator import InputDelay, InputLag, TorqueSaturation
 from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
-from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.friction import CoulombFriction, FrictionWarmup, PreslidingHysteresis
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Surroundings
 from greybox_torch.mechanisms.sensor import SensorGain, SensorLag
 from greybox_torch.mechanisms.transmission import Backlash
-from greybox_torch.model import Balance, GreyBoxModel, Input, Output, Parameter, Signals, State
+from greybox_torch.model import Balance, Body, GreyBoxModel, Input, Output, Parameter, Signals, State
 from greybox_torch.simulate.eager import EagerStepper
 from greybox_torch.simulate.native import NativeStepper
 from greybox_torch.simulate.odeint import solve
@@ -141,6 +142,47 @@ def test_names(full) -> None:
     assert model.title == "robot_arm"
     units = {s.name: s.unit for s in model.states}
     assert (units["arm.position"], units["time"]) == ("rad", "s")
+
+
+class Cart(GreyBoxModel):
+    """Two inputs in one unit, outputs as given."""
+
+    states = [State("place", "m"), State("speed", "m/s")]
+    inputs = [Input("push", "N"), Input("pull", "N")]
+    parameters = [Parameter("m", 2.0, "kg")]
+    ports = [Body("cart", speed="speed", position="place")]
+
+    def __init__(self, *outputs: Output) -> None:
+        self.outputs = list(outputs)
+        super().__init__()
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return {"place": x.speed, "speed": (u.push - u.pull + port.cart) / p.m}
+
+    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+        return {o.name: x.place if o.unit == "m" else x.speed for o in self.outputs}
+
+
+@pytest.mark.parametrize(
+    ("outputs", "port", "mechanism", "expected"),
+    [
+        ([Output("place", "m")], "actuator.pull", InputLag(), 30.0),
+        ([Output("place", "m"), Output("again", "m")], "sensor.again", SensorLag(), 7.0),
+        ([Output("place", "m"), Output("tacho", "m/s")], "cart", AdditionalMode(), 20.0),
+        ([Output("place", "m")], "cart", AdditionalMode(), 20.0),  # nothing measures the speed
+    ],
+)
+def test_memory_begins_settled(around, data_set, outputs, port, mechanism, expected) -> None:
+    cart = Cart(*outputs)
+    signals = {"push": 40.0, "pull": 30.0, **{o.name: 10.0 for o in outputs}}
+    units = {i.name: i.unit for i in (*cart.inputs, *outputs)}
+    dataset = data_set(
+        units,
+        [{name: np.full(20, value) for name, value in signals.items()}],
+        initial={"place": {"value": 7.0}, "speed": {"value": 20.0}},
+    )
+    problem = make_problem(dataset, cart, dataset.recordings)
+    assert problem_for(problem, attached(cart, around, at(port, mechanism)), {}).initial[0, -1] == expected
 
 
 def test_several_of_a_kind_are_told_apart_by_label(around) -> None:

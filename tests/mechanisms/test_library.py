@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greybox_torch.mechanisms.library import LIBRARY, register
+from greybox_torch.mechanisms import library
+from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Range, Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
 
@@ -157,12 +158,11 @@ def test_is_finite_where_a_signal_never_moved(mechanism: Mechanism, around: Surr
 
 
 def test_register_adds_a_users_own_law(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in list(LIBRARY):
-        monkeypatch.delitem(LIBRARY, name)
+    monkeypatch.setattr(library, "LIBRARY", {})
 
-    @register
+    @library.register
     class Magnet(Mechanism):
         name = "magnet"
         kinds = ("body",)
 
-    assert list(LIBRARY.items()) == [("magnet", Magnet)]
+    assert list(library.LIBRARY.items()) == [("magnet", Magnet)]
