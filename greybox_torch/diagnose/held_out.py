@@ -21,6 +21,11 @@ class Gain:
     error: float
 
     @property
+    def errors_away(self) -> float:
+        """How many standard errors the share lies above zero."""
+        return self.share / max(self.error, 1e-12)
+
+    @property
     def interval(self) -> tuple[float, float]:
         """95 % interval of the share."""
         return self.share - 1.96 * self.error, self.share + 1.96 * self.error
@@ -52,19 +57,14 @@ def held_out_fits(hypothesis: Hypothesis, problem: Problem, substeps: int) -> tu
 def gain(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> Gain:
     """What ``after`` removes of the error of ``before``, at the window length where that is surest.
 
-    The standard error is that of the mean over windows of the difference in energy.
+    The share is a ratio of sums over windows; its standard error is that of a ratio estimator (W. G. Cochran, Sampling Techniques, 1977).
     """
-    best = Gain(0.0, float("inf"))
+    found = []
     for old, new in zip(before, after, strict=False):
-        if len(old.energies) != len(new.energies):
-            continue
-        difference, total = old.energies - new.energies, float(old.energies.sum())
-        share = float(difference.sum()) / max(total, 1e-300)
-        error = (
-            float(np.std(difference, ddof=1)) * np.sqrt(len(difference)) / max(total, 1e-300)
-            if len(difference) > 1
-            else np.inf
-        )
-        if share / max(error, 1e-300) > best.share / best.error or not np.isfinite(best.error):
-            best = Gain(share, error)
-    return best
+        count, total = len(old.energies), float(old.energies.sum())
+        if count == len(new.energies) and count > 1 and total > 0:
+            difference = old.energies - new.energies
+            share = float(difference.sum()) / total
+            scatter = float(np.std(difference - share * old.energies, ddof=1))
+            found.append(Gain(share, scatter * np.sqrt(count) / total))
+    return max(found, key=lambda g: g.errors_away, default=Gain(0.0, float("inf")))

@@ -26,12 +26,18 @@ def explained_energy(before: Hypothesis, after: Hypothesis, substeps: int) -> np
 
 
 def _squared_errors(fit: WindowFit, stepper: Stepper, substeps: int) -> np.ndarray:
+    errors = window_errors(fit, stepper, substeps) * fit.problem.weights[:, None]
+    return np.nansum(errors**2, axis=0)
+
+
+def window_errors(fit: WindowFit, stepper: Stepper, substeps: int) -> np.ndarray:
+    """Measured minus simulated over fitted windows (n_y, N), in output units; NaN where a sample is missing."""
     problem, windows = fit.problem, fit.windows
     run = stepper.run(problem.driving_tape, windows, problem.values, fit.starts, substeps=substeps)
     simulated = np.full(problem.tape.y.shape, np.nan)
     for w, (first, last) in enumerate(zip(windows.start, windows.last, strict=True)):
         simulated[:, first : last + 1] = run.y[w, : last - first + 1].T
-    return np.nansum(((problem.tape.y - simulated) * problem.weights[:, None]) ** 2, axis=0)
+    return problem.tape.y - simulated
 
 
 def local_signals(

@@ -35,11 +35,13 @@ class Hypothesis:
     model: GreyBoxModel
     stepper: Stepper
     fits: tuple[WindowFit, ...]
+    floor: float
+    """Mean squared weighted error below which nothing matters: 10⁻⁵ of the outputs' spread."""
 
     @property
     def score(self) -> float:
         """Mean of the logarithms of the mean squared errors over the window lengths; lower is better."""
-        return float(np.mean([np.log(max(f.mean_square, 1e-300)) for f in self.fits]))
+        return float(np.mean([np.log(f.mean_square + self.floor) for f in self.fits]))
 
     def values(self) -> dict[str, float]:
         """Parameter values by name, from the longest windows."""
@@ -92,12 +94,17 @@ def hypothesis(
             return None
         fits.append(fit)
         shorter = fit
-    return Hypothesis(tuple(effects), model, stepper, tuple(fits))
+    return Hypothesis(tuple(effects), model, stepper, tuple(fits), _floor(base))
 
 
 def augmented(base: Problem, effects: Sequence[Attachment], surroundings: Mapping[str, Surroundings]) -> GreyBoxModel:
     """The model of ``base`` with ``effects`` attached, the model itself where there are none."""
     return AugmentedModel(base.model, effects, surroundings) if effects else base.model
+
+
+def _floor(base: Problem) -> float:
+    spread = np.nanstd(base.tape.y, axis=1) * base.weights
+    return float(np.mean((1e-5 * spread) ** 2)) + 1e-300
 
 
 def _best_fit(

@@ -14,6 +14,7 @@ from greybox_torch.diagnose.effects import describe
 from greybox_torch.diagnose.evidence import sentences
 from greybox_torch.diagnose.final import Final, finish
 from greybox_torch.diagnose.held_out import Gain, gain, held_out_fits
+from greybox_torch.diagnose.locate import window_errors
 from greybox_torch.diagnose.probability import confidence
 from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.diagnose.select import Search
@@ -154,9 +155,9 @@ def _confirmed(dataset: DataSet, search: Search, progress: Callable[[str], None]
     while search.current.effects:
         full = held_out_fits(search.current, problem, search.substeps)
         gains = {p: gain(held_out_fits(h, problem, search.substeps), full) for p, h in search.without.items()}
-        weakest = min(gains, key=lambda p: gains[p].share / gains[p].error)
+        weakest = min(gains, key=lambda p: gains[p].errors_away)
         found = gains[weakest]
-        if found.share > LEAST_HELD_OUT * found.error or abs(found.share) < UNEXERCISED:
+        if found.errors_away > LEAST_HELD_OUT or abs(found.share) < UNEXERCISED:
             return gains
         search.drop(weakest)
     return {}
@@ -164,7 +165,12 @@ def _confirmed(dataset: DataSet, search: Search, progress: Callable[[str], None]
 
 def _searched(search: Search) -> bool:
     """Run the search; whether the time limit or the user cut it short (the best hypothesis so far then stands)."""
+    limited, search.progress = search.progress, lambda text: None
     search.begin()
+    if len(search.problem.weights) > 1:
+        search.problem = replace(search.problem, weights=_noise_weights(search))
+        search.begin()
+    search.progress = limited
     try:
         search.run()
     except (_TimeIsUp, KeyboardInterrupt):
@@ -172,6 +178,17 @@ def _searched(search: Search) -> bool:
         search.prune()
         return True
     return False
+
+
+def _noise_weights(search: Search) -> np.ndarray:
+    """Inverse size of the errors of every output over the shortest windows: a noisy sensor must not drown an exact one.
+
+    This is the maximum-likelihood weighting where the outputs' noises are independent, their sizes estimated from a first fit.
+    """
+    errors = window_errors(search.plain.fits[0], search.plain.stepper, search.substeps)
+    return 1.0 / np.sqrt(
+        np.nanmean(errors**2, axis=1) + (1e-4 * np.nanstd(search.problem.tape.y, axis=1)) ** 2 + 1e-300
+    )
 
 
 def _starts(problem: Problem) -> dict[str, dict[str, float]]:

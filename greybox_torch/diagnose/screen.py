@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from greybox_torch.estimate.problem import Problem, measured_at, problem_for
+from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, carried_starts
 from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
 from greybox_torch.mechanisms.mechanism import Probe, Surroundings
@@ -144,9 +144,7 @@ class Screen:
         experiment = np.searchsorted(problem.tape.first, fitted.windows.start, side="right") - 1
         starts = problem.initial[experiment]
         starts[:, :n_base] = fitted.starts
-        for i, state in enumerate(self.model.states[n_base:], start=n_base):
-            if state.initial == "measured":
-                starts[:, i] = measured_at(self.model, state, problem.tape, fitted.windows.start)
+        starts = self.model.begun(starts, problem.driving_tape, fitted.windows.start, values)
         carried = np.arange(starts.shape[1]) >= n_base
         return carried_starts(replace(problem, carried=carried), self.stepper, fitted.windows, starts, substeps)
 

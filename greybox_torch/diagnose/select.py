@@ -16,6 +16,7 @@ from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.mechanisms.unknown import Unknown
 
 MOST_EFFECTS = 4
 LEAST_GAIN = 0.01
@@ -57,15 +58,37 @@ class Search:
     progress: Callable[[str], None] = lambda text: None
     rounds: list[Round] = field(default_factory=list)
     without: dict[str, Hypothesis] = field(default_factory=dict)
+    curves: bool = True
 
     def run(self) -> Hypothesis:
         """Search until nothing pays any more."""
         if not hasattr(self, "plain"):
             self.begin()
-        while len(self.current.effects) < MOST_EFFECTS and self.step():
-            pass
+        self._advance()
+        self._try_named()
         self.prune()
         return self.current
+
+    def _advance(self) -> None:
+        while len(self.current.effects) < MOST_EFFECTS and self.step():
+            pass
+
+    def _try_named(self) -> None:
+        """Where a free curve was taken: the search once more without curves, kept if named effects come as far.
+
+        One curve can stand for several laws of the same signal, none of which would come near it alone.
+        """
+        curves = [e for e in self.current.effects if isinstance(e.mechanism, Unknown)]
+        if not curves:
+            return
+        with_curve, rounds = self.current, list(self.rounds)
+        first = next(k for k, r in enumerate(rounds) if r.taken is not None and r.taken.unknown)
+        before = [r.taken.fitted for r in rounds[:first] if r.taken is not None]
+        self.current, self.rounds, self.curves = (before[-1] if before else self.plain), rounds[:first], False
+        self._advance()
+        if self.current.score > with_curve.score + CURVE_MARGIN:
+            self.current, self.rounds = with_curve, rounds
+        self.curves = True
 
     def begin(self) -> None:
         """Fit the model as it stands.
@@ -147,7 +170,7 @@ class Search:
         offered = [
             *candidates(model, self.plain.problem, self.surroundings, flexible=False),
             *periodic_candidates(model, self.plain.problem, orders),
-            *candidates(model, self.plain.problem, self.surroundings, flexible=True),
+            *(candidates(model, self.plain.problem, self.surroundings, flexible=True) if self.curves else []),
         ]
         there = {(e.port, e.mechanism.name) for e in at.effects}
         offered = [a for a in offered if (a.port, a.mechanism.name) not in there]

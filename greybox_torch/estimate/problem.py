@@ -141,15 +141,8 @@ def problem_for(problem: Problem, model: GreyBoxModel, values: Mapping[str, floa
         weights=problem.weights,
         carried=np.isin([s.name for s in model.states], model.carried_states()),
     )
-    return replace(fresh, values=np.clip(fresh.values, fresh.lower, fresh.upper), initial=_memory_starts(fresh, count))
-
-
-def _memory_starts(problem: Problem, count: int) -> np.ndarray:
-    initial = problem.initial.copy()
-    for i, state in enumerate(problem.model.states[count:], start=count):
-        if state.initial == "measured":
-            initial[:, i] = measured_at(problem.model, state, problem.tape, problem.tape.first)
-    return initial
+    fresh = replace(fresh, values=np.clip(fresh.values, fresh.lower, fresh.upper))
+    return replace(fresh, initial=model.begun(fresh.initial, fresh.driving_tape, fresh.tape.first, fresh.values))
 
 
 def _tensors(problem: Problem) -> Signals:

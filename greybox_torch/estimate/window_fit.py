@@ -17,6 +17,9 @@ from greybox_torch.estimate.levenberg_marquardt import ROUGH, Settings
 from greybox_torch.estimate.problem import Problem, measured_at
 from greybox_torch.simulate.stepper import Stepper, Windows, cut
 
+SHRINKING = 30.0
+"""Samples' worth of error that a shrunk parameter costs when it is as large as it began."""
+
 CARRY_EVERY = 4
 """Accepted steps after which carried states are brought along anew, with the parameters as they then are."""
 
@@ -121,7 +124,7 @@ def rough_starts(problem: Problem, windows: Windows) -> np.ndarray:
     for i, state in enumerate(problem.model.states):
         if state.initial == "measured" or state.name in outputs:
             states[:, i] = measured_at(problem.model, state, problem.tape, windows.start)
-    return states
+    return problem.model.begun(states, problem.driving_tape, windows.start, problem.values)
 
 
 def _starts_of(shorter: WindowFit, problem: Problem, windows: Windows) -> np.ndarray:
@@ -129,8 +132,10 @@ def _starts_of(shorter: WindowFit, problem: Problem, windows: Windows) -> np.nda
     states = rough_starts(problem, windows)
     index = np.minimum(np.searchsorted(shorter.windows.start, windows.start), len(shorter.windows.start) - 1)
     same = shorter.windows.start[index] == windows.start
-    common = min(shorter.starts.shape[1], states.shape[1])
-    states[same, :common] = shorter.starts[index[same], :common]
+    known = [s.name for s in shorter.problem.model.states]
+    for i, state in enumerate(problem.model.states):
+        if state.name in known:
+            states[same, i] = shorter.starts[index[same], known.index(state.name)]
     return states
 
 
@@ -167,6 +172,12 @@ def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: 
     spread = np.where(spread > 1e-9, spread, max(float(np.nanstd(problem.tape.y)), 1e-6))
     values = problem.values[problem.free]
     value_weights = np.where(values != 0.0, 10.0 * mean_square / np.where(values != 0.0, values, 1.0) ** 2, 0.0)
+    declared = {p.name: p.shrunk for p in problem.model.declared_parameters}
+    shrunk = np.array([declared[n] for n in problem.free_names], dtype=bool)
+    if shrunk.any():
+        size = max(float(np.abs(values[shrunk]).max()), 1e-12)
+        value_weights = np.where(shrunk, SHRINKING * mean_square / size**2, value_weights)
+        values = np.where(shrunk, 0.0, values)
     return _Hold(states, 1e-4 * mean_square * steps / spread**2, values, value_weights)
 
 

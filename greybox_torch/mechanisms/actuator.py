@@ -28,7 +28,10 @@ class InputLag(Mechanism):
         return [Parameter("T", 3 * step, "s", lower=0.45 * step, upper=2000 * step, description="time constant")]
 
     def states(self, around: Surroundings) -> list[State]:
-        return [State("lagged", around.force_unit, initial="measured")]
+        return [State("lagged", around.force_unit)]
+
+    def starts(self, s: Signals) -> dict[str, Any]:
+        return {"lagged": s.input}
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
         return {"lagged": (s.input - z.lagged) / p.T}

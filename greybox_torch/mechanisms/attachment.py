@@ -131,6 +131,19 @@ class AugmentedModel(GreyBoxModel):
             rows += _delayed(tape, channel, delay)
         return tape if not rows else replace(tape, u=np.concatenate([tape.u, np.array(rows)]))
 
+    def begun(self, states: np.ndarray, tape: Any, samples: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Start states (W, n_x) with the memories that begin as their surroundings say."""
+        names = [s.name for s in self.states]
+        x = Signals("state", {n: torch.as_tensor(states[:, i]) for i, n in enumerate(names)})
+        u = Signals("input", {s.name: torch.as_tensor(tape.u[i, samples]) for i, s in enumerate(self.inputs)})
+        pairs = zip(self.declared_parameters, values, strict=True)
+        p = Signals("parameter", {q.name: torch.tensor(float(v), dtype=torch.float64) for q, v in pairs})
+        result = states.copy()
+        for a in self.attachments:
+            for name, value in a.mechanism.starts(self._local(a, x, u, p)[0]).items():
+                result[:, names.index(f"{a.prefix}.{name}")] = np.asarray(value)
+        return result
+
     def carried_states(self) -> tuple[str, ...]:
         """Positions, time and lasting memories: free in every window, they would explain anything."""
         fading = tuple(f"{a.prefix}." for a in self.attachments if a.mechanism.fades)

@@ -146,7 +146,10 @@ class AdditionalMode(Mechanism):
 
     def states(self, around: Surroundings) -> list[State]:
         unit = around.units.get("speed", "")
-        return [State("stretch", unit.replace("/s", "")), State("speed", unit, initial="measured")]
+        return [State("stretch", unit.replace("/s", "")), State("speed", unit)]
+
+    def starts(self, s: Signals) -> dict[str, Any]:
+        return {"speed": s.speed}
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
         relative = z.speed - s.speed

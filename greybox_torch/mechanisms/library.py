@@ -24,7 +24,7 @@ from greybox_torch.mechanisms.friction import (
     ViscousFriction,
 )
 from greybox_torch.mechanisms.mechanism import Mechanism
-from greybox_torch.mechanisms.sensor import SensorBias, SensorGain, SensorLag
+from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorGain, SensorLag
 from greybox_torch.mechanisms.transmission import (
     Backlash,
     HystereticSpring,
@@ -63,6 +63,7 @@ LIBRARY: dict[str, type[Mechanism]] = {
         InputGain,
         TorqueSaturation,
         ActuatorDeadzone,
+        OutputDelay,
         SensorLag,
         SensorBias,
         SensorGain,

@@ -88,6 +88,10 @@ class Mechanism:
         """Memory of the law, if it has any."""
         return []
 
+    def starts(self, s: Signals) -> dict[str, Any]:
+        """Memory states that do not begin at their declared value but as the local signals ``s`` say (a lag begins settled)."""
+        return {}
+
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
         """Rates of the memory states ``z``."""
         return {}

@@ -25,7 +25,10 @@ class SensorLag(Mechanism):
         return [Parameter("T", 3 * step, "s", lower=0.45 * step, upper=2000 * step, description="time constant")]
 
     def states(self, around: Surroundings) -> list[State]:
-        return [State("lagged", around.units.get("output", ""), initial="measured")]
+        return [State("lagged", around.units.get("output", ""))]
+
+    def starts(self, s: Signals) -> dict[str, Any]:
+        return {"lagged": s.output}
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
         return {"lagged": (s.output - z.lagged) / p.T}
@@ -35,6 +38,38 @@ class SensorLag(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (2, 6, 20)]
+
+
+class OutputDelay(Mechanism):
+    """The output is recorded later by a dead time T, as its second-order Padé approximation (1 − sT/2 + s²T²/12)/(1 + sT/2 + s²T²/12)."""
+
+    name = "output_delay"
+    kinds = ("sensor",)
+    needs = ("output",)
+    fades = True
+    explanation = "The output is recorded after a dead time (sampling, bus, filter)."
+    source = "H. Padé, 1892; L. Ljung, System Identification, 2nd ed., 1999"
+    experiment = "an input whose own timing is known; without one a delay of the output is a delay of the input"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        step = around.sample_time
+        return [Parameter("T", 4 * step, "s", lower=2 * step, upper=500 * step, description="dead time")]
+
+    def states(self, around: Surroundings) -> list[State]:
+        unit = around.units.get("output", "")
+        return [State("filtered", unit), State("slope", f"{unit}/s" if unit else "")]
+
+    def starts(self, s: Signals) -> dict[str, Any]:
+        return {"filtered": s.output}
+
+    def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
+        return {"filtered": z.slope, "slope": 12 / p.T**2 * (s.output - z.filtered - 0.5 * p.T * z.slope)}
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return -p.T * z.slope
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (3, 8, 24)]
 
 
 class SensorBias(Mechanism):

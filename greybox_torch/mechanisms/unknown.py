@@ -14,7 +14,7 @@ from greybox_torch.model import Parameter, Signals
 class Unknown(Mechanism):
     """A sum of smooth bumps over the range of one signal.
 
-    ``knots`` bumps exp(−((s − s_k) / w)²) with centres spread evenly over where the signal moved.
+    ``knots`` bumps exp(−((s − s_k) / w)²) with centres spread evenly over where the signal moved; beyond that the curve stays level.
     """
 
     name = "unknown"
@@ -30,22 +30,24 @@ class Unknown(Mechanism):
         return (self.signal,)
 
     def centres(self, around: Surroundings) -> list[float]:
-        """Centres of the bumps, in the signal's unit."""
-        moved = around.ranges[self.signal]
-        return [moved.low + moved.span * k / (self.knots - 1) for k in range(self.knots)]
+        """Centres of the bumps, in the signal's unit; one lies beyond either end of the range, so that the ends are covered as well."""
+        reached = around.ranges[self.signal]
+        spacing = reached.span / (self.knots - 3)
+        return [reached.low + spacing * (k - 1) for k in range(self.knots)]
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         centres = self.centres(around)
         unit = around.units.get(self.signal, "")
         heights = [
-            Parameter(f"w_{k}", 0.0, around.force_unit, description=f"height at {c:g}") for k, c in enumerate(centres)
+            Parameter(f"w_{k}", 0.0, around.force_unit, description=f"height at {c:g}", shrunk=True)
+            for k, c in enumerate(centres)
         ]
         first = Parameter("first", centres[0], unit, fixed=True, description="first centre")
         spacing = Parameter("spacing", centres[1] - centres[0], unit, fixed=True, description="distance of the centres")
         return [*heights, first, spacing]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        place = (s[self.signal] - p.first) / p.spacing
+        place = torch.clamp((s[self.signal] - p.first) / p.spacing, 1.0, self.knots - 2.0)
         return sum(p[f"w_{k}"] * torch.exp(-((place - k) ** 2)) for k in range(self.knots))
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:

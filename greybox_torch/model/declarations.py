@@ -60,6 +60,8 @@ class Parameter:
     upper: float | None = None
     fixed: bool = False
     description: str = ""
+    shrunk: bool = False
+    """Held weakly towards zero: of curves that fit alike, the smaller one is meant, and physics is preferred."""
 
     def __post_init__(self) -> None:
         low, high = self.bounds

@@ -69,6 +69,10 @@ class GreyBoxModel(torch.nn.Module):
         """Start states to be tried one by one, where the data determine them only up to several possibilities."""
         return []
 
+    def begun(self, states: Any, tape: Any, samples: Any, values: Any) -> Any:
+        """Start states (W, n_x) at ``samples`` (W,) of a tape, with those that follow from the others filled in."""
+        return states
+
     def carried_states(self) -> tuple[str, ...]:
         """States that a window of a record does not begin with freely but takes over from the window before."""
         return ()
