@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import torch
@@ -76,6 +77,25 @@ def _kinematic(
             starts = [{f"{attachment.prefix}.{n}": v for n, v in values.items()} for values in sizes]
             found.append(Leader(attachment, tuple({**base, **card, **start} for start in starts), 0.0))
     return found
+
+
+def finer(
+    fitted: Hypothesis, curve: Attachment, surroundings: Mapping[str, Surroundings]
+) -> tuple[Attachment, dict[str, float]]:
+    """The curve with twice the knots, and the values of the hypothesis with it: the same curve to begin with."""
+    unknown, around = curve.mechanism, surroundings[curve.port]
+    assert isinstance(unknown, Unknown) and isinstance(fitted.model, AugmentedModel)
+    detailed = Unknown(unknown.signal, 2 * unknown.knots)
+    reached = around.ranges[unknown.signal]
+    grid = torch.linspace(reached.low, reached.high, POINTS, dtype=torch.float64)
+    p = Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in fitted.values().items()})
+    target = fitted.model.curve(curve, {unknown.signal: grid}, p).detach().numpy()
+    probe = detailed.probes(around)[0]
+    columns = np.stack([_column(detailed, around, unknown.signal, grid, probe, n) for n in probe.directions], axis=1)
+    heights = np.linalg.lstsq(columns, target, rcond=1e-6)[0]
+    values = {n: v for n, v in fitted.values().items() if not n.startswith(f"{curve.prefix}.")}
+    values |= {f"{curve.prefix}.{n}": float(h) for n, h in zip(probe.directions, heights, strict=True)}
+    return replace(curve, mechanism=detailed), values
 
 
 def _visited(rms: float, grid: np.ndarray) -> np.ndarray:

@@ -12,6 +12,7 @@ from greybox_torch.estimate.levenberg_marquardt import Settings, minimise
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.uncertainty import Uncertainty, uncertainty
 from greybox_torch.estimate.window_fit import WindowFit
+from greybox_torch.simulate.stepper import make_stepper
 
 SETTINGS = Settings(iterations=60, tolerance=1e-8)
 
@@ -35,14 +36,21 @@ class Final:
         return dict(zip(self.problem.free_names, map(float, both), strict=False))
 
 
-def finish(hypothesis: Hypothesis, substeps: int) -> Final:
+def finish(hypothesis: Hypothesis, substeps: int, *, device: str = "cpu") -> Final:
     """Fit whole records by simulation error, from the values of every window length; the best of the results.
 
-    Where no whole record can be simulated, the values of the longest windows stand.
+    Where no whole record can be simulated, the values of the longest windows stand. The heights of free curves stay as the windows have
+    them, where they are held small: what the records do not determine must not run away.
     """
+    model = hypothesis.model
+    shrunk = [p.name for p in model.declared_parameters if p.shrunk]
+    stepper = hypothesis.stepper
+    if shrunk:
+        stepper = make_stepper(model, [n for n in hypothesis.problem.free_names if n not in shrunk], device=device)
     best, cost = None, np.inf
     for fit in reversed(hypothesis.fits):
-        run = FreeRun(_from_windows(fit), hypothesis.stepper, substeps)
+        problem = _from_windows(fit)
+        run = FreeRun(replace(problem, free=problem.free & ~np.isin(problem.names, shrunk)), stepper, substeps)
         optimum = minimise(run.quadratic, run.start, *run.bounds, settings=SETTINGS, admissible=run.admissible)
         if optimum is not None and optimum.model.cost < (1 - 1e-3) * cost:
             best, cost = (run, optimum.point), optimum.model.cost

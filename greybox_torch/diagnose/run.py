@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -30,6 +30,9 @@ from greybox_torch.simulate.substeps import choose_substeps
 LEAST_HELD_OUT = 1.0
 """Standard errors by which an effect must lower the error on held-out experiments to be kept."""
 
+
+CONFIRMED = 5.0
+"""Standard errors of held-out gain from which a finding stands whatever the free runs of the validation experiments say."""
 
 UNEXERCISED = 2e-3
 """Share of the held-out error below which, either way, those experiments do not exercise an effect: they cannot take it back."""
@@ -115,11 +118,11 @@ def diagnose(
     gains = _confirmed(dataset, search, progress)
     at = clock.stage("confirming on held-out experiments", at)
     progress("fitting whole records")
-    plain = finish(search.plain, substeps)
-    augmented = finish(search.current, substeps) if search.current.effects else plain
+    plain = finish(search.plain, substeps, device=device)
+    augmented = finish(search.current, substeps, device=device) if search.current.effects else plain
     at = clock.stage("final fits on whole records", at)
     progress("judging on the validation experiments")
-    judged = _Judgement(dataset, problem, search, plain, augmented, substeps, device)
+    judged = _Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
     named = judged.holds and bool(search.current.effects)
     effects = describe(search, judged.augmented, substeps, judged.sums) if named else ()
     if not judged.holds:
@@ -225,7 +228,9 @@ class _Judgement:
         augmented: Final,
         substeps: int,
         device: str,
+        gains: Mapping[str, Gain],
     ) -> None:
+        self.gains = gains
         self.recordings = dataset.recordings
         self.problem = all_starts_free(dataset, make_problem(dataset, problem.model, dataset.recordings))
         self.plain, self.augmented, self.substeps, self.device = plain, augmented, substeps, device
@@ -239,8 +244,12 @@ class _Judgement:
 
     @property
     def holds(self) -> bool:
-        """Whether the effects do not raise the error on the validation experiments."""
-        return self.sums[1] < (1 + UNEXERCISED) * self.sums[0]
+        """Whether the effects are borne out: over windows of the validation experiments, or by their free runs.
+
+        A free run can go astray where the machine is nearly bistable, however right the model is; windows with free starts cannot.
+        """
+        confirmed = bool(self.gains) and all(g.errors_away > CONFIRMED for g in self.gains.values())
+        return confirmed or self.sums[1] < (1 + UNEXERCISED) * self.sums[0]
 
     def comparisons(self, effects: bool) -> dict[str, Comparison]:
         return {"start": self.start, "refit": self.refit, "augmented": self.with_effects if effects else self.refit}

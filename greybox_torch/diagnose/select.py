@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from greybox_torch.diagnose.candidates import candidates, periodic_candidates
+from greybox_torch.diagnose.curve import finer
 from greybox_torch.diagnose.leaders import leaders
 from greybox_torch.diagnose.name import Ranked, polished, rank, sureness
 from greybox_torch.diagnose.orders import distinct_orders, scan_orders
@@ -129,8 +130,26 @@ class Search:
         taken = best if best is not None and best.gain > LEAST_GAIN and best.surely > LEAST_SURENESS else None
         self.rounds.append(Round(tuple(tuple(at) for at in looks), tuple(ranked), taken))
         if taken is not None:
-            self.current = taken.fitted
+            self.current = self._detailed(taken) if taken.unknown else taken.fitted
         return taken is not None
+
+    def _detailed(self, taken: Ranked) -> Hypothesis:
+        """The hypothesis with its new curve drawn more finely, where that pays."""
+        self.progress("drawing the curve more finely")
+        attachment, values = finer(taken.fitted, taken.leader.attachment, self.surroundings)
+        effects = (*taken.fitted.effects[:-1], attachment)
+        fitted = hypothesis(
+            self.problem,
+            effects,
+            self.surroundings,
+            [values],
+            substeps=self.substeps,
+            shorter=taken.fitted.fits[0],
+            settings=POLISH_SETTINGS,
+            device=self.device,
+        )
+        pays = fitted is not None and fitted.score < taken.fitted.score - LEAST_GAIN
+        return fitted if pays and fitted is not None else taken.fitted
 
     def prune(self) -> None:
         """Drop every effect whose loss the rest make up for, until none can go; ``without`` keeps what was compared with."""

@@ -10,8 +10,12 @@ import numpy as np
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Settings, minimise
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.window_fit import fit_windows
 from greybox_torch.simulate.stepper import Stepper
 from greybox_torch.simulate.tape import Tape
+
+SHORT = 6
+"""Into how many windows the beginning of a record is cut for a first guess of its start states."""
 
 
 def estimate_initial(problem: Problem, stepper: Stepper, *, fraction: float = 0.1, substeps: int = 1) -> Problem:
@@ -47,11 +51,23 @@ def _best_start(part: Problem, trials: Sequence[Mapping[str, float]], stepper: S
         initial = part.initial.copy()
         for name, value in trial.items():
             initial[0, names.index(name)] = value
-        run = FreeRun(replace(part, initial=initial), _AllFixed(stepper), substeps)
-        optimum = minimise(run.quadratic, run.start, *run.bounds, settings=Settings(iterations=30, tolerance=1e-8))
-        if optimum is not None and optimum.model.cost < (1 - 1e-6) * cost:
-            best, cost = run.at(optimum.point).initial[0], optimum.model.cost
+        for begin in (initial, _from_short_windows(replace(part, initial=initial), stepper, substeps)):
+            run = FreeRun(replace(part, initial=begin), _AllFixed(stepper), substeps)
+            optimum = minimise(run.quadratic, run.start, *run.bounds, settings=Settings(iterations=30, tolerance=1e-8))
+            if optimum is not None and optimum.model.cost < (1 - 1e-6) * cost:
+                best, cost = run.at(optimum.point).initial[0], optimum.model.cost
     return best
+
+
+def _from_short_windows(part: Problem, stepper: Stepper, substeps: int) -> np.ndarray:
+    """Start states (1, n_x) from a short stretch at the beginning, where a wrong guess has no time to lead astray."""
+    length = max(20, int(part.tape.lengths[0]) // SHORT)
+    fit = fit_windows(
+        part, _AllFixed(stepper), length, substeps=substeps, settings=Settings(iterations=15, tolerance=1e-4)
+    )
+    if fit is None:
+        return part.initial
+    return np.where(part.initial_free, fit.starts[:1], part.initial)
 
 
 class _AllFixed:
