@@ -23,7 +23,7 @@ class Gain:
     @property
     def errors_away(self) -> float:
         """How many standard errors the share lies above zero."""
-        return self.share / max(self.error, 1e-12)
+        return self.share / max(self.error, 1e-12) if np.isfinite(self.error) else 0.0
 
     @property
     def interval(self) -> tuple[float, float]:
@@ -62,9 +62,9 @@ def gain(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> Gain:
     found = []
     for old, new in zip(before, after, strict=False):
         count, total = len(old.energies), float(old.energies.sum())
-        if count == len(new.energies) and count > 1 and total > 0:
+        if count == len(new.energies) and total > 0:
             difference = old.energies - new.energies
             share = float(difference.sum()) / total
-            scatter = float(np.std(difference - share * old.energies, ddof=1))
-            found.append(Gain(share, scatter * np.sqrt(count) / total))
+            scatter = float(np.std(difference - share * old.energies, ddof=1)) if count > 1 else np.inf
+            found.append(Gain(share, float(scatter * np.sqrt(count) / total)))
     return max(found, key=lambda g: g.errors_away, default=Gain(0.0, float("inf")))

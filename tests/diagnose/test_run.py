@@ -113,6 +113,5 @@ def test_time_limit_stops_the_search_and_leaves_a_verdict(motor_data, motor, mon
     assert any("stopped before" in line for line in verdict.evidence)
 
 
-@pytest.mark.xfail(reason="the limit is checked before there is anything to be judged", strict=True)
 def test_no_time_at_all_leaves_a_verdict(motor_data, motor) -> None:
     assert not diagnose(motor_data(), motor, time_limit=0.0).verdict.complete

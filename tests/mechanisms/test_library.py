@@ -47,17 +47,9 @@ def test_has_the_name_and_the_ports_of_the_contract(mechanism: Mechanism) -> Non
     assert all(mechanism.name in NAMES[kind].split() for kind in mechanism.kinds)
 
 
-MISSING = pytest.mark.xfail(reason="not built yet", strict=True)
-
-
 @pytest.mark.parametrize(
     ("kind", "name"),
-    [
-        pytest.param(kind, name, marks=MISSING if name == "output_delay" else ())
-        for kind, names in NAMES.items()
-        for name in names.split()
-        if name != "unknown"
-    ],
+    [(kind, name) for kind, names in NAMES.items() for name in names.split() if name != "unknown"],
 )
 def test_library_has_every_name_of_the_contract(kind: str, name: str) -> None:
     assert kind in LIBRARY[name].kinds

@@ -20,7 +20,9 @@ def test_follows_any_smooth_curve_over_its_range(law, around) -> None:
 def test_centres_span_the_range_and_do_not_move(around) -> None:
     curve = Unknown("deflection", knots=5)
     centres = curve.centres(around)
-    assert (centres[0], centres[-1]) == (around.ranges["deflection"].low, around.ranges["deflection"].high)
+    assert (centres[1], centres[-2]) == pytest.approx(
+        (around.ranges["deflection"].low, around.ranges["deflection"].high)
+    )
     np.testing.assert_allclose(np.diff(centres), np.diff(centres)[0])
     fixed = {p.name: p for p in curve.parameters(around) if p.fixed}
     assert set(fixed) == {"first", "spacing"}
