@@ -26,7 +26,7 @@ def test_centres_span_the_range_and_do_not_move(around) -> None:
     np.testing.assert_allclose(np.diff(centres), np.diff(centres)[0])
     fixed = {p.name: p for p in curve.parameters(around) if p.fixed}
     assert set(fixed) == {"first", "spacing"}
-    assert fixed["first"].unit == "rad" and fixed["spacing"].value == pytest.approx(0.11 / 4)
+    assert fixed["first"].unit == "rad" and fixed["spacing"].value == pytest.approx(0.11 / 2)
 
 
 def test_signal_of_the_curve_is_what_it_is_told() -> None:
