@@ -126,8 +126,7 @@ class Search:
             progress=self.progress,
         )
         ranked = self._fairly(ranked)
-        best = _chosen(ranked)
-        taken = best if best is not None and best.gain > LEAST_GAIN and best.surely > LEAST_SURENESS else None
+        taken = _chosen([r for r in ranked if r.gain > LEAST_GAIN and r.surely > LEAST_SURENESS])
         self.rounds.append(Round(tuple(tuple(at) for at in looks), tuple(ranked), taken))
         if taken is not None:
             self.current = self._detailed(taken) if taken.unknown else taken.fitted
@@ -253,7 +252,7 @@ class Search:
 
 
 def _chosen(ranked: Sequence[Ranked]) -> Ranked | None:
-    """The best hypothesis: a named mechanism, unless a free curve is better by a margin and takes at least half again as much."""
+    """The best of the hypotheses that pay: a named mechanism, unless a free curve is better by a margin and takes half again as much."""
     named = next((r for r in ranked if not r.unknown), None)
     curve = next((r for r in ranked if r.unknown), None)
     if named is None or curve is None:

@@ -160,5 +160,5 @@ class AdditionalMode(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         nyquist = torch.pi / around.sample_time
-        shares = (0.002, 0.004, 0.008, 0.016, 0.03, 0.06, 0.12)
-        return [Probe(("mass",), {"omega": share * nyquist, "zeta": 0.1}) for share in shares]
+        shares = (0.002, 0.003, 0.0045, 0.007, 0.01, 0.015, 0.022, 0.033, 0.05, 0.075, 0.11)
+        return [Probe(("mass",), {"omega": share * nyquist, "zeta": 0.05}) for share in shares]
