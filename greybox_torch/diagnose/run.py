@@ -123,6 +123,10 @@ def diagnose(
     at = clock.stage("final fits on whole records", at)
     progress("judging on the validation experiments")
     judged = _Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
+    while search.current.effects and not judged.holds:
+        gains = _without_weakest(search, gains)
+        augmented = finish(search.current, substeps, device=device) if search.current.effects else plain
+        judged = _Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
     named = judged.holds and bool(search.current.effects)
     effects = describe(search, judged.augmented, substeps, judged.sums) if named else ()
     if not judged.holds:
@@ -160,10 +164,19 @@ def _confirmed(dataset: DataSet, search: Search, progress: Callable[[str], None]
         gains = {p: gain(held_out_fits(h, problem, search.substeps), full) for p, h in search.without.items()}
         weakest = min(gains, key=lambda p: gains[p].errors_away)
         found = gains[weakest]
-        if found.errors_away > LEAST_HELD_OUT or abs(found.share) < UNEXERCISED:
+        if found.errors_away > LEAST_HELD_OUT or abs(found.share) + found.error < UNEXERCISED:
             return gains
         search.drop(weakest)
     return {}
+
+
+def _without_weakest(search: Search, gains: Mapping[str, Gain]) -> dict[str, Gain]:
+    """Take back the effect that gained least on held-out experiments (the newest where that is not known); the gains of the others."""
+    names = [e.prefix for e in search.current.effects]
+    weakest = min(names, key=lambda n: gains[n].share) if all(n in gains for n in names) else names[-1]
+    search.drop(weakest)
+    left = {e.prefix for e in search.current.effects}
+    return {n: g for n, g in gains.items() if n in left}
 
 
 def _searched(search: Search) -> bool:
