@@ -127,10 +127,7 @@ def diagnose(
         gains = _without_weakest(search, gains)
         augmented = finish(search.current, substeps, device=device) if search.current.effects else plain
         judged = _Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
-    named = judged.holds and bool(search.current.effects)
-    effects = describe(search, judged.augmented, substeps, judged.sums) if named else ()
-    if not judged.holds:
-        augmented = plain
+    effects = describe(search, augmented, substeps, judged.sums) if search.current.effects else ()
     clock.stage("validation and report data", at)
     verdict = Verdict(
         dataset=dataset.name,
