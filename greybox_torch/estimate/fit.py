@@ -7,12 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from greybox_torch.errors import NumericalError
+from greybox_torch.estimate.correlation import CorrelationMatrix, correlation_matrix
 from greybox_torch.estimate.free_run import FreeRun, simulate
+from greybox_torch.estimate.identifiability import Weakness, identifiability
 from greybox_torch.estimate.levenberg_marquardt import DEFAULT, Optimum, Settings, minimise
 from greybox_torch.estimate.metrics import fit_percent
+from greybox_torch.estimate.notes import notes
+from greybox_torch.estimate.overflow import overflow_error
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.estimate.termination import Termination
+from greybox_torch.estimate.termination import Outcome, Termination
 from greybox_torch.estimate.uncertainty import Uncertainty, uncertainty
 from greybox_torch.estimate.window_fit import fit_windows
 from greybox_torch.simulate.stepper import Stepper, make_stepper
@@ -31,6 +34,7 @@ class FitResult:
 
     ``mse`` is the mean squared weighted error; ``fpe`` Akaike's final prediction error with d counting free parameters and free start
     states; ``uncertainty`` covers the unknowns in the order free parameters, then start states experiment by experiment.
+    ``identifiability`` says what the data do not determine at the optimum, ``notes`` what is to be known beside its ``termination``.
     """
 
     problem: Problem
@@ -42,13 +46,22 @@ class FitResult:
     termination: Termination
     uncertainty: Uncertainty | None
     substeps: int
+    identifiability: tuple[Weakness, ...] = ()
+    notes: tuple[Outcome, ...] = ()
+
+    @property
+    def correlation(self) -> CorrelationMatrix | None:
+        """Correlations of the free parameters' estimates."""
+        return None if self.uncertainty is None else correlation_matrix(self.problem.free_names, self.uncertainty)
 
     def parameter_deviations(self, kind: str = "plain") -> dict[str, float]:
-        """Standard deviation of every free parameter."""
+        """Standard deviation of every free parameter, infinite where the data do not determine it."""
         if self.uncertainty is None:
             return {}
         values = self.uncertainty.deviations(kind)
-        return dict(zip(self.problem.free_names, map(float, values), strict=False))
+        lost = {name for weakness in self.identifiability if weakness.undetermined for name in weakness.parameters}
+        named = zip(self.problem.free_names, map(float, values), strict=False)
+        return {name: float("inf") if name in lost else value for name, value in named}
 
     def initial_deviations(self, kind: str = "plain") -> np.ndarray:
         """Standard deviations (E, n_x) of the start states, zero where fixed."""
@@ -69,6 +82,7 @@ def fit(
     stepper: Stepper | None = None,
     settings: Settings = DEFAULT,
     device: str = "cpu",
+    precision: str = "double",
     progress: Progress | None = None,
     with_uncertainty: bool = True,
 ) -> FitResult:
@@ -80,7 +94,7 @@ def fit(
     Raises:
         NumericalError: the simulation overflows even over short windows.
     """
-    stepper = stepper or make_stepper(problem.model, problem.free_names, device=device)
+    stepper = stepper or make_stepper(problem.model, problem.free_names, device=device, precision=precision)
     substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
     evaluations = 0
     if not _good(problem, stepper, substeps):
@@ -97,8 +111,9 @@ def fit(
         run.quadratic, run.start, *run.bounds, settings=settings, admissible=run.admissible, on_iteration=report
     )
     if optimum is None:
-        raise NumericalError(f"estimating {problem.model.title}: {Termination.overflow.value}")
-    return _result(run, optimum, samples, evaluations, with_uncertainty)
+        raise overflow_error("estimating", problem, stepper, substeps)
+    weaknesses = identifiability(run, optimum.point, optimum.model, precision=precision) if with_uncertainty else ()
+    return _result(run, optimum, samples, evaluations, with_uncertainty, weaknesses)
 
 
 def _good(problem: Problem, stepper: Stepper, substeps: int) -> bool:
@@ -128,16 +143,23 @@ def _approach(problem: Problem, stepper: Stepper, substeps: int, progress: Progr
 def _unmoved(run: FreeRun, samples: int) -> FitResult:
     here = run.quadratic(run.start)
     if here is None:
-        raise NumericalError(f"simulating {run.problem.model.title}: {Termination.overflow.value}")
+        raise overflow_error("simulating", run.problem, run.stepper, run.substeps)
     mse = 2 * here.cost / samples
     return FitResult(run.problem, mse, mse, samples, 0, 1, Termination.nothing_free, None, run.substeps)
 
 
-def _result(run: FreeRun, optimum: Optimum[None], samples: int, before: int, with_uncertainty: bool) -> FitResult:
+def _result(
+    run: FreeRun,
+    optimum: Optimum[None],
+    samples: int,
+    before: int,
+    with_uncertainty: bool,
+    weaknesses: tuple[Weakness, ...],
+) -> FitResult:
     mse = 2 * optimum.model.cost / samples
-    share = len(optimum.point) / samples
+    share, problem = len(optimum.point) / samples, run.at(optimum.point)
     return FitResult(
-        problem=run.at(optimum.point),
+        problem=problem,
         mse=mse,
         fpe=mse * (1 + share) / (1 - share),
         samples=samples,
@@ -146,4 +168,6 @@ def _result(run: FreeRun, optimum: Optimum[None], samples: int, before: int, wit
         termination=optimum.termination,
         uncertainty=uncertainty(run, optimum.point) if with_uncertainty else None,
         substeps=run.substeps,
+        identifiability=weaknesses,
+        notes=notes(problem, weaknesses),
     )

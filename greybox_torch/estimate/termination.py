@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from enum import Enum
 
 
@@ -18,9 +20,36 @@ class Termination(Enum):
         "failed: the simulation overflows at the start values; try start values nearer to the truth, tighter bounds, "
         "or a smaller sample time"
     )
+    rank_deficient = (
+        "rank deficient: the data do not determine all parameters; try to fix one of those that cannot be told apart, "
+        "or record an experiment that excites the machine more"
+    )
+    at_bound = (
+        "ended at a bound, where standard deviations mean little; try wider bounds where physics allows, and otherwise "
+        "ask what the model lacks that drives the parameter there"
+    )
     nothing_free = "nothing to estimate: every parameter and initial state is fixed"
 
     @property
     def succeeded(self) -> bool:
         """Whether the result is an optimum."""
         return self in (Termination.converged, Termination.small_step, Termination.nothing_free)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What happened, and to what: ``detail`` names the time and the experiment, or the parameters."""
+
+    kind: Termination
+    detail: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """What happened with its detail, then what to try."""
+        what, separator, remedy = self.kind.value.partition("; ")
+        return f"{what} ({self.detail}){separator}{remedy}" if self.detail else self.kind.value
+
+
+def listed(names: Sequence[str], conjunction: str = "and") -> str:
+    """'a', 'a and b', 'a, b and c'."""
+    return f" {conjunction} ".join([*filter(None, [", ".join(names[:-1])]), *names[-1:]])

@@ -1,0 +1,29 @@
+"""What is to be known of an optimum beside that it is one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from greybox_torch.estimate.identifiability import Weakness
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.termination import Outcome, Termination, listed
+
+
+def notes(problem: Problem, weaknesses: Sequence[Weakness]) -> tuple[Outcome, ...]:
+    """Whether the data leave some of the free parameters undetermined, and whether some ended at a bound; which ones."""
+    lost = {name for weakness in weaknesses if weakness.undetermined for name in weakness.parameters}
+    at_bound = at_bounds(problem)
+    found = []
+    if lost:
+        found.append(
+            Outcome(Termination.rank_deficient, listed([n for n in problem.free_names if n in lost] or sorted(lost)))
+        )
+    if at_bound:
+        found.append(Outcome(Termination.at_bound, listed(at_bound)))
+    return tuple(found)
+
+
+def at_bounds(problem: Problem) -> list[str]:
+    """The free parameters whose value is one of their bounds."""
+    bounds = zip(problem.names, problem.free, problem.values, problem.lower, problem.upper, strict=True)
+    return [name for name, free, value, low, high in bounds if free and value in (low, high)]

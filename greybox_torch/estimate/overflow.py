@@ -1,0 +1,131 @@
+"""Where a simulation overflows, and which start values avoid it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.errors import NumericalError
+from greybox_torch.estimate.free_run import simulate
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.termination import Outcome, Termination, listed
+from greybox_torch.simulate.stepper import Stepper, Windows
+
+FACTORS = (0.5, 2.0, 0.1, 10.0, 1e-2, 1e2, 1e-3, 1e3, 0.0, -1.0)
+"""What a parameter's value is multiplied by in search of one with which the simulation stays finite, the nearest first."""
+
+LANES = 64
+"""How many experiments are simulated side by side at most while searching: whole records take memory."""
+
+
+@dataclass(frozen=True)
+class Overflow:
+    """The first output that is not finite: in which experiment, how many s after its first sample, at which sample of it."""
+
+    experiment: str
+    time: float
+    sample: int
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """One parameter's value with which all experiments are simulated to their end."""
+
+    name: str
+    value: float
+    before: float
+    unit: str
+
+    def __str__(self) -> str:
+        unit = f" {self.unit}" if self.unit else ""
+        return f"{self.name} = {self.value:.5g}{unit} (now {self.before:.5g})"
+
+
+def first_overflow(problem: Problem, simulated: Sequence[np.ndarray]) -> Overflow | None:
+    """Where the simulated outputs (N_e, n_y) of the experiments cease to be finite, None where they never do.
+
+    Of several experiments, the one that overflows soonest.
+    """
+    found = []
+    for e, values in enumerate(simulated):
+        broken = np.flatnonzero(~np.isfinite(values).all(axis=1))
+        if broken.size:
+            sample = int(broken[0])
+            found.append(Overflow(problem.tape.names[e], float(problem.tape.time(e)[sample]), sample))
+    return min(found, key=lambda overflow: overflow.time, default=None)
+
+
+def remedies(problem: Problem, stepper: Stepper, substeps: int = 1) -> tuple[Remedy, ...]:
+    """Parameter values, one changed at a time and within its bounds, with which no experiment overflows: the nearest to the present ones.
+
+    Tried on the free parameters, or on all where none is free; empty where no single one helps.
+    """
+    tried = np.flatnonzero(problem.free) if problem.free.any() else np.arange(len(problem.names))
+    for factor in FACTORS:
+        candidates = [(int(k), factor * float(problem.values[k])) for k in tried if problem.values[k] != 0.0]
+        rows = [_changed(problem, k, value) for k, value in candidates]
+        allowed = [i for i, row in enumerate(rows) if _allowed(problem, row)]
+        finite = _finite(problem, stepper, np.array([rows[i] for i in allowed]), substeps) if allowed else []
+        units = {p.name: p.unit for p in problem.model.declared_parameters}
+        found = tuple(
+            Remedy(problem.names[k], value, float(problem.values[k]), units[problem.names[k]])
+            for (k, value), good in zip([candidates[i] for i in allowed], finite, strict=True)
+            if good
+        )
+        if found:
+            return found
+    return ()
+
+
+def avoidance(found: Sequence[Remedy]) -> str:
+    """The remedies as a clause."""
+    if not found:
+        return (
+            f"changing one parameter alone, by up to {max(FACTORS):g} times, does not avoid it: "
+            "check units, scales and signs in the card and in the equations"
+        )
+    return f"it does not with {listed([str(remedy) for remedy in found[:3]], 'or')}"
+
+
+def overflow_error(doing: str, problem: Problem, stepper: Stepper, substeps: int) -> NumericalError:
+    """The error to raise where the whole records overflow: when, in which experiment, and which start values avoid it.
+
+    Args:
+        doing: "estimating" or "simulating".
+    """
+    found = first_overflow(problem, simulate(problem, stepper, substeps=substeps))
+    if found is None:  # the outputs are finite, and their sensitivities are not
+        detail = "the outputs stay finite, their sensitivities do not"
+    else:
+        where = f"at t = {found.time:.6g} s in '{found.experiment}'"
+        detail = f"{where}; {avoidance(remedies(problem, stepper, substeps))}"
+    return NumericalError(f"{doing} {problem.model.title}: {Outcome(Termination.overflow, detail).sentence}")
+
+
+def _changed(problem: Problem, k: int, value: float) -> np.ndarray:
+    row = problem.values.copy()
+    row[k] = value
+    return row
+
+
+def _allowed(problem: Problem, row: np.ndarray) -> bool:
+    inside = (row >= problem.lower) & (row <= problem.upper)
+    return bool(inside.all()) and problem.admissible(row)
+
+
+def _finite(problem: Problem, stepper: Stepper, rows: np.ndarray, substeps: int) -> np.ndarray:
+    """Which of the parameter sets (C, n_p) simulate every experiment to its end, (C,)."""
+    tape, count = problem.driving_tape, len(problem.tape.first)
+    together = max(1, LANES // count)
+    result = []
+    for begin in range(0, len(rows), together):
+        part = rows[begin : begin + together]
+        windows = Windows(np.tile(tape.first, len(part)), np.tile(tape.last, len(part)), int(tape.lengths.max()))
+        starts = np.tile(problem.initial, (len(part), 1))
+        y = stepper.run(tape, windows, np.repeat(part, count, axis=0), starts, substeps=substeps).y
+        inside = np.arange(y.shape[1]) < np.tile(tape.lengths, len(part))[:, None]
+        good = (np.isfinite(y).all(axis=2) | ~inside).all(axis=1)
+        result += good.reshape(len(part), count).all(axis=1).tolist()
+    return np.array(result)
