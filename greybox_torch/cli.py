@@ -55,6 +55,10 @@ Out = Annotated[
 ]
 Seed = Annotated[int, typer.Option(min=0, max=2**32 - 1, help="Start of everything that is drawn at random.")]
 Device = Annotated[str, typer.Option(help='Where to compute: "cpu", "cuda", "cuda:1".')]
+Precision = Annotated[
+    str,
+    typer.Option(metavar="single|double", help="Numbers of 32 or 64 bits; double unless you know that single does."),
+]
 Json = Annotated[
     bool, typer.Option("--json", help="The result as JSON on standard output, all else on standard error.")
 ]
@@ -97,27 +101,33 @@ def simulate(
     out: Out = None,
     seed: Seed = 0,
     device: Device = "cpu",
+    precision: Precision = "double",
     json: Json = False,
 ) -> None:
     """Simulate all experiments in free run with the start values."""
     from greybox_torch.commands import simulate
 
-    simulate.run(dataset, Options(model, out, seed, device, json))
+    simulate.run(dataset, Options(model, out, seed, device, json, precision))
 
 
 @app.command()
 def fit(
     dataset: DataSetFile,
+    profile: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PARAMETER", help="Also its profile likelihood: 95 % interval and figure. Repeatable."),
+    ] = None,
     model: Model = None,
     out: Out = None,
     seed: Seed = 0,
     device: Device = "cpu",
+    precision: Precision = "double",
     json: Json = False,
 ) -> None:
     """Estimate the free parameters and initial states, and write them as a checkpoint."""
     from greybox_torch.commands import fit
 
-    fit.run(dataset, Options(model, out, seed, device, json))
+    fit.run(dataset, Options(model, out, seed, device, json, precision), profile or [])
 
 
 @app.command()
@@ -130,12 +140,13 @@ def compare(
     out: Out = None,
     seed: Seed = 0,
     device: Device = "cpu",
+    precision: Precision = "double",
     json: Json = False,
 ) -> None:
     """Compare simulated with measured, for the start values and for checkpoints."""
     from greybox_torch.commands import compare
 
-    compare.run(dataset, checkpoints or [], Options(model, out, seed, device, json))
+    compare.run(dataset, checkpoints or [], Options(model, out, seed, device, json, precision))
 
 
 @app.command()
@@ -148,12 +159,13 @@ def residuals(
     out: Out = None,
     seed: Seed = 0,
     device: Device = "cpu",
+    precision: Precision = "double",
     json: Json = False,
 ) -> None:
     """Test prediction errors: are they white, and does the input still explain part of them?"""
     from greybox_torch.commands import residuals
 
-    residuals.run(dataset, checkpoint, Options(model, out, seed, device, json))
+    residuals.run(dataset, checkpoint, Options(model, out, seed, device, json, precision))
 
 
 @app.command()

@@ -73,7 +73,8 @@ def emit(equations: Equations, precision: str) -> str:
         "NH": max(body.hoisted_count, 1),
     }
     header = "".join(f"#define {name} {value}\n" for name, value in sizes.items())
-    return f"typedef {precision} real;\n{header}{text}"
+    real = "double" if precision == "double" else "float"
+    return f"typedef {real} real;\n{header}{text}"
 
 
 def _entries(rows: list[Partials]) -> list[tuple[int, int, int]]:

@@ -8,7 +8,15 @@ from pathlib import Path
 from rich.text import Text
 
 from greybox_torch.checkpoint import checkpoint_name
-from greybox_torch.commands.free_runs import START, free_run, print_scores, result_json, write_figures
+from greybox_torch.commands.free_runs import (
+    START,
+    free_run,
+    print_overflows,
+    print_scores,
+    print_substeps,
+    result_json,
+    write_figures,
+)
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.task import load_task
 
@@ -25,6 +33,9 @@ def run(dataset: Path, checkpoints: Sequence[Path], options: Options) -> None:
     console = options.console()
     console.print(Text(task.data.name, style="bold"))
     print_scores(console, task.data, {run.name: run.comparison.scores for run in runs})
+    print_overflows(console, runs)
+    for run in runs:
+        print_substeps(console, run.substeps, run.name)
     console.print(Text(f"Written to {task.folder}: {', '.join(path.name for path in figures)}"), soft_wrap=True)
     options.print_json({**result_json(task.data, runs), "figures": [str(path) for path in figures]})
 

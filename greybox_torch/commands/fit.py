@@ -3,31 +3,38 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from rich.console import Console
+from rich.text import Text
 
 from greybox_torch.checkpoint import Checkpoint, save_checkpoint
+from greybox_torch.commands.fit_json import Scores, identifiability_json, profile_json, result_json
 from greybox_torch.commands.fit_summary import print_summary
-from greybox_torch.commands.free_runs import scores_json
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.task import Task, check_estimation, load_task
-from greybox_torch.estimate.comparison import Score, compare
+from greybox_torch.estimate.comparison import compare
 from greybox_torch.estimate.fit import FitResult, fit
-from greybox_torch.estimate.termination import Termination
-from greybox_torch.files import json_text, write_text
+from greybox_torch.estimate.free_run import FreeRun
+from greybox_torch.estimate.identifiability import Weakness, identifiability
+from greybox_torch.estimate.levenberg_marquardt import DEFAULT
+from greybox_torch.estimate.precision import settings_for
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.profile import SETTINGS, Profile, check_profiled, profile
+from greybox_torch.files import json_text, replacing, write_text
 from greybox_torch.simulate.stepper import Stepper, make_stepper
 from greybox_torch.simulate.substeps import choose_substeps
 
-Scores = dict[str, tuple[Score, ...]]
-"""Rows by "start" and "refit", in the order of the data set's experiments."""
 
+def run(dataset: Path, options: Options, profiled: Sequence[str] = ()) -> None:
+    """Estimates on the experiments of role "estimation", judges on all; writes fit.json, the checkpoint `model`, figures of profiles.
 
-def run(dataset: Path, options: Options) -> None:
-    """Estimates on the experiments of role "estimation", judges on all; writes fit.json and the checkpoint `model`.
+    Args:
+        profiled: names of free parameters whose profile likelihood is wanted too.
 
     Raises UserError where the input is at fault, NumericalError where even short stretches of the simulation overflow.
     """
@@ -35,92 +42,66 @@ def run(dataset: Path, options: Options) -> None:
     task = load_task(dataset, options)
     check_estimation(dataset, task.data)
     problem = task.problem(task.data.estimation())
-    stepper = make_stepper(task.model, problem.free_names, device=task.device)
-    found = fit(problem, stepper=stepper, device=task.device, progress=_progress(Console(stderr=True, highlight=False)))
+    check_profiled(profiled, problem.free_names, problem.names, task.model.title)
+    stepper = make_stepper(task.model, problem.free_names, device=task.device, precision=task.precision)
+    log = Console(stderr=True, highlight=False)
+    weaknesses = _at_start(task, problem, stepper)
+    for weakness in weaknesses:
+        log.print(Text(f"At the start values: {weakness.sentence}.", style="yellow"), soft_wrap=True)
+    found = fit(
+        problem,
+        stepper=stepper,
+        settings=settings_for(task.precision, DEFAULT),
+        device=task.device,
+        precision=task.precision,
+        progress=_progress(log),
+    )
+    profiles = _profiles(task, found, stepper, profiled, log)
     scores = _scores(task, found, stepper)
-    result = result_json(found, scores, time.perf_counter() - began)
-    result |= {
+    stem = task.folder / "model"
+    result = result_json(found, scores, time.perf_counter() - began) | {
+        "identifiability": identifiability_json(weaknesses, found.identifiability),
+        "profiles": {name: profile_json(one) for name, one in profiles.items()},
+        "precision": task.precision,
         "dataset": task.data.name,
         "model": task.model_name,
         "held_out_by_default": task.data.held_out_by_default,
+        "checkpoint": str(stem),
     }
-    stem = task.folder / "model"
-    result["checkpoint"] = str(stem)
-    save_checkpoint(stem, _checkpoint(task, found, result["fit"]))
-    write_text(task.folder / "fit.json", json_text(result))
-    print_summary(options.console(), task, found, scores)
+    with _figures(task, profiles):
+        save_checkpoint(stem, _checkpoint(task, found, result["fit"]))
+        write_text(task.folder / "fit.json", json_text(result))
+    print_summary(options.console(), task, found, scores, profiles)
     options.print_json(result)
 
 
-def result_json(found: FitResult, scores: Scores, seconds: float) -> dict[str, Any]:
-    """The result as `fit --json` prints it."""
-    problem = found.problem
-    return {
-        "schema": "greybox-fit/1",
-        "seconds": seconds,
-        "parameters": _parameters_json(found),
-        "initial": {name: _initial_json(found, e) for e, name in enumerate(problem.tape.names)},
-        "fit": [
-            {
-                **{k: v for k, v in start.items() if k not in ("fit", "rmse")},
-                "start": _numbers(start),
-                "refit": _numbers(refit),
-            }
-            for start, refit in zip(scores_json(scores["start"]), scores_json(scores["refit"]), strict=True)
-        ],
-        "statistics": {
-            "mse": found.mse,
-            "fpe": found.fpe,
-            "samples": found.samples,
-            "iterations": found.iterations,
-            "evaluations": found.evaluations,
-            "status": status(found.termination),
-            "termination": found.termination.value,
-        },
-    }
+def _at_start(task: Task, problem: Problem, stepper: Stepper) -> tuple[Weakness, ...]:
+    """What the data do not determine, as far as the start values tell."""
+    substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
+    start = FreeRun(problem, stepper, substeps)
+    return identifiability(start, start.start, precision=task.precision)
 
 
-def status(termination: Termination) -> str:
-    """One word on how it ended: "converged", or what kept it from that."""
-    both = (Termination.converged, Termination.small_step)
-    return "converged" if termination in both else termination.name
+def _profiles(
+    task: Task, found: FitResult, stepper: Stepper, profiled: Sequence[str], log: Console
+) -> dict[str, Profile]:
+    profiles = {}
+    for name in dict.fromkeys(profiled):
+        profiles[name] = profile(found, stepper, name, settings=settings_for(task.precision, SETTINGS))
+        log.print(Text(f"profile of {name}: {len(profiles[name].values)} points"), soft_wrap=True)
+    return profiles
 
 
-def _parameters_json(found: FitResult) -> dict[str, Any]:
-    problem = found.problem
-    plain, sandwich = found.parameter_deviations(), found.parameter_deviations("sandwich")
-    result = {}
-    for k, declared in enumerate(problem.model.declared_parameters):
-        result[declared.name] = {
-            "value": float(problem.values[k]),
-            "std": plain.get(declared.name, 0.0),
-            "std_sandwich": sandwich.get(declared.name, 0.0),
-            "unit": declared.unit,
-            "fixed": not bool(problem.free[k]),
-            "lower": float(problem.lower[k]),
-            "upper": float(problem.upper[k]),
-            "description": declared.description,
-        }
-    return result
+@contextmanager
+def _figures(task: Task, profiles: Mapping[str, Profile]) -> Iterator[None]:
+    """Draws the profiles; the figures are in their place once the block ends without an error."""
+    from greybox_torch.report.profile import plot_profile
 
-
-def _initial_json(found: FitResult, experiment: int) -> dict[str, Any]:
-    problem = found.problem
-    plain, sandwich = found.initial_deviations(), found.initial_deviations("sandwich")
-    return {
-        state.name: {
-            "value": float(problem.initial[experiment, i]),
-            "std": float(plain[experiment, i]),
-            "std_sandwich": float(sandwich[experiment, i]),
-            "unit": state.unit,
-            "fixed": not bool(problem.initial_free[i]),
-        }
-        for i, state in enumerate(problem.model.states)
-    }
-
-
-def _numbers(row: dict[str, Any]) -> dict[str, float]:
-    return {"fit": row["fit"], "rmse": row["rmse"]}
+    with ExitStack() as together:
+        for name, one in profiles.items():
+            temporary = together.enter_context(replacing(task.folder / f"profile_{name}.png"))
+            plot_profile(one, f"{task.data.name}: profile of {name}").savefig(temporary)
+        yield
 
 
 def _scores(task: Task, found: FitResult, stepper: Stepper) -> Scores:

@@ -7,15 +7,23 @@ from collections.abc import Mapping, Sequence
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.commands.free_runs import print_scores
+from greybox_torch.commands.free_runs import print_scores, print_substeps
 from greybox_torch.commands.tables import number, print_table
 from greybox_torch.commands.task import Task
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.estimate.fit import FitResult
+from greybox_torch.estimate.profile import LEVEL, Profile
+from greybox_torch.estimate.termination import Termination
 
 
-def print_summary(console: Console, task: Task, found: FitResult, scores: Mapping[str, Sequence[Score]]) -> None:
-    """Parameters, start states, how the estimation ended, and the fit of every experiment before and after."""
+def print_summary(
+    console: Console,
+    task: Task,
+    found: FitResult,
+    scores: Mapping[str, Sequence[Score]],
+    profiles: Mapping[str, Profile],
+) -> None:
+    """Parameters, start states, how the estimation ended, profiles, and the fit of every experiment before and after."""
     console.print(Text(f"{task.data.name}: {task.model.title}", style="bold"))
     console.print(Text("\nParameters", style="bold"))
     _print_parameters(console, found)
@@ -32,10 +40,14 @@ def print_summary(console: Console, task: Task, found: FitResult, scores: Mappin
     }
     for name, value in statistics.items():
         console.print(Text(f"{name + ':':24}{value}"), soft_wrap=True)
+    print_substeps(console, found.substeps)
+    _print_correlations(console, found)
     _print_warnings(console, found)
+    _print_profiles(console, profiles)
     console.print()
     print_scores(console, task.data, dict(scores))
-    written = f"Written to {task.folder}: fit.json, model.safetensors, model.json"
+    figures = [f"profile_{name}.png" for name in profiles]
+    written = f"Written to {task.folder}: {', '.join(['fit.json', 'model.safetensors', 'model.json', *figures])}"
     console.print(Text(written), soft_wrap=True)
 
 
@@ -79,24 +91,31 @@ def _deviation(value: float) -> str | float:
     return value if value < float("inf") else "undetermined"
 
 
+def _print_correlations(console: Console, found: FitResult) -> None:
+    pairs = found.correlation.strong_pairs() if found.correlation else []
+    if pairs:
+        told = ", ".join(f"{a} and {b} {value:+.3f}" for a, b, value in pairs)
+        console.print(Text(f"Estimates that move together (correlation): {told}"), soft_wrap=True)
+
+
 def _print_warnings(console: Console, found: FitResult) -> None:
-    problem, plain = found.problem, found.parameter_deviations()
-    lost = [name for name, deviation in plain.items() if deviation == float("inf")]
+    lost = [name for name, deviation in found.parameter_deviations().items() if deviation == float("inf")]
+    lines = []
     if lost:
-        console.print(
-            Text(
-                f"The data do not determine {', '.join(lost)}, alone or together: fix one of them, or excite the machine more."
-            ),
-            style="yellow",
+        lines.append(
+            f"The data do not determine {', '.join(lost)}, alone or together: fix one of them, or excite the machine more."
         )
-    at_bound = [
-        name
-        for name, free, value, low, high in zip(
-            problem.names, problem.free, problem.values, problem.lower, problem.upper, strict=True
-        )
-        if free and value in (low, high)
-    ]
-    if at_bound:
-        console.print(
-            Text(f"At a bound: {', '.join(at_bound)}; the standard deviations there mean little."), style="yellow"
-        )
+    lines += [f"{weakness.sentence}." for weakness in found.identifiability]
+    for note in found.notes:
+        if note.kind is Termination.at_bound:
+            lines.append(f"At a bound: {note.detail}; the standard deviations there mean little.")
+    for line in lines:
+        console.print(Text(line, style="yellow"), soft_wrap=True)
+
+
+def _print_profiles(console: Console, profiles: Mapping[str, Profile]) -> None:
+    if not profiles:
+        return
+    console.print(Text(f"Profile likelihood, {100 * LEVEL:g} % intervals", style="bold"))
+    for one in profiles.values():
+        console.print(Text(f"{one.sentence} (allowing for coloured residuals by {one.colour:.3g})"), soft_wrap=True)

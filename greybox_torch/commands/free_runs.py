@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 from rich.console import Console
+from rich.text import Text
 
 from greybox_torch.commands.restored import restored
 from greybox_torch.commands.tables import print_table
@@ -17,9 +18,10 @@ from greybox_torch.commands.task import Task
 from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.comparison import Comparison, Score, compare
+from greybox_torch.estimate.overflow import avoidance, first_overflow, remedies
 from greybox_torch.files import replacing
 from greybox_torch.simulate.stepper import make_stepper
-from greybox_torch.simulate.substeps import choose_substeps
+from greybox_torch.simulate.substeps import LARGEST, choose_substeps
 
 START = "start"
 """The name of the model with the card's values."""
@@ -27,30 +29,60 @@ START = "start"
 
 @dataclass(frozen=True)
 class ModelRun:
-    """A model's free runs: its name in results, how it is loaded, and what came of it."""
+    """A model's free runs: its name in results, how it is loaded, and what came of it.
+
+    ``substeps`` is how many Runge-Kutta steps a sample took; ``overflow`` says where the simulation overflows and what avoids that, None
+    where it does not.
+    """
 
     name: str
     model: str
     comparison: Comparison
+    substeps: int = 1
+    overflow: str | None = None
 
 
 def free_run(task: Task, checkpoint: Path | None = None, name: str = START) -> ModelRun:
     """Simulates all experiments with the card's values or those of a checkpoint; start states from the first tenth of each."""
     task, problem = (task, task.problem()) if checkpoint is None else restored(task, checkpoint)
-    stepper = make_stepper(task.model, (), device=task.device)
+    stepper = make_stepper(task.model, (), device=task.device, precision=task.precision)
     substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
-    return ModelRun(name, task.model_name, compare(problem, task.data.recordings, stepper, substeps=substeps))
+    comparison = compare(problem, task.data.recordings, stepper, substeps=substeps)
+    found, overflow = first_overflow(problem, comparison.simulated), None
+    if found is not None:
+        time = next(r.time[found.sample] for r in task.data.recordings if r.name == found.experiment)
+        overflow = (
+            f"the simulation of '{found.experiment}' overflows at {time:.6g} s; "
+            f"{avoidance(remedies(problem, stepper, substeps))}; "
+            "try parameters and start states nearer to the truth, tighter bounds, or a smaller sample time"
+        )
+    return ModelRun(name, task.model_name, comparison, substeps, overflow)
 
 
 def refuse_overflow(task: Task, run: ModelRun) -> None:
     """Raises NumericalError, saying where, if a free run is not finite."""
-    for recording, simulated in zip(task.data.recordings, run.comparison.simulated, strict=True):
-        broken = np.flatnonzero(~np.isfinite(simulated).all(axis=1))
-        if broken.size:
-            raise NumericalError(
-                f"simulating {task.model.title}: the simulation of '{recording.name}' overflows at {recording.time[broken[0]]:.6g} s; "
-                "try parameters and start states nearer to the truth, tighter bounds, or a smaller sample time"
-            )
+    if run.overflow is not None:
+        raise NumericalError(f"simulating {task.model.title}: {run.overflow}")
+
+
+def print_substeps(console: Console, substeps: int, name: str = "") -> None:
+    """Says so where a sample takes more than one step of the integration."""
+    if substeps > 1:
+        of = f" of {name}" if name else ""
+        doubt = ", which may still be too few" if substeps == LARGEST else ""
+        console.print(
+            Text(
+                f"Each sample{of} is simulated in {substeps} Runge-Kutta steps{doubt}: the motion is fast for the sample time."
+            ),
+            soft_wrap=True,
+        )
+
+
+def print_overflows(console: Console, runs: Sequence[ModelRun]) -> None:
+    """Says of every model whose simulation overflows where that is, and what avoids it."""
+    for run in runs:
+        if run.overflow is not None:
+            console.print(Text(f"{run.name}: {run.overflow}", style="yellow"), soft_wrap=True)
 
 
 def scores_json(scores: Sequence[Score]) -> list[dict[str, Any]]:
@@ -62,7 +94,16 @@ def scores_json(scores: Sequence[Score]) -> list[dict[str, Any]]:
 
 def result_json(data: DataSet, runs: Sequence[ModelRun]) -> dict[str, Any]:
     """The result of `simulate` and `compare`."""
-    models = [{"name": r.name, "model": r.model, "fit": scores_json(r.comparison.scores)} for r in runs]
+    models = [
+        {
+            "name": r.name,
+            "model": r.model,
+            "fit": scores_json(r.comparison.scores),
+            "substeps": r.substeps,
+            "overflow": r.overflow,
+        }
+        for r in runs
+    ]
     return {
         "schema": "greybox-compare/1",
         "dataset": data.name,

@@ -22,6 +22,7 @@ class Options:
     seed: int = 0
     device: str = "cpu"
     json: bool = False
+    precision: str = "double"
 
     def folder(self, dataset: Path) -> Path:
         """Where to write results: --out, or results/<name of the folder that holds the data card>."""

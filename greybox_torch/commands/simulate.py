@@ -13,6 +13,7 @@ from greybox_torch.commands.free_runs import (
     file_stems,
     free_run,
     print_scores,
+    print_substeps,
     refuse_overflow,
     result_json,
     write_figures,
@@ -35,6 +36,7 @@ def run(dataset: Path, options: Options) -> None:
     console = options.console()
     console.print(Text(f"{task.data.name}: {task.model.title} with its start values", style="bold"))
     print_scores(console, task.data, {simulated.name: simulated.comparison.scores})
+    print_substeps(console, simulated.substeps)
     console.print(Text(f"Written to {task.folder}: {', '.join(p.name for p in (*tables, *figures))}"), soft_wrap=True)
     paths = {"tables": [str(path) for path in tables], "figures": [str(path) for path in figures]}
     options.print_json({**result_json(task.data, [simulated]), **paths})

@@ -10,7 +10,8 @@ import torch
 
 from greybox_torch.commands.options import Options
 from greybox_torch.data import DataSet, Recording, load_dataset
-from greybox_torch.errors import UserError
+from greybox_torch.errors import UserError, did_you_mean
+from greybox_torch.estimate.precision import PRECISIONS
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.systems import BUILT_IN, load_model
@@ -25,6 +26,7 @@ class Task:
     model_name: str
     device: str
     folder: Path
+    precision: str = "double"
 
     def problem(
         self, recordings: Sequence[Recording] | None = None, values: Mapping[str, float] | None = None
@@ -39,9 +41,11 @@ def load_task(dataset: Path, options: Options) -> Task:
     """Reads and checks all that the user has given, before anything is computed.
 
     Raises:
-        UserError: the data set, the model, the device or the folder for results is not usable, or data set and model do not fit.
+        UserError: the data set, the model, the device, the precision or the folder for results is not usable, or data set and model do
+            not fit.
     """
     device = check_device(options.device)
+    check_precision(options.precision)
     folder = options.folder(dataset)
     check_folder(folder)
     data = load_dataset(dataset)
@@ -53,7 +57,7 @@ def load_task(dataset: Path, options: Options) -> Task:
             "such as my_motor.py:Motor"
         )
     torch.manual_seed(options.seed)
-    task = Task(data, load_model(name), absolute(name), device, folder)
+    task = Task(data, load_model(name), absolute(name), device, folder, options.precision)
     task.problem()  # card and model fit together, whatever the command then takes of it
     return task
 
@@ -87,6 +91,13 @@ def check_device(name: str) -> str:
         have = f"{count} CUDA device{'s' * (count != 1)}" if count else "no CUDA device that torch can use"
         raise UserError(f"--device {name}: this machine has {have}")
     return str(device)
+
+
+def check_precision(name: str) -> None:
+    """Raises UserError where ``name`` is not a precision."""
+    if name not in PRECISIONS:
+        expected = " or ".join(f'"{precision}"' for precision in PRECISIONS)
+        raise UserError(f"--precision {name}: unknown{did_you_mean(name, PRECISIONS)}; expected {expected}")
 
 
 def check_folder(folder: Path) -> None:

@@ -10,29 +10,18 @@ Source: T. J. Rothenberg, "Identification in parametric models", Econometrica 39
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.identifiability_sentences import Direction, sentence
+from greybox_torch.estimate.information import FLAT, Information, echelon
 from greybox_torch.estimate.levenberg_marquardt import Quadratic
-
-FLAT = {"double": 1e-11, "single": 1e-5}
-"""Curvature, relative to the largest in unknowns of unit diagonal, that rounding alone accounts for."""
-
-UNSEEN = {"double": 1e-16, "single": 1e-9}
-"""Share of the outputs' energy, moved by a change of a parameter by its own size, that counts as none."""
-
-NEGLIGIBLE = 1e-5
-"""Part of a direction's largest contribution to the outputs below which an unknown takes no part in it."""
 
 PROMINENT = 0.3
 """Part of a weak direction's largest relative change from which a parameter is named."""
-
-HOLDS = {"double": 1e-6, "single": 1e-3}
-"""Curvature of a direction, relative to its largest part's, below which it is flat at a point nearby too."""
 
 NEARBY = 0.1
 """How far off, relative to their size, the unknowns are at the point nearby."""
@@ -70,78 +59,21 @@ def identifiability(
     here = here or run.quadratic(z)
     if here is None or not run.n_parameters:
         return ()
-    view = _View(run, z, here.hessian, precision)
+    view = Information(run, z, here.hessian, precision)
     unmoved, flat = view.unmoved(), view.flat_directions()
     nearby = _nearby(view, here) if len(unmoved) or len(flat) else None
-    found = [_unmoved(view, i, nearby) for i in unmoved if i < run.n_parameters]
-    found += [_together(view, step, nearby) for step in flat]
+    found = [_unmoved(view, i, nearby, here) for i in unmoved if i < run.n_parameters]
+    found += [_together(view, step, nearby, here) for step in flat]
     held = {*unmoved, *[int(np.argmax(np.abs(step) * np.sqrt(np.diag(here.hessian)))) for step in flat]}
     return (*found, *_weak(view, here, held))
 
 
-@dataclass(frozen=True)
-class _View:
-    """The Gauss-Newton Hessian (d, d) of a run at ``z`` (d,)."""
+def _nearby(view: Information, here: Quadratic[None], only: int | None = None) -> Information | None:
+    """The view from a point at which no unknown is zero, at a bound, or equal to another by chance; None where nothing simulates there.
 
-    run: FreeRun
-    z: np.ndarray
-    hessian: np.ndarray
-    precision: str
-
-    @property
-    def scale(self) -> np.ndarray:
-        """Unknowns per unit of contribution to the outputs (d,), zero where there is none."""
-        diagonal = np.diag(self.hessian)
-        return np.where(diagonal > 0, 1.0 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)), 0.0)
-
-    def unmoved(self) -> list[int]:
-        """The unknowns that, changed by their own size, do not change the outputs."""
-        diagonal, own = np.diag(self.hessian), np.abs(self.z)
-        energy = max(_energy(self.run), 1e-300)
-        parameter = np.arange(len(self.z)) < self.run.n_parameters
-        unseen = parameter & (own > 0) & (own**2 * diagonal < UNSEEN[self.precision] * energy)
-        return np.flatnonzero(unseen | (diagonal <= 0)).tolist()
-
-    def flat_directions(self) -> list[np.ndarray]:
-        """Changes (d,) of two unknowns or more that together do not change the outputs, each of as few as can be."""
-        kept = np.setdiff1d(np.arange(len(self.z)), self.unmoved())
-        scale = self.scale[kept]
-        values, vectors = np.linalg.eigh(self.hessian[np.ix_(kept, kept)] * np.outer(scale, scale))
-        null = vectors[:, values < FLAT[self.precision] * values.max(initial=0.0)].T
-        found = []
-        for row in echelon(null):
-            step = np.zeros(len(self.z))
-            step[kept] = row * scale
-            found.append(step)
-        return found
-
-    def is_flat(self, step: np.ndarray) -> bool:
-        """Whether the change ``step`` (d,) leaves the outputs as they are."""
-        parts = np.abs(step) * np.sqrt(np.diag(self.hessian))
-        return float(step @ self.hessian @ step) <= HOLDS[self.precision] * float(parts.max(initial=0.0)) ** 2
-
-    def is_flat_within(self, members: np.ndarray) -> bool:
-        """Whether some change of the ``members`` alone leaves the outputs as they are."""
-        scale = self.scale[members]
-        values = np.linalg.eigvalsh(self.hessian[np.ix_(members, members)] * np.outer(scale, scale))
-        return values[0] <= 10 * FLAT[self.precision] * values[-1]
-
-
-def echelon(null: np.ndarray) -> np.ndarray:
-    """The reduced echelon form of row vectors (m, d) under complete pivoting, small entries cleared: one basis of their span, sparse."""
-    rows = null.copy()
-    for k in range(len(rows)):
-        i, j = np.unravel_index(np.argmax(np.abs(rows[k:])), rows[k:].shape)
-        rows[[k, k + i]] = rows[[k + i, k]]
-        rows[k] /= rows[k, j]
-        others = np.arange(len(rows)) != k
-        rows[others] -= np.outer(rows[others, j], rows[k])
-    largest = np.abs(rows).max(axis=1, initial=0.0, keepdims=True)
-    return np.where(np.abs(rows) < NEGLIGIBLE * largest, 0.0, rows)
-
-
-def _nearby(view: _View, here: Quadratic[None]) -> _View | None:
-    """The view from a point at which no unknown is zero, at a bound, or equal to another by chance; None where nothing simulates there."""
+    Args:
+        only: the one unknown that is moved, instead of all.
+    """
     run, z = view.run, view.z
     diagonal, (low, high) = np.diag(here.hessian), run.bounds
     typical = np.sqrt(
@@ -151,6 +83,8 @@ def _nearby(view: _View, here: Quadratic[None]) -> _View | None:
     typical = np.where(typical > 0, typical, np.where(finite, np.where(finite, high - low, 0.0), 1.0))
     away = NEARBY * np.random.default_rng(0).uniform(0.5, 1.0, len(z)) * np.where(z != 0, np.abs(z), typical)
     away = np.where(z + away > high, -away, away)
+    if only is not None:
+        away = np.where(np.arange(len(z)) == only, away, 0.0)
     for _ in range(6):
         point = np.clip(z + away, low, high)
         there = run.quadratic(point) if run.admissible(point) else None
@@ -160,36 +94,43 @@ def _nearby(view: _View, here: Quadratic[None]) -> _View | None:
     return None
 
 
-def _unmoved(view: _View, index: int, nearby: _View | None) -> Weakness:
+def _unmoved(view: Information, index: int, nearby: Information | None, here: Quadratic[None]) -> Weakness:
     name = _names(view.run)[index]
-    kind = "unmoved" if nearby is None or index in nearby.unmoved() else "start"
     step = Direction((name,), (1.0,), (view.z[index] != 0,))
-    return Weakness(kind, (name,), step.changes, sentence(kind, step, zeros=_zeros(view)))
+    if nearby is None or index in nearby.unmoved():
+        return Weakness("unmoved", (name,), step.changes, sentence("unmoved", step))
+    zeros = _culprits(view, here, lambda there: index not in there.unmoved())
+    return Weakness("start", (name,), step.changes, sentence("start", step, zeros=zeros))
 
 
-def _together(view: _View, step: np.ndarray, nearby: _View | None) -> Weakness:
+def _together(view: Information, step: np.ndarray, nearby: Information | None, here: Quadratic[None]) -> Weakness:
     members = np.flatnonzero(step)
     nonzero = (view.z[members] != 0) & (members < view.run.n_parameters)
     changes = step[members] / np.where(nonzero, view.z[members], 1.0)
     changes /= changes[np.argmax(np.abs(changes))]
+    absolute = step[members] / step[members[np.argmax(np.abs(step[members]))]]
     names = tuple(_names(view.run)[i] for i in members)
-    direction = Direction(names, tuple(map(float, changes)), tuple(map(bool, nonzero)))
-    law, kind = "local", "together"
+    direction = Direction(names, tuple(changes.tolist()), tuple(nonzero.tolist()), absolute=tuple(absolute.tolist()))
+    if nearby is not None and not nearby.is_flat_within(members):
+        zeros = _culprits(view, here, lambda there: not there.is_flat_within(members))
+        return Weakness("start", names, direction.changes, sentence("start", direction, zeros=zeros))
     if nearby is not None:
         scaled = np.zeros(len(step))
         scaled[members] = changes * nearby.z[members]
-        if not nearby.is_flat_within(members):
-            kind = "start"
-        elif nonzero.all() and nearby.is_flat(scaled):
-            law = "factor"
-        elif nearby.is_flat(step):
-            law = "shift"
-    absolute = step[members] / step[members[np.argmax(np.abs(step[members]))]]
-    direction = replace(direction, law=law, absolute=tuple(map(float, absolute)))
-    return Weakness(kind, names, direction.changes, sentence(kind, direction, zeros=_zeros(view)))
+        law = "factor" if nonzero.all() and nearby.is_flat(scaled) else "shift" if nearby.is_flat(step) else "local"
+        direction = replace(direction, law=law)
+    return Weakness("together", names, direction.changes, sentence("together", direction))
 
 
-def _weak(view: _View, here: Quadratic[None], held: set[int]) -> Iterator[Weakness]:
+def _culprits(view: Information, here: Quadratic[None], helps: Callable[[Information], bool]) -> tuple[str, ...]:
+    """The parameters that are zero and that, moved from there alone, give others their effect."""
+    zeros = np.flatnonzero(view.z[: view.run.n_parameters] == 0)
+    views = {int(k): _nearby(view, here, int(k)) for k in zeros}
+    names = view.run.problem.free_names
+    return tuple(names[k] for k, there in views.items() if there is not None and helps(there))
+
+
+def _weak(view: Information, here: Quadratic[None], held: set[int]) -> list[Weakness]:
     """Directions in which the parameters' relative standard deviation exceeds one, the ``held`` unknowns fixed.
 
     The errors' variance is what a linear model leaves after the best step from here, so that poor start values are not taken for noise.
@@ -205,33 +146,22 @@ def _weak(view: _View, here: Quadratic[None], held: set[int]) -> Iterator[Weakne
     variance = max(left, 0.0) / max(_samples(view.run) - len(kept), 1)
     own = np.flatnonzero((kept < view.run.n_parameters) & (view.z[kept] != 0))
     value = view.z[kept[own]]
-    spread, vectors = np.linalg.eigh(variance * inverse[np.ix_(own, own)] / np.outer(value, value))
-    names = _names(view.run)
-    for k in np.argsort(-spread):
-        if spread[k] <= 1.0:
-            return
-        vector = vectors[:, k] / vectors[np.argmax(np.abs(vectors[:, k])), k]
-        named = np.flatnonzero(np.abs(vector) >= PROMINENT)
-        members = tuple(names[kept[own[i]]] for i in named)
-        step = Direction(members, tuple(map(float, vector[named])), (True,) * len(named))
-        yield Weakness("weak", members, step.changes, sentence("weak", step, deviation=float(np.sqrt(spread[k]))))
+    spread = variance * inverse[np.ix_(own, own)] / np.outer(value, value)
+    values, vectors = np.linalg.eigh(spread)
+    names, found = _names(view.run), []
+    for row in echelon(vectors[:, values > 1.0].T, PROMINENT):
+        members = np.flatnonzero(row)
+        involved = tuple(names[kept[own[i]]] for i in members)
+        step = Direction(involved, tuple((row[members] / np.abs(row).max()).tolist()), (True,) * len(members))
+        deviation = float(np.sqrt(spread[members[0], members[0]]))
+        found.append(Weakness("weak", involved, step.changes, sentence("weak", step, deviation=deviation)))
+    return found
 
 
 def _names(run: FreeRun) -> list[str]:
     problem = run.problem
     states = [problem.model.states[i].name for i in problem.free_states]
     return [*problem.free_names, *[f"{s} at the start of '{e}'" for e in problem.tape.names for s in states]]
-
-
-def _zeros(view: _View) -> tuple[str, ...]:
-    """The free parameters that are zero, which is where others lose their effect."""
-    return tuple(n for n, v in zip(view.run.problem.free_names, view.z, strict=False) if v == 0)
-
-
-def _energy(run: FreeRun) -> float:
-    """Sum of squares of the weighted outputs about their means."""
-    y = run.problem.tape.y * run.problem.weights[:, None]
-    return float(np.nansum((y - np.nanmean(y, axis=1, keepdims=True)) ** 2))
 
 
 def _samples(run: FreeRun) -> int:

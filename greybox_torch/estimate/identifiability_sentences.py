@@ -31,14 +31,14 @@ def sentence(kind: str, step: Direction, *, zeros: Sequence[str] = (), deviation
     """One sentence or two on a weakness of this kind, see :class:`greybox_torch.estimate.identifiability.Weakness`.
 
     Args:
-        zeros: the free parameters whose value is zero.
+        zeros: the parameters whose being zero takes the others' effect away.
         deviation: standard deviation along the direction of a weak one, relative to the values.
     """
     names = listed(step.names)
     if kind == "unmoved":
         return f"{names}: nothing in these recordings depends on it; fix it, or record an experiment in which it acts"
     if kind == "start":
-        return _start(step, [z for z in zeros if z not in step.names])
+        return _start(step, zeros)
     if kind == "weak":
         return _weak(step, deviation)
     if step.law == "factor":
@@ -91,10 +91,10 @@ def _moved(step: Direction, percent: float) -> str:
 def _start(step: Direction, zeros: Sequence[str]) -> str:
     while_zero = f" while {listed(zeros)} {'is' if len(zeros) == 1 else 'are'} zero" if zeros else ""
     if len(step.names) == 1:
-        what = f"{step.names[0]}: has no effect at these values{while_zero}"
+        what = f"{step.names[0]}: has no effect at these values{while_zero}, but it has elsewhere"
     else:
-        what = f"{listed(step.names)}: cannot be told apart at these values{while_zero}"
-    return f"{what}, but elsewhere; an estimate is possible, other start values may help it"
+        what = f"{listed(step.names)}: cannot be told apart at these values{while_zero}, but they can elsewhere"
+    return f"{what}; an estimate is possible, and other start values may help it"
 
 
 def _weak(step: Direction, deviation: float) -> str:

@@ -44,17 +44,13 @@ class Remedy:
 
 
 def first_overflow(problem: Problem, simulated: Sequence[np.ndarray]) -> Overflow | None:
-    """Where the simulated outputs (N_e, n_y) of the experiments cease to be finite, None where they never do.
-
-    Of several experiments, the one that overflows soonest.
-    """
-    found = []
+    """Where the simulated outputs (N_e, n_y) cease to be finite, in the first experiment in which they do; None where they never do."""
     for e, values in enumerate(simulated):
         broken = np.flatnonzero(~np.isfinite(values).all(axis=1))
         if broken.size:
             sample = int(broken[0])
-            found.append(Overflow(problem.tape.names[e], float(problem.tape.time(e)[sample]), sample))
-    return min(found, key=lambda overflow: overflow.time, default=None)
+            return Overflow(problem.tape.names[e], float(problem.tape.time(e)[sample]), sample)
+    return None
 
 
 def remedies(problem: Problem, stepper: Stepper, substeps: int = 1) -> tuple[Remedy, ...]:
