@@ -107,8 +107,7 @@ def _together(view: Information, step: np.ndarray, nearby: Information | None, h
     members = np.flatnonzero(step)
     nonzero = (view.z[members] != 0) & (members < view.run.n_parameters)
     changes = step[members] / np.where(nonzero, view.z[members], 1.0)
-    changes /= changes[np.argmax(np.abs(changes))]
-    absolute = step[members] / step[members[np.argmax(np.abs(step[members]))]]
+    changes, absolute = changes / _largest(changes), step[members] / _largest(step[members])
     names = tuple(_names(view.run)[i] for i in members)
     direction = Direction(names, tuple(changes.tolist()), tuple(nonzero.tolist()), absolute=tuple(absolute.tolist()))
     if nearby is not None and not nearby.is_flat_within(members):
@@ -156,6 +155,12 @@ def _weak(view: Information, here: Quadratic[None], held: set[int]) -> list[Weak
         deviation = float(np.sqrt(spread[members[0], members[0]]))
         found.append(Weakness("weak", involved, step.changes, sentence("weak", step, deviation=deviation)))
     return found
+
+
+def _largest(changes: np.ndarray) -> float:
+    """The change of largest size, the first of those that are so but for rounding."""
+    sizes = np.abs(changes)
+    return float(changes[np.argmax(sizes > 0.999 * sizes.max())])
 
 
 def _names(run: FreeRun) -> list[str]:

@@ -101,6 +101,40 @@ def test_simulation_that_overflows(motor_folder: Make, edit: Edit, command: str)
     assert not (folder / "out").exists()
 
 
+def test_overflow_comes_with_start_values_that_avoid_it(motor_folder: Make, edit: Edit) -> None:
+    folder = motor_folder()
+    edit(folder / "my_motor.py", "- p.b * x.speed", "+ 9.0 * x.speed")
+    said = greybox("simulate", folder).stderr
+    value = said.split("it does not with J = ")[1].split(" ")[0]
+    edit(folder / "dataset.toml", "J = { value = 0.03 }", f"J = {{ value = {value} }}")
+    assert greybox("simulate", folder).exit_code == 0
+
+
+@pytest.mark.parametrize("command", ["simulate", "compare", "residuals"])
+def test_single_precision(motor_folder: Make, command: str) -> None:
+    folder = motor_folder()
+    double, single = (of(command, folder, "--precision", precision) for precision in ("double", "single"))
+    rows = [found["residuals"] if command == "residuals" else found["models"][0]["fit"] for found in (double, single)]
+    assert [r["rmse"] for r in rows[1]] == pytest.approx([r["rmse"] for r in rows[0]], rel=1e-3)
+    assert [r["rmse"] for r in rows[1]] != [r["rmse"] for r in rows[0]]
+    result = greybox(command, folder, "--precision", "half")
+    assert result.exit_code == 2
+    assert result.stderr == 'error: --precision half: unknown; expected "double" or "single"\n'
+
+
+@pytest.mark.parametrize("command", ["simulate", "compare"])
+def test_substeps_are_told(motor_folder: Make, edit: Edit, command: str) -> None:
+    folder = motor_folder()
+    assert of(command, folder)["models"][0]["substeps"] == 1
+    assert "Runge-Kutta" not in greybox(command, folder).stdout
+    edit(folder / "dataset.toml", "J = { value = 0.03 }", "J = { value = 0.0004 }")
+    steps = of(command, folder)["models"][0]["substeps"]
+    assert steps > 1
+    assert f"is simulated in {steps} Runge-Kutta steps: the motion is fast" in greybox(command, folder).stdout.replace(
+        "Each sample of start", "Each sample"
+    )
+
+
 def test_compare(motor_folder: Make) -> None:
     folder = motor_folder()
     found = of("compare", folder, saved(folder, "good"), saved(folder, "poor", 0.1) + ".json")
@@ -150,6 +184,9 @@ def test_compare_with_one_that_overflows(motor_folder: Make) -> None:
     numbers = of("compare", folder, saved(folder, "wild", 1e-9))["models"]
     assert [row["fit"] for row in numbers[1]["fit"]] == [None] * 3
     assert min(row["fit"] for row in numbers[0]["fit"]) > 0
+    assert numbers[0]["overflow"] is None
+    assert numbers[1]["overflow"].startswith("the simulation of 'Steps' overflows at ")
+    assert f"wild: {numbers[1]['overflow']}" in result.stdout
 
 
 def test_checkpoint_of_a_model_that_has_moved(motor_folder: Make) -> None:

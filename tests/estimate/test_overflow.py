@@ -1,0 +1,87 @@
+"""When simulations overflow, and what avoids it, on dx/dt = a x."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greybox_torch.errors import NumericalError
+from greybox_torch.estimate.fit import fit
+from greybox_torch.estimate.free_run import simulate
+from greybox_torch.estimate.overflow import avoidance, first_overflow, overflow_error, remedies
+from greybox_torch.estimate.problem import Problem, make_problem
+from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
+from greybox_torch.simulate.stepper import make_stepper
+
+
+class Growth(GreyBoxModel):
+    """dx/dt = a x + b u."""
+
+    states = [State("speed", "rad/s", initial=1.0, fixed=True)]
+    inputs = [Input("voltage", "V")]
+    outputs = [Output("speed", "rad/s")]
+    parameters = [Parameter("a", 400.0, unit="1/s", lower=-1e6), Parameter("b", 1.0)]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return {"speed": p.a * x.speed + p.b * u.voltage}
+
+    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+        return {"speed": x.speed}
+
+
+@pytest.fixture
+def problem(data_set: Any) -> Problem:
+    """Two experiments; the second is too short to overflow at 400 / s."""
+    runs = [{"voltage": np.zeros(n), "speed": np.exp(-0.01 * np.arange(n))} for n in (500, 30)]
+    data = data_set({"voltage": "V", "speed": "rad/s"}, runs)
+    return make_problem(data, Growth(), data.recordings)
+
+
+def test_where_and_when(problem: Problem) -> None:
+    """One Runge-Kutta step of 10 ms multiplies by 1 + 4 + 8 + 64/6 + 256/24 = 34.33."""
+    stepper = make_stepper(problem.model, problem.free_names)
+    found = first_overflow(problem, simulate(problem, stepper))
+    assert found is not None
+    beyond = int(np.ceil(np.log(np.finfo(float).max) / np.log(34.0 + 1 / 3)))
+    assert found.experiment == "run 1"
+    assert beyond - 4 <= found.sample <= beyond  # the slopes within a step overflow a little before the state does
+    assert found.time == pytest.approx(0.01 * found.sample)
+    assert first_overflow(problem, [np.zeros((500, 1)), np.zeros((30, 1))]) is None
+
+
+def test_start_values_that_avoid_it(problem: Problem) -> None:
+    stepper = make_stepper(problem.model, problem.free_names)
+    (found,) = remedies(problem, stepper)
+    assert (found.name, found.before, found.unit) == ("a", 400.0, "1/s")
+    assert found.value < 200.0
+    there = problem.with_values(np.array([found.value, 1.0]))
+    assert first_overflow(there, simulate(there, stepper)) is None
+    assert str(found) == f"a = {found.value:g} 1/s (now 400)"
+
+
+def test_none_avoids_it(problem: Problem) -> None:
+    held = problem.with_values(np.array([4e6, 1.0]))
+    held = make_narrow(held)
+    assert remedies(held, make_stepper(problem.model, problem.free_names)) == ()
+    assert "check units, scales and signs" in avoidance(())
+
+
+def make_narrow(problem: Problem) -> Problem:
+    from dataclasses import replace
+
+    return replace(problem, lower=np.array([1e6, 0.5]), upper=np.array([1e7, 2.0]))
+
+
+def test_the_error_says_all_of_it(problem: Problem) -> None:
+    stepper = make_stepper(problem.model, problem.free_names)
+    message = str(overflow_error("simulating", problem, stepper, 1))
+    assert message.startswith("simulating Growth: failed: the simulation overflows at the start values (at t = ")
+    assert " s in 'run 1'; it does not with a = " in message
+    assert message.endswith("try start values nearer to the truth, tighter bounds, or a smaller sample time")
+
+
+def test_fit_of_what_cannot_be_simulated(problem: Problem) -> None:
+    with pytest.raises(NumericalError, match=r"estimating Growth: failed: .* in 'run 1'"):
+        fit(make_narrow(problem.with_values(np.array([4e6, 1.0]))))
