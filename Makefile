@@ -1,11 +1,12 @@
-# `make demo` shows what the tool does; `make test` checks that it still does it.
+# `make demo` shows what the tool does; `make test` checks that it still does it; `make bench` measures it beside other tools.
 # Everything runs in .venv, which is made once and refreshed when the dependencies change.
 
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALLED := .venv/.installed
+PEERS := .venv/.peers
 
-.PHONY: demo test lint clean
+.PHONY: demo test lint bench clean
 
 demo: $(INSTALLED)
 	$(BIN)/greybox demo --out results/demo
@@ -18,6 +19,9 @@ lint: $(INSTALLED)
 	$(BIN)/ruff format --check .
 	$(BIN)/pyright
 
+bench: $(PEERS)
+	$(BIN)/python -m experiments.speed --out results/bench
+
 clean:
 	rm -rf .venv results build dist *.egg-info .pytest_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
@@ -25,4 +29,8 @@ clean:
 $(INSTALLED): pyproject.toml constraints.txt
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet -c constraints.txt -e '.[dev]'
+	touch $@
+
+$(PEERS): $(INSTALLED)
+	$(BIN)/python -m pip install --quiet -c constraints.txt -e '.[dev,peers]'
 	touch $@
