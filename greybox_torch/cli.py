@@ -117,6 +117,16 @@ def fit(
         list[str] | None,
         typer.Option(metavar="PARAMETER", help="Also its profile likelihood: 95 % interval and figure. Repeatable."),
     ] = None,
+    starts: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=4096,
+            metavar="N",
+            help="Start values to try, drawn around those given.",
+            show_default="those given; many where they are poor",
+        ),
+    ] = None,
     model: Model = None,
     out: Out = None,
     seed: Seed = 0,
@@ -127,7 +137,7 @@ def fit(
     """Estimate the free parameters and initial states, and write them as a checkpoint."""
     from greybox_torch.commands import fit
 
-    fit.run(dataset, Options(model, out, seed, device, json, precision), profile or [])
+    fit.run(dataset, Options(model, out, seed, device, json, precision), profile or [], starts)
 
 
 @app.command()

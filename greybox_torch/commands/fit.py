@@ -30,11 +30,12 @@ from greybox_torch.simulate.stepper import Stepper, make_stepper
 from greybox_torch.simulate.substeps import choose_substeps
 
 
-def run(dataset: Path, options: Options, profiled: Sequence[str] = ()) -> None:
+def run(dataset: Path, options: Options, profiled: Sequence[str] = (), starts: int | None = None) -> None:
     """Estimates on the experiments of role "estimation", judges on all; writes fit.json, the checkpoint `model`, figures of profiles.
 
     Args:
         profiled: names of free parameters whose profile likelihood is wanted too.
+        starts: how many start values to try; by default those given, and many more where these turn out poor.
 
     Raises UserError where the input is at fault, NumericalError where even short stretches of the simulation overflow.
     """
@@ -55,6 +56,8 @@ def run(dataset: Path, options: Options, profiled: Sequence[str] = ()) -> None:
         device=task.device,
         precision=task.precision,
         progress=_progress(log),
+        starts=starts,
+        seed=options.seed,
     )
     profiles = _profiles(task, found, stepper, profiled, log)
     scores = _scores(task, found, stepper)

@@ -2,30 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from greybox_torch.estimate.correlation import CorrelationMatrix, correlation_matrix
-from greybox_torch.estimate.free_run import FreeRun, simulate
+from greybox_torch.estimate.descent import Descent, Progress, Way, descend
+from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.identifiability import Weakness, identifiability
-from greybox_torch.estimate.levenberg_marquardt import DEFAULT, Optimum, Settings, minimise
-from greybox_torch.estimate.metrics import fit_percent
+from greybox_torch.estimate.levenberg_marquardt import DEFAULT, Settings
 from greybox_torch.estimate.notes import notes
 from greybox_torch.estimate.overflow import overflow_error
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.termination import Outcome, Termination
 from greybox_torch.estimate.uncertainty import Uncertainty, uncertainty
-from greybox_torch.estimate.window_fit import fit_windows
 from greybox_torch.simulate.stepper import Stepper, make_stepper
-from greybox_torch.simulate.substeps import choose_substeps
-
-GOOD_START = 30.0
-"""Fit in % from which start values are trusted to lie in the right valley, so that the whole records are fitted at once."""
-
-WINDOW_SHARES = (1 / 64, 1 / 16)
-"""Window lengths, as shares of the longest record, that poor start values are led through."""
 
 
 @dataclass(frozen=True)
@@ -72,10 +63,6 @@ class FitResult:
         return result
 
 
-Progress = Callable[[str, int, float], None]
-"""Called with a stage's name, an iteration and the mean squared error there."""
-
-
 def fit(
     problem: Problem,
     *,
@@ -85,59 +72,33 @@ def fit(
     precision: str = "double",
     progress: Progress | None = None,
     with_uncertainty: bool = True,
+    starts: int | None = None,
+    seed: int = 0,
 ) -> FitResult:
     """Estimate the free parameters and start states of ``problem`` by simulation-error least squares.
 
-    Start values that simulate the records tolerably are refined on whole records at once; poor ones are first improved on short
-    windows with free start states, then on longer ones.
+    Start values that simulate the records tolerably are refined on whole records at once; others are first improved on short
+    windows with free start states, then on longer ones. Where the error then turns out to be less than half of what it was at the
+    start values, they were poor, and another valley may be deeper: many more start values are drawn around them and tried.
+
+    Args:
+        starts: how many start values to try, those given among them; 1 for these alone, None to decide as told above.
+        seed: of the start values drawn.
 
     Raises:
         NumericalError: the simulation overflows even over short windows.
     """
     stepper = stepper or make_stepper(problem.model, problem.free_names, device=device, precision=precision)
-    substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
-    evaluations = 0
-    if not _good(problem, stepper, substeps):
-        problem, evaluations = _approach(problem, stepper, substeps, progress)
-        substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or substeps
-    run = FreeRun(problem, stepper, substeps)
-    samples = int((~np.isnan(problem.tape.y)).sum())
-    if not len(run.start):
-        return _unmoved(run, samples)
-    report = None
-    if progress is not None:
-        report = lambda i, cost, _: progress("whole records", i, 2 * cost / samples)  # noqa: E731
-    optimum = minimise(
-        run.quadratic, run.start, *run.bounds, settings=settings, admissible=run.admissible, on_iteration=report
-    )
-    if optimum is None:
-        raise overflow_error("estimating", problem, stepper, substeps)
-    weaknesses = identifiability(run, optimum.point, optimum.model, precision=precision) if with_uncertainty else ()
-    return _result(run, optimum, samples, evaluations, with_uncertainty, weaknesses)
-
-
-def _good(problem: Problem, stepper: Stepper, substeps: int) -> bool:
-    """Whether every output of every experiment is simulated better than a rough guess would."""
-    fits = [
-        fit_percent(problem.tape.y[k, problem.tape.span(e)], run[:, k])
-        for e, run in enumerate(simulate(problem, stepper, substeps=substeps))
-        for k in range(run.shape[1])
-    ]
-    return min(fits) > GOOD_START
-
-
-def _approach(problem: Problem, stepper: Stepper, substeps: int, progress: Progress | None) -> tuple[Problem, int]:
-    """Better parameters by way of windows with free start states; each length is kept only if the one before simulates."""
-    evaluations, longest = 0, int(problem.tape.lengths.max())
-    for share in WINDOW_SHARES:
-        found = fit_windows(problem, stepper, max(20, round(share * longest)), substeps=substeps)
-        if found is None:
-            continue
-        evaluations += found.evaluations
-        problem = problem.with_values(found.problem.values)
-        if progress is not None:
-            progress(f"windows of {found.windows.steps} samples", evaluations, found.mean_square)
-    return problem, evaluations
+    way = Way(stepper, settings, progress, seed)
+    if not problem.free.any() and not problem.initial_free.any():
+        return _unmoved(FreeRun(problem, stepper, way.substeps(problem)), problem.samples)
+    found = descend(problem, way, starts)
+    if found is None:
+        raise overflow_error("estimating", problem, stepper, way.substeps(problem))
+    weaknesses = ()
+    if with_uncertainty:
+        weaknesses = identifiability(found.run, found.optimum.point, found.optimum.model, precision=precision)
+    return _result(found, problem.samples, with_uncertainty, weaknesses)
 
 
 def _unmoved(run: FreeRun, samples: int) -> FitResult:
@@ -148,14 +109,8 @@ def _unmoved(run: FreeRun, samples: int) -> FitResult:
     return FitResult(run.problem, mse, mse, samples, 0, 1, Termination.nothing_free, None, run.substeps)
 
 
-def _result(
-    run: FreeRun,
-    optimum: Optimum[None],
-    samples: int,
-    before: int,
-    with_uncertainty: bool,
-    weaknesses: tuple[Weakness, ...],
-) -> FitResult:
+def _result(found: Descent, samples: int, with_uncertainty: bool, weaknesses: tuple[Weakness, ...]) -> FitResult:
+    run, optimum = found.run, found.optimum
     mse = 2 * optimum.model.cost / samples
     share, problem = len(optimum.point) / samples, run.at(optimum.point)
     return FitResult(
@@ -164,7 +119,7 @@ def _result(
         fpe=mse * (1 + share) / (1 - share),
         samples=samples,
         iterations=optimum.iterations,
-        evaluations=before + optimum.evaluations,
+        evaluations=found.evaluations,
         termination=optimum.termination,
         uncertainty=uncertainty(run, optimum.point) if with_uncertainty else None,
         substeps=run.substeps,

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from greybox_torch.estimate.levenberg_marquardt import Quadratic
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulate.stepper import Run, Stepper, whole_records
+from greybox_torch.estimate.rough_starts import rough_starts
+from greybox_torch.simulate.parallel_run import ParallelRun
+from greybox_torch.simulate.stepper import Stepper, whole_records
 
 
 def simulate(problem: Problem, stepper: Stepper, *, substeps: int = 1) -> list[np.ndarray]:
@@ -54,49 +57,33 @@ class FreeRun:
 
     def quadratic(self, z: np.ndarray) -> Quadratic[None] | None:
         """Cost, gradient and Gauss-Newton Hessian at ``z``; None where the simulation is not finite."""
-        run = self._run(z, self.problem.weights)
-        assert run.normal is not None
-        if not np.isfinite(run.normal).all():
+        normals = self.normals(z)
+        if normals is None:
             return None
         size, n_p = len(z), self.n_parameters
-        gradient, hessian = np.zeros(size), np.zeros((size, size))
-        for e, matrix in enumerate(run.normal):
+        cost, gradient, hessian = 0.0, np.zeros(size), np.zeros((size, size))
+        for e, stretches in enumerate(normals):
+            matrix = stretches.sum(axis=0)
             index = self.columns(e, n_p, matrix.shape[0] - 1 - n_p)
             hessian[np.ix_(index, index)] += matrix[:-1, :-1]
             gradient[index] -= matrix[:-1, -1]
-        return Quadratic(0.5 * float(run.normal[:, -1, -1].sum()), gradient, hessian, None)
+            cost += 0.5 * float(matrix[-1, -1])
+        return Quadratic(cost, gradient, hessian, None)
 
-    def residuals(self, z: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
-        """Weighted errors simulated − measured (M_e,) per experiment and their Jacobian (M_e, d_e), at a point that simulates.
-
-        The columns of an experiment are the free parameters, then its own free start states.
-        """
-        run, tape, weights = self._run(z, None), self.problem.tape, self.problem.weights
-        errors, jacobians = [], []
-        for e, n in enumerate(tape.lengths):
-            measured = tape.y[:, tape.span(e)].T
-            known = ~np.isnan(measured)
-            errors.append(((run.y[e, :n] - measured) * weights)[known])
-            jacobians.append(
-                np.zeros((known.sum(), 0)) if run.dy is None else (run.dy[e, :n] * weights[:, None])[known]
-            )
-        return errors, jacobians
-
-    def _run(self, z: np.ndarray, weights: np.ndarray | None) -> Run:
+    def normals(self, z: np.ndarray) -> list[np.ndarray] | None:
+        """Gauss-Newton matrices (C_e, d_e + 1, d_e + 1) of every experiment, stretch by stretch, see :class:`ParallelRun`."""
         point = self.at(z)
-        tape, states = point.driving_tape, point.free_states
-        directions = np.zeros((len(tape.first), len(states), point.initial.shape[1]))
-        directions[:, np.arange(len(states)), states] = 1.0
-        return self.stepper.run(
-            tape,
-            whole_records(tape),
-            point.values,
-            point.initial,
-            tangents=True,
-            start_directions=directions,
-            substeps=self.substeps,
-            weights=weights,
-        )
+        tape = point.driving_tape
+        return self._parallel.normals(tape, point.values, point.initial, self._rough, self.problem.weights)
+
+    @cached_property
+    def _parallel(self) -> ParallelRun:
+        estimated = np.flatnonzero(self.problem.free)
+        return ParallelRun(self.stepper, self.problem.tape, estimated, self.problem.free_states, self.substeps)
+
+    @cached_property
+    def _rough(self) -> np.ndarray:
+        return rough_starts(self.problem, self._parallel.links.windows)
 
     @staticmethod
     def columns(experiment: int, n_p: int, n_s: int) -> np.ndarray:

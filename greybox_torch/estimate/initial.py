@@ -76,6 +76,7 @@ class _AllFixed:
     def __init__(self, stepper: Stepper) -> None:
         self._stepper = stepper
         self.sensitive: tuple[str, ...] = ()
+        self.compiled = stepper.compiled
 
     def run(self, *args, tangents: bool = False, **options):
         return self._stepper.run(*args, tangents=False, **options)
@@ -85,13 +86,4 @@ def _beginning(tape: Tape, experiment: int, fraction: float) -> Tape:
     span = tape.span(experiment)
     length = max(10, int(np.ceil(fraction * (span.stop - span.start))))
     part = slice(span.start, min(span.start + length, span.stop))
-    size = part.stop - part.start
-    return Tape(
-        tape.u[:, part],
-        tape.y[:, part],
-        tape.dt[part],
-        np.array([0]),
-        np.array([size - 1]),
-        (tape.names[experiment],),
-        tape.hold,
-    )
+    return tape.part([part], [tape.names[experiment]])

@@ -27,7 +27,7 @@ class Quadratic(Generic[Extra]):
 class Settings:
     """Limits of the iteration. ``tolerance`` is the relative change of the cost that counts as none."""
 
-    iterations: int = 60
+    iterations: int = 200
     tolerance: float = 1e-10
     damping: float = 1e-3
     trials: int = 14

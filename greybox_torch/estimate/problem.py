@@ -42,6 +42,11 @@ class Problem:
         return tuple(n for n, f in zip(self.names, self.free, strict=True) if f)
 
     @property
+    def samples(self) -> int:
+        """How many measured values there are to compare with, missing ones not counted."""
+        return int((~np.isnan(self.tape.y)).sum())
+
+    @property
     def driving_tape(self) -> Tape:
         """The tape with the inputs that drive the model at the present values."""
         return self.model.prepared(self.tape, self.values)
@@ -59,11 +64,16 @@ class Problem:
 
     def admissible(self, values: np.ndarray) -> bool:
         """Whether the model's joint constraints hold at ``values`` (n_p,)."""
-        p = Signals(
-            "parameter",
-            {n: torch.tensor(float(v), dtype=torch.float64) for n, v in zip(self.names, values, strict=True)},
-        )
-        return all(float(quantity) > 0 for quantity in self.model.admissible(p).values())
+        return bool(self.all_admissible(values[None])[0])
+
+    def all_admissible(self, rows: np.ndarray) -> np.ndarray:
+        """Whether the model's joint constraints hold (M,) at each of ``rows`` (M, n_p)."""
+        columns = torch.as_tensor(np.ascontiguousarray(rows.T), dtype=torch.float64)
+        quantities = self.model.admissible(Signals("parameter", dict(zip(self.names, columns, strict=True))))
+        result = np.ones(len(rows), dtype=bool)
+        for quantity in quantities.values():
+            result &= torch.as_tensor(quantity).detach().numpy() > 0
+        return result
 
 
 def make_problem(

@@ -14,8 +14,9 @@ class Uncertainty:
     """Covariances (d, d) of the unknowns z.
 
     ``plain`` is σ² (JᵀJ)⁻¹, right where the residuals are white. ``sandwich`` replaces its middle by the scatter of the score over
-    blocks of the record, right where they are coloured, as they are whenever physics is missing. ``undetermined`` lists the indices
-    of unknowns that the data do not determine; their standard deviation is infinite.
+    stretches of the record, neighbouring ones together as far as they are correlated: right where the residuals are coloured, as they
+    are whenever physics is missing. ``undetermined`` lists the indices of unknowns that the data do not determine; their standard
+    deviation is infinite.
     """
 
     plain: np.ndarray
@@ -29,35 +30,70 @@ class Uncertainty:
         return result
 
 
-def uncertainty(run: FreeRun, z: np.ndarray, *, blocks: int = 40) -> Uncertainty:
+def uncertainty(run: FreeRun, z: np.ndarray) -> Uncertainty:
     """Covariance of the estimates at the optimum ``z`` (d,).
 
-    Source: L. Ljung, "System Identification: Theory for the User", 2nd ed., ch. 9; sandwich with block sums after H. White (1982).
+    Source: L. Ljung, "System Identification: Theory for the User", 2nd ed., ch. 9; R. M. Bell and D. F. McCaffrey, "Bias reduction in
+    standard errors for linear regression with multi-stage samples", 2002 (leverage of a stretch); W. K. Newey and K. D. West, 1987, and
+    D. W. K. Andrews, 1991 (correlation between stretches and how far it reaches).
     """
-    found = run.residuals(z)
+    normals = run.normals(z)
+    assert normals is not None, "an optimum simulates"
     size, n_p = len(z), run.n_parameters
-    n_s = (size - n_p) // len(found[0])
-    hessian, meat = np.zeros((size, size)), np.zeros((size, size))
-    total, count = 0.0, 0
-    for e, (error, slope) in enumerate(zip(*found, strict=True)):
-        index = run.columns(e, n_p, n_s)
-        hessian[np.ix_(index, index)] += slope.T @ slope
-        total, count = total + float(error @ error), count + len(error)
-        pieces = max(2, round(blocks * len(error) / sum(len(r) for r in found[0])))
-        for part in np.array_split(np.arange(len(error)), pieces):
-            score = slope[part].T @ error[part]
-            meat[np.ix_(index, index)] += np.outer(score, score)
-    inverse, undetermined = _inverse(hessian)
-    variance = total / max(count - size, 1)
-    return Uncertainty(variance * inverse, inverse @ meat @ inverse, undetermined)
+    n_s = (size - n_p) // len(normals)
+    columns = [run.columns(e, n_p, n_s) for e in range(len(normals))]
+    hessian = np.zeros((size, size))
+    for index, stretches in zip(columns, normals, strict=True):
+        hessian[np.ix_(index, index)] += stretches[:, :-1, :-1].sum(axis=0)
+    root, undetermined = _root_of_inverse(hessian)
+    meat = np.zeros((root.shape[1], root.shape[1]))
+    for index, stretches in zip(columns, normals, strict=True):
+        meat += long_run_scatter(_without_leverage(stretches, root[index]))
+    total = sum(float(stretches[:, -1, -1].sum()) for stretches in normals)
+    variance = total / max(run.problem.samples - size, 1)
+    return Uncertainty(variance * root @ root.T, root @ meat @ root.T, undetermined)
 
 
-def _inverse(hessian: np.ndarray) -> tuple[np.ndarray, tuple[int, ...]]:
-    """The inverse in scaled unknowns, and the unknowns that take part in a direction of no curvature."""
+def _without_leverage(stretches: np.ndarray, root: np.ndarray) -> np.ndarray:
+    """Scores (C, r) of stretches in unknowns of unit covariance, as if a stretch had not drawn the estimate to itself.
+
+    A start state matters to few stretches; those follow it so closely that their errors say little about its scatter.
+    """
+    pull = root.T @ stretches[:, :-1, :-1] @ root
+    values, vectors = np.linalg.eigh(pull)
+    freed = np.einsum("crk,ck,csk->crs", vectors, 1.0 / np.sqrt(np.maximum(1.0 - values, 1e-3)), vectors)
+    return np.einsum("crs,cs->cr", freed, stretches[:, :-1, -1] @ root)
+
+
+def long_run_scatter(scores: np.ndarray) -> np.ndarray:
+    """Covariance (d, d) of the sum of the scores (C, d) of successive stretches, neighbours weighted down with distance (Bartlett)."""
+    result = scores.T @ scores
+    reach = _bandwidth(scores)
+    for lag in range(1, reach + 1):
+        weight = 1.0 - lag / (reach + 1)
+        product = scores[lag:].T @ scores[:-lag]
+        result = result + weight * (product + product.T)
+    return result
+
+
+def _bandwidth(scores: np.ndarray) -> int:
+    """How many neighbours are correlated, by Andrews' rule for the Bartlett kernel on first-order autoregressions of the scores."""
+    count = len(scores)
+    if count < 8:
+        return 0
+    size = (scores**2).sum(axis=0)
+    lagged = (scores[1:] * scores[:-1]).sum(axis=0)
+    pole = np.clip(np.where(size > 0, lagged / np.where(size > 0, size, 1.0), 0.0), -0.9, 0.9)
+    strength = float(np.mean(4 * pole**2 / ((1 - pole) ** 2 * (1 + pole) ** 2))) if pole.size else 0.0
+    return min(int(1.1447 * (strength * count) ** (1 / 3)), count // 4)
+
+
+def _root_of_inverse(hessian: np.ndarray) -> tuple[np.ndarray, tuple[int, ...]]:
+    """R (d, r) with R Rᵀ the inverse in the directions of curvature, and the unknowns that take part in one of no curvature."""
     diagonal = np.diag(hessian)
     scale = np.where(diagonal > 0, 1.0 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)), 0.0)
     values, vectors = np.linalg.eigh(hessian * scale[:, None] * scale[None, :])
     flat = values < 1e-12 * values.max(initial=1e-300)
     involved = set(np.flatnonzero((np.abs(vectors[:, flat]) > 0.1).any(axis=1))) | set(np.flatnonzero(diagonal <= 0))
-    inverse = (vectors[:, ~flat] / values[~flat]) @ vectors[:, ~flat].T
-    return inverse * scale[:, None] * scale[None, :], tuple(int(i) for i in sorted(involved))
+    root = scale[:, None] * vectors[:, ~flat] / np.sqrt(values[~flat])
+    return root, tuple(int(i) for i in sorted(involved))

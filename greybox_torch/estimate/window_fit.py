@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from greybox_torch.estimate.levenberg_marquardt import ROUGH, Settings
-from greybox_torch.estimate.problem import Problem, measured_at
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.rough_starts import rough_starts
 from greybox_torch.simulate.stepper import Stepper, Windows, cut
 
 SHRINKING = 30.0
@@ -114,17 +115,6 @@ def fit_windows(
             here = here if again is None else again
             evaluations += 1
     return WindowFit(problem, windows, states, here.mean_square, here.energies, evaluations)
-
-
-def rough_starts(problem: Problem, windows: Windows) -> np.ndarray:
-    """Start states (W, n_x) from the measurement where a state is measured, else the value at the experiment's start."""
-    experiment = np.searchsorted(problem.tape.first, windows.start, side="right") - 1
-    states = problem.initial[experiment].copy()
-    outputs = {o.name for o in problem.model.outputs}
-    for i, state in enumerate(problem.model.states):
-        if state.initial == "measured" or state.name in outputs:
-            states[:, i] = measured_at(problem.model, state, problem.tape, windows.start)
-    return problem.model.begun(states, problem.driving_tape, windows.start, problem.values)
 
 
 def _starts_of(shorter: WindowFit, problem: Problem, windows: Windows) -> np.ndarray:

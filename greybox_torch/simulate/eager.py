@@ -31,6 +31,10 @@ class EagerStepper:
         dtype = torch.float64 if precision == "double" else torch.float32
         return EagerStepper(model, tuple(sensitive), torch.device(device), dtype)
 
+    @property
+    def compiled(self) -> bool:
+        return False
+
     def run(
         self,
         tape: Tape,

@@ -17,6 +17,9 @@ from greybox_torch.simulate.tape import Tape
 _LONG, _POINTER = ctypes.c_long, ctypes.c_void_p
 
 
+WORTH_A_THREAD = 2000
+"""Steps times directions of a group of lanes, about 0.1 ms."""
+
 _TILE = 4
 """Side of the squares in which the emitted program accumulates normal matrices."""
 
@@ -62,6 +65,10 @@ class NativeStepper:
     sensitive: tuple[str, ...]
     precision: str
     loaded: ctypes.CDLL
+
+    @property
+    def compiled(self) -> bool:
+        return True
 
     def run(
         self,
@@ -109,7 +116,7 @@ class NativeStepper:
             "weight": None if weights is None else _aligned(weights, real),
             "normal": None if weights is None else _zeros((groups, width, width, lanes), real),
         }
-        threads = min(groups, int(os.environ.get("OMP_NUM_THREADS", os.cpu_count() or 1)))
+        threads = _threads(groups, windows.steps * substeps * (1 + n_d))
         sizes = (groups, windows.steps, substeps, int(tape.hold == "foh"), len(tape.dt), n_d, threads)
         pointers = [None if a is None else a.ctypes.data for a in packed.values()]
         self.loaded.run(ctypes.byref(_Job(*sizes, *pointers)))
@@ -124,6 +131,12 @@ class NativeStepper:
             if packed["normal"] is None
             else _mirrored(_windows(packed["normal"], count)[:, : n_d + 1, : n_d + 1]),
         )
+
+
+def _threads(groups: int, work: int) -> int:
+    """How many threads a pass over ``groups`` of so much work each is worth: waking them costs as much as a short one."""
+    cores = int(os.environ.get("OMP_NUM_THREADS", os.cpu_count() or 1))
+    return max(1, min(groups, cores, groups * work // WORTH_A_THREAD))
 
 
 def _empty(shape: tuple[int, ...], real: type) -> np.ndarray:

@@ -54,6 +54,11 @@ class Stepper(Protocol):
         """The parameters that tangents are propagated for, in the order of the directions."""
         ...
 
+    @property
+    def compiled(self) -> bool:
+        """Whether a pass takes milliseconds rather than seconds."""
+        ...
+
     def run(
         self,
         tape: Tape,

@@ -40,6 +40,15 @@ class Tape:
         """Time since the start of one experiment, s."""
         return np.concatenate([[0.0], np.cumsum(self.dt[self.span(experiment)][:-1])])
 
+    def part(self, spans: Sequence[slice], names: Sequence[str]) -> Tape:
+        """The tape of some stretches, each an experiment of its own."""
+        index = np.concatenate([np.arange(s.start, s.stop) for s in spans])
+        lengths = np.array([s.stop - s.start for s in spans])
+        first = np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(np.int64)
+        return Tape(
+            self.u[:, index], self.y[:, index], self.dt[index], first, first + lengths - 1, tuple(names), self.hold
+        )
+
 
 def make_tape(dataset: DataSet, model: GreyBoxModel, recordings: Sequence[Recording]) -> Tape:
     """Join ``recordings`` into one tape for ``model``.

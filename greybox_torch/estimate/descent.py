@@ -1,0 +1,177 @@
+"""The way from start values to an optimum of whole records: directly, by way of short windows, or from many starts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from greybox_torch.estimate.free_run import FreeRun, simulate
+from greybox_torch.estimate.global_search import look_around
+from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimise
+from greybox_torch.estimate.logarithmic import minimise_on_logarithms
+from greybox_torch.estimate.metrics import fit_percent
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.termination import Termination
+from greybox_torch.estimate.window_fit import fit_windows
+from greybox_torch.simulate.stepper import Stepper
+from greybox_torch.simulate.substeps import choose_substeps
+
+TOLERABLE = 30.0
+"""Fit in % from which a simulation is a place to begin a descent on whole records."""
+
+POOR = 2.0
+"""Start values are poor where their error is larger than this many times that of the optimum they lead to."""
+
+TRUSTED = 75.0
+"""Fit in % below which start values are poor in any case."""
+
+CLOSE = 95.0
+"""Fit in % from which another valley is not looked for."""
+
+STARTS_A_PARAMETER, MOST_STARTS = 32, 256
+"""How many start values are drawn where those given are poor."""
+
+WINDOW_SHARES = (1 / 64, 1 / 16)
+"""Window lengths, as shares of the longest record, that start values which do not simulate are led through."""
+
+PATIENCE = 60
+"""Iterations after which a descent that has not arrived is taken to creep."""
+
+FINER = 2
+"""How often the steps of the simulation are refined after the parameters."""
+
+Progress = Callable[[str, int, float], None]
+"""Called with a stage's name, an iteration and the mean squared error there."""
+
+
+@dataclass(frozen=True)
+class Descent:
+    """An optimum of whole records, the run it belongs to, and how many passes it took before and in all."""
+
+    run: FreeRun
+    optimum: Optimum[None]
+    evaluations: int
+
+
+@dataclass(frozen=True)
+class Way:
+    """What every descent needs: how to simulate, when to stop, whom to tell."""
+
+    stepper: Stepper
+    settings: Settings
+    progress: Progress | None = None
+    seed: int = 0
+
+    def substeps(self, problem: Problem) -> int:
+        return choose_substeps(problem.driving_tape, self.stepper, problem.values, problem.initial) or 1
+
+
+def descend(problem: Problem, way: Way, starts: int | None) -> Descent | None:
+    """The best optimum found from the start values of ``problem``; None where not even short windows simulate.
+
+    Args:
+        starts: how many start values to descend from, those given among them; by default one, or many where those turn out poor.
+    """
+    substeps = way.substeps(problem)
+    fits = _fits(problem, way.stepper, substeps)
+    tolerable = fits.min() > TOLERABLE
+    begin, before = (problem, 0) if tolerable else _by_windows(problem, way, substeps)
+    found = _whole_records(begin, way, before)
+    if starts is None:
+        starts = (
+            1 if found is not None and _trusted(fits, found, way.stepper) else _default_starts(problem, way.stepper)
+        )
+    if starts > 1 and problem.free.any():
+        elsewhere = look_around(
+            problem, way.stepper, starts=starts, seed=way.seed, substeps=substeps, progress=way.progress
+        )
+        other = None if elsewhere is None else _whole_records(elsewhere, way, 0)
+        found = _better(found, other)
+    return found
+
+
+def _fits(problem: Problem, stepper: Stepper, substeps: int) -> np.ndarray:
+    """Fit in % of every output of every experiment in free run."""
+    runs = simulate(problem, stepper, substeps=substeps)
+    return np.array(
+        [
+            fit_percent(problem.tape.y[k, problem.tape.span(e)], run[:, k])
+            for e, run in enumerate(runs)
+            for k in range(run.shape[1])
+        ]
+    )
+
+
+def _trusted(before: np.ndarray, found: Descent, stepper: Stepper) -> bool:
+    """Whether the start values lay so near the optimum that it is the one meant, or it is so good that there is no better one."""
+    after = _fits(found.run.at(found.optimum.point), stepper, found.run.substeps)
+    near = (before >= TRUSTED) & (100.0 - before <= POOR * (100.0 - after))
+    return bool((near | (after > CLOSE)).all())
+
+
+def _default_starts(problem: Problem, stepper: Stepper) -> int:
+    """Without a compiler a pass takes seconds, and only the user can say that it is worth it."""
+    return min(MOST_STARTS, STARTS_A_PARAMETER * int(problem.free.sum())) if stepper.compiled else 1
+
+
+def _by_windows(problem: Problem, way: Way, substeps: int) -> tuple[Problem, int]:
+    """Better parameters by way of windows with free start states; each length is kept only if the one before simulates."""
+    evaluations, longest = 0, int(problem.tape.lengths.max())
+    for share in WINDOW_SHARES:
+        found = fit_windows(problem, way.stepper, max(20, round(share * longest)), substeps=substeps)
+        if found is None:
+            continue
+        evaluations += found.evaluations
+        problem = problem.with_values(found.problem.values)
+        if way.progress is not None:
+            way.progress(f"windows of {found.windows.steps} samples", evaluations, found.mean_square)
+    return problem, evaluations
+
+
+def _whole_records(problem: Problem, way: Way, before: int) -> Descent | None:
+    """The optimum of whole records near the values of ``problem``, after so many passes.
+
+    Where the parameters have come to need finer steps than they began with, the optimum is found anew with those.
+    """
+    found = _optimum(FreeRun(problem, way.stepper, way.substeps(problem)), way, before)
+    for _ in range(FINER):
+        if found is None:
+            return None
+        problem = found.run.at(found.optimum.point)
+        needed = way.substeps(problem)
+        if needed <= found.run.substeps:
+            return found
+        found = _optimum(FreeRun(problem, way.stepper, needed), way, found.evaluations, creeping=False)
+    return found
+
+
+def _optimum(run: FreeRun, way: Way, before: int, *, creeping: bool = True) -> Descent | None:
+    """Levenberg-Marquardt; where that creeps, on the scale of logarithms and then once more."""
+    samples, progress = run.problem.samples, way.progress
+    report = None
+    if progress is not None:
+        report = lambda i, cost, _: progress("whole records", i, 2 * cost / samples)  # noqa: E731
+    z, used, optimum = run.start, 0, None
+    for method in (minimise, minimise_on_logarithms, minimise) if creeping else (minimise,):
+        settings = replace(way.settings, iterations=min(PATIENCE, way.settings.iterations - used))
+        if settings.iterations <= 0:
+            break
+        here = method(run.quadratic, z, *run.bounds, settings=settings, admissible=run.admissible, on_iteration=report)
+        if here is None:
+            return None
+        z, used, before = here.point, used + here.iterations, before + here.evaluations
+        optimum = replace(here, iterations=used)
+        if method is minimise and here.termination is not Termination.iteration_limit:
+            break
+    return None if optimum is None else Descent(run, optimum, before)
+
+
+def _better(one: Descent | None, other: Descent | None) -> Descent | None:
+    """The one of lower cost; the first of two that are as good."""
+    if one is None or other is None:
+        return other if one is None else one
+    total = one.evaluations + other.evaluations
+    best = other if other.optimum.model.cost < (1 - 1e-9) * one.optimum.model.cost else one
+    return Descent(best.run, best.optimum, total)

@@ -1,0 +1,81 @@
+"""Levenberg-Marquardt on the scale of logarithms, for unknowns that cannot be negative.
+
+Sizes that act as a product, a friction level and its sharpness, form valleys that are bent for the sizes and straight for their
+logarithms; along a bent valley a descent creeps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.estimate.levenberg_marquardt import Optimum, Quadratic, Settings, minimise
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Which unknowns (d,) are seen as logarithms: those that are positive and cannot be negative."""
+
+    logarithmic: np.ndarray
+
+    @staticmethod
+    def of(point: np.ndarray, lower: np.ndarray) -> Scale:
+        return Scale((lower >= 0.0) & (point > 0.0))
+
+    def seen(self, point: np.ndarray) -> np.ndarray:
+        """Unknowns as logarithms where they are positive; a bound at zero lies at −∞."""
+        with np.errstate(divide="ignore"):
+            return np.where(self.logarithmic, np.log(np.where(self.logarithmic, point, 1.0)), point)
+
+    def meant(self, seen: np.ndarray) -> np.ndarray:
+        return np.where(self.logarithmic, np.exp(np.where(self.logarithmic, seen, 0.0)), seen)
+
+    def slopes(self, point: np.ndarray) -> np.ndarray:
+        """Derivative (d,) of the unknowns by what is seen of them."""
+        return np.where(self.logarithmic, point, 1.0)
+
+
+def minimise_on_logarithms(
+    evaluate: Callable[[np.ndarray], Quadratic[None] | None],
+    start: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    *,
+    settings: Settings,
+    admissible: Callable[[np.ndarray], bool],
+    on_iteration: Callable[[int, float, float], None] | None = None,
+) -> Optimum[None] | None:
+    """As :func:`minimise`, with positive unknowns varied by factors. A bound at zero is approached and not reached."""
+    scale = Scale.of(start, lower)
+
+    def there(seen: np.ndarray) -> Quadratic[None] | None:
+        point = scale.meant(seen)
+        found = evaluate(point)
+        if found is None:
+            return None
+        slope = scale.slopes(point)
+        return Quadratic(found.cost, found.gradient * slope, found.hessian * slope[:, None] * slope[None, :], None)
+
+    found = minimise(
+        there,
+        scale.seen(start),
+        scale.seen(np.where(scale.logarithmic, np.maximum(lower, SMALLEST), lower)),
+        scale.seen(upper),
+        settings=settings,
+        admissible=lambda seen: admissible(scale.meant(seen)),
+        on_iteration=on_iteration,
+    )
+    if found is None:
+        return None
+    point = scale.meant(found.point)
+    slope = scale.slopes(point)
+    model = Quadratic(
+        found.model.cost, found.model.gradient / slope, found.model.hessian / slope[:, None] / slope[None, :], None
+    )
+    return Optimum(point, model, found.iterations, found.evaluations, found.termination)
+
+
+SMALLEST = 1e-30
+"""Stands for zero."""

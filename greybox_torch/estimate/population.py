@@ -1,0 +1,170 @@
+"""Levenberg-Marquardt from many start values at once: every member of a population is a lane of the same passes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.simulate.stepper import Stepper, Windows
+from greybox_torch.simulate.tape import Tape
+
+
+@dataclass(frozen=True)
+class Population:
+    """M sets of parameters (M, n_p) and start states (M, E, n_x), and the cost ½‖r‖² (M,) of each; infinite where it overflows."""
+
+    values: np.ndarray
+    initial: np.ndarray
+    cost: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def members(self, which: np.ndarray | slice) -> Population:
+        return Population(self.values[which], self.initial[which], self.cost[which])
+
+
+@dataclass(frozen=True)
+class Members:
+    """The free runs of a population on the experiments of a problem; unknowns z (M, d) as in :class:`FreeRun`."""
+
+    problem: Problem
+    tape: Tape
+    stepper: Stepper
+    substeps: int
+
+    @property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        free, open_ended = self.problem.free, np.full(len(self.tape.first) * len(self.problem.free_states), np.inf)
+        low = np.concatenate([self.problem.lower[free], -open_ended])
+        return low, np.concatenate([self.problem.upper[free], open_ended])
+
+    def unknowns(self, people: Population) -> np.ndarray:
+        states = people.initial[:, :, self.problem.initial_free].reshape(len(people), -1)
+        return np.concatenate([people.values[:, self.problem.free], states], axis=1)
+
+    def at(self, people: Population, z: np.ndarray) -> Population:
+        """The population with its unknowns set to ``z`` (M, d); costs are not known yet."""
+        values, initial, n_p = people.values.copy(), people.initial.copy(), int(self.problem.free.sum())
+        values[:, self.problem.free] = z[:, :n_p]
+        initial[:, :, self.problem.initial_free] = z[:, n_p:].reshape(*initial.shape[:2], -1)
+        return Population(values, initial, np.full(len(values), np.inf))
+
+    def outputs(self, people: Population) -> np.ndarray:
+        """Weighted outputs (M, E·K·n_y) of the free runs, zero where a sample is missing or beyond the end of an experiment."""
+        rows, starts = self._lanes(people)
+        windows = self._windows(len(people))
+        y = self.stepper.run(self.tape, windows, rows, starts, substeps=self.substeps).y
+        index = windows.start[:, None] + np.arange(windows.steps)
+        target = self.tape.y[:, np.minimum(index, windows.last[:, None])]
+        known = (index <= windows.last[:, None]) & ~np.isnan(target)
+        y = np.where(np.moveaxis(known, 0, -1), y, 0.0) * self.problem.weights
+        return y.reshape(len(people), -1)
+
+    def costs(self, people: Population) -> np.ndarray:
+        """Costs (M,) alone, which are quicker to come by; not finite where a run is not."""
+        measured = np.where(np.isnan(self.tape.y), 0.0, self.tape.y) * self.problem.weights[:, None]
+        index = self.tape.first[:, None] + np.arange(int(self.tape.lengths.max()))
+        target = np.where(
+            index <= self.tape.last[:, None], measured[:, np.minimum(index, self.tape.last[:, None])], 0.0
+        )
+        with np.errstate(all="ignore"):
+            return 0.5 * ((self.outputs(people) - np.moveaxis(target, 0, -1).ravel()) ** 2).sum(axis=1)
+
+    def normals(self, people: Population) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Costs (M,), gradients (M, d) and Gauss-Newton matrices (M, d, d); cost infinite where a run is not finite or not admissible."""
+        rows, starts = self._lanes(people)
+        count, experiments = people.initial.shape[:2]
+        states, n_p = self.problem.free_states, int(self.problem.free.sum())
+        directions = np.zeros((len(rows), len(states), starts.shape[1]))
+        directions[:, np.arange(len(states)), states] = 1.0
+        run = self.stepper.run(
+            self.tape,
+            self._windows(count),
+            rows,
+            starts,
+            tangents=True,
+            start_directions=directions,
+            substeps=self.substeps,
+            weights=self.problem.weights,
+        )
+        assert run.normal is not None
+        normal = run.normal.reshape(count, experiments, *run.normal.shape[1:])
+        size = n_p + experiments * len(states)
+        cost, gradient, hessian = np.zeros(count), np.zeros((count, size)), np.zeros((count, size, size))
+        with np.errstate(invalid="ignore"):
+            for e in range(experiments):
+                own = n_p + e * len(states)
+                index = np.concatenate([np.arange(n_p), np.arange(own, own + len(states))])
+                hessian[:, index[:, None], index] += normal[:, e, :-1, :-1]
+                gradient[:, index] -= normal[:, e, :-1, -1]
+                cost += 0.5 * normal[:, e, -1, -1]
+        sound = np.isfinite(run.normal).all(axis=(1, 2)).reshape(count, experiments).all(axis=1)
+        sound &= self.problem.all_admissible(people.values)
+        return np.where(sound, cost, np.inf), gradient, hessian
+
+    def _lanes(self, people: Population) -> tuple[np.ndarray, np.ndarray]:
+        experiments = people.initial.shape[1]
+        return np.repeat(people.values, experiments, axis=0), people.initial.reshape(len(people) * experiments, -1)
+
+    def _windows(self, count: int) -> Windows:
+        return Windows(np.tile(self.tape.first, count), np.tile(self.tape.last, count), int(self.tape.lengths.max()))
+
+
+def improve(members: Members, people: Population, iterations: int) -> Population:
+    """``people`` after some Levenberg-Marquardt iterations each; a step that fails or does not pay is rejected for its member alone."""
+    cost, gradient, hessian = members.normals(people)
+    people = Population(people.values, people.initial, cost)
+    low, high = members.bounds
+    damping, growth = np.full(len(people), 1e-2), np.full(len(people), 2.0)
+    for _ in range(iterations):
+        z = members.unknowns(people)
+        step = _steps(z, np.isfinite(people.cost), gradient, hessian, damping, low, high)
+        trial = members.at(people, np.clip(z + step, low, high))
+        there = members.normals(trial)
+        with np.errstate(invalid="ignore"):  # of members that were lost from the start
+            taken = members.unknowns(trial) - z
+        better = there[0] < people.cost
+        gain = _gain(people.cost, there[0], gradient, hessian, taken)
+        people = Population(
+            np.where(better[:, None], trial.values, people.values),
+            np.where(better[:, None, None], trial.initial, people.initial),
+            np.where(better, there[0], people.cost),
+        )
+        gradient = np.where(better[:, None], there[1], gradient)
+        hessian = np.where(better[:, None, None], there[2], hessian)
+        damping = np.where(better, damping * np.clip(1.0 - (2.0 * gain - 1.0) ** 3, 0.1, 2.0), damping * growth)
+        damping, growth = np.clip(damping, 1e-9, 1e12), np.where(better, 2.0, np.minimum(growth * 2.0, 1e6))
+    return people
+
+
+def _steps(
+    z: np.ndarray,
+    sound: np.ndarray,
+    gradient: np.ndarray,
+    hessian: np.ndarray,
+    damping: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+) -> np.ndarray:
+    """Damped Gauss-Newton steps (M, d), zero where a bound holds an unknown and for members that do not simulate."""
+    held = ((z <= low) & (gradient > 0)) | ((z >= high) & (gradient < 0)) | ~sound[:, None]
+    diagonal = np.where(sound[:, None], np.einsum("mii->mi", hessian), 1.0)
+    scale = 1.0 / np.sqrt(np.maximum(diagonal, 1e-14 * np.maximum(diagonal.max(axis=1, keepdims=True), 1e-300)))
+    matrix = np.where(held[:, :, None] | held[:, None, :], 0.0, hessian * scale[:, :, None] * scale[:, None, :])
+    each = np.arange(z.shape[1])
+    matrix[:, each, each] = np.where(held, 1.0, 1.0 + damping[:, None])
+    right = np.where(held, 0.0, -gradient * scale)
+    return scale * np.linalg.solve(matrix, right[..., None])[..., 0]
+
+
+def _gain(
+    before: np.ndarray, after: np.ndarray, gradient: np.ndarray, hessian: np.ndarray, taken: np.ndarray
+) -> np.ndarray:
+    """Achieved over predicted decrease (M,), within [0, 1]."""
+    with np.errstate(all="ignore"):
+        predicted = -np.einsum("mi,mi->m", gradient, taken) - 0.5 * np.einsum("mi,mij,mj->m", taken, hessian, taken)
+        gain = (before - after) / predicted
+    return np.clip(np.nan_to_num(gain, nan=0.0, posinf=1.0, neginf=0.0), 0.0, 1.0)
