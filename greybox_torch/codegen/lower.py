@@ -54,7 +54,7 @@ def lower(model: GreyBoxModel, sensitive: Sequence[str], at_zero: Sequence[str] 
     x = symbols(graph, "x", len(model.states))
     u = symbols(graph, "u", len(model.inputs))
     values = symbols(graph, "p", len(names))
-    p = Signals("parameter", {name: values[i] for i, name in enumerate(names)})
+    p = Signals("parameter", {name: values.select(0, i) for i, name in enumerate(names)})
     try:
         with torch.no_grad():
             rates, outputs = (nodes_of(graph, function(x, u, p)) for function in (model.rates, model.measured))

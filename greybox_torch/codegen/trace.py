@@ -37,6 +37,19 @@ class Symbol(torch.Tensor):
         return symbol
 
     @classmethod
+    def __torch_function__(cls, func: Any, types: Any, args: Any = (), kwargs: Any = None) -> Any:
+        """The common operations at once; all others by way of ``__torch_dispatch__``, where torch has them in its basic forms.
+
+        The first operation that goes there makes torch import its distributed tensors, half a second of the life of a process.
+        """
+        name = getattr(func, "__name__", "")
+        handler = None if kwargs else _AT_ONCE.get(name)
+        if handler is None:
+            return torch._C._disabled_torch_function_impl(func, types, args, kwargs or {})  # type: ignore[attr-defined]
+        graph = _graph_of(args, {})
+        return Symbol.of(graph, _handled(handler, name, graph, args, {}))
+
+    @classmethod
     def __torch_dispatch__(cls, func: Any, types: Any, args: Any = (), kwargs: Any = None) -> Any:
         kwargs = kwargs or {}
         graph = _graph_of(args, kwargs)
@@ -296,4 +309,16 @@ _HANDLERS: dict[str, Callable[..., Any]] = {
     "full_like": lambda g, like, value, **_: _operand(g, np.full(np.shape(like), value)),
     **{name: _elementwise(name) for name in ("lt", "le", "gt", "ge", "eq", "ne")},
     **{name: _elementwise(name) for name in ((*FUNCTIONS, "atan2"))},
+}
+
+_AT_ONCE: dict[str, Callable[..., Any]] = {
+    **{n: _HANDLERS[n] for n in ("add", "sub", "mul", "div", "neg", "square", "clamp", "select", "stack", "new_zeros")},
+    **{name: _HANDLERS[name] for name in ("where", "maximum", "minimum", "lt", "le", "gt", "ge", *FUNCTIONS)},
+    "__rsub__": _HANDLERS["rsub"],
+    "__rdiv__": lambda g, a, b: _divided(g, b, a),
+    "__rtruediv__": lambda g, a, b: _divided(g, b, a),
+    "true_divide": _HANDLERS["div"],
+    "pow": _power,
+    "__pow__": _power,
+    "__rpow__": lambda g, a, b: _power(g, b, a),
 }

@@ -98,7 +98,8 @@ def _profiles(
 @contextmanager
 def _figures(task: Task, profiles: Mapping[str, Profile]) -> Iterator[None]:
     """Draws the profiles; the figures are in their place once the block ends without an error."""
-    from greybox_torch.report.profile import plot_profile
+    if profiles:
+        from greybox_torch.report.profile import plot_profile  # matplotlib takes half a second
 
     with ExitStack() as together:
         for name, one in profiles.items():

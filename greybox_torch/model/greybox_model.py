@@ -144,8 +144,9 @@ class GreyBoxModel(torch.nn.Module):
         return _stacked(self.output(xs, us, p), [o.name for o in self.outputs], x, f"{self.title}.output()")
 
     def _named(self, x: torch.Tensor, u: torch.Tensor) -> tuple[Signals, Signals]:
-        xs = Signals("state", {s.name: x[i] for i, s in enumerate(self.states)})
-        us = Signals("input", {s.name: u[i] for i, s in enumerate(self.inputs)})
+        # select: an index in brackets makes torch import its distributed tensors when x is traced, half a second
+        xs = Signals("state", {s.name: x.select(0, i) for i, s in enumerate(self.states)})
+        us = Signals("input", {s.name: u.select(0, i) for i, s in enumerate(self.inputs)})
         return xs, us
 
     def _check_declarations(self) -> None:
@@ -177,4 +178,4 @@ def _stacked(values: Mapping[str, Any], names: list[str], like: torch.Tensor, wh
         found = ", ".join(values) or "nothing"
         raise UserError(f"{where} returned {found}; expected {', '.join(names)}")
     rows = [torch.as_tensor(values[n], dtype=like.dtype, device=like.device) for n in names]
-    return torch.stack(torch.broadcast_tensors(*rows, like[0])[:-1])
+    return torch.stack(torch.broadcast_tensors(*rows, like.select(0, 0))[:-1])
