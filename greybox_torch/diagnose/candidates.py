@@ -10,7 +10,7 @@ import torch
 from greybox_torch.diagnose.surroundings import driving_body
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.forces import TorqueRipple
+from greybox_torch.mechanisms.forces import Gravity, TorqueRipple
 from greybox_torch.mechanisms.friction import PositionDependentFriction
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
@@ -19,7 +19,10 @@ from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Port, Signals
 
 LEAST_RIPPLE_ORDER = 1.2
-"""Below this order a force periodic in position is gravity's, not ripple."""
+"""Below this order a force periodic in an angle is gravity's, not ripple."""
+
+ANGLES = ("rad", "deg", "rev", "turn")
+"""Beginnings of the units of angles: only on an angle does gravity repeat."""
 
 FLEXIBLE = {
     "body": ("speed", "position"),
@@ -35,12 +38,16 @@ PERIODIC = (TorqueRipple, PositionDependentFriction, TransmissionError)
 
 
 def candidates(
-    model: GreyBoxModel, problem: Problem, surroundings: Mapping[str, Surroundings], *, flexible: bool
+    model: GreyBoxModel, shifts: Mapping[str, str], surroundings: Mapping[str, Surroundings], *, flexible: bool
 ) -> list[Attachment]:
-    """Every mechanism of the library at every port that it fits (or, with ``flexible``, the unknown curves)."""
+    """Every mechanism of the library at every port that it fits (or, with ``flexible``, the unknown curves).
+
+    Args:
+        shifts: by coupling, see :func:`shifted_states`.
+    """
     found = []
     for port in model.all_ports:
-        shifted = shifted_state(model, problem, port) if isinstance(port, Coupling) else ""
+        shifted = shifts.get(port.name, "")
         for mechanism in _curves(port) if flexible else (m() for m in LIBRARY.values()):
             if (
                 port.kind in mechanism.kinds
@@ -51,17 +58,22 @@ def candidates(
     return found
 
 
-def periodic_candidates(model: GreyBoxModel, problem: Problem, orders: Iterable[float]) -> list[Attachment]:
+def periodic_candidates(
+    model: GreyBoxModel,
+    shifts: Mapping[str, str],
+    surroundings: Mapping[str, Surroundings],
+    orders: Iterable[float],
+) -> list[Attachment]:
     """Periodic mechanisms at every port that they fit, at the given orders (gravity, order one, stands by itself)."""
     found = []
     for order in orders:
         for port in model.ports:
             if isinstance(port, Body):
                 found.append(attach(model, port.name, PositionDependentFriction(order)))
-                if order > LEAST_RIPPLE_ORDER:
+                if order > LEAST_RIPPLE_ORDER or not _is_angle(surroundings[port.name]):
                     found.append(attach(model, port.name, TorqueRipple(order)))
             elif isinstance(port, Coupling) and driving_body(model) is not None:
-                shifted = shifted_state(model, problem, port)
+                shifted = shifts.get(port.name, "")
                 if shifted:
                     found.append(attach(model, port.name, TransmissionError(order), shifted))
     return found
@@ -81,11 +93,22 @@ def _curves(port: Port) -> Iterable[Unknown]:
     return (Unknown(signal) for signal in FLEXIBLE.get(port.kind, ()))
 
 
+def _is_angle(around: Surroundings) -> bool:
+    return around.units.get("position", "").startswith(ANGLES) or not around.units.get("position", "")
+
+
 def _available(mechanism: Mechanism, around: Surroundings) -> bool:
+    if isinstance(mechanism, Gravity | PositionDependentFriction | TorqueRipple) and not _is_angle(around):
+        return False  # as the library offers them they repeat once per turn; periodic_candidates has those with other periods
     needed = set(mechanism.needs) - {"delayed"}
     if isinstance(mechanism, Unknown):
         needed = {mechanism.signal}
     return needed <= set(around.ranges)
+
+
+def shifted_states(model: GreyBoxModel, problem: Problem) -> dict[str, str]:
+    """Of every coupling, the state that a change of its deflection amounts to, see :func:`shifted_state`."""
+    return {port.name: shifted_state(model, problem, port) for port in model.ports if isinstance(port, Coupling)}
 
 
 def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, points: int = 24) -> str:

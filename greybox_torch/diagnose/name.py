@@ -193,8 +193,10 @@ def _standard_errors(values: np.ndarray) -> float:
 def _finalists(
     first: list[tuple[float, Leader, Hypothesis, Stepper]],
 ) -> list[tuple[float, Leader, Hypothesis, Stepper]]:
-    """The best few, with at least one named hypothesis and one curve among them where there are any."""
+    """The best few, with at least one named hypothesis and one curve among them where there are any, and what they generalise."""
     chosen = first[:FINALISTS]
+    contained = {(e[1].attachment.port, name) for e in chosen for name in e[1].attachment.mechanism.generalises}
+    chosen += [e for e in first[FINALISTS:] if (e[1].attachment.port, e[1].attachment.mechanism.name) in contained]
     for unknown in (True, False):
         if not any(isinstance(e[1].attachment.mechanism, Unknown) == unknown for e in chosen):
             chosen += [e for e in first if isinstance(e[1].attachment.mechanism, Unknown) == unknown][:1]

@@ -19,6 +19,9 @@ from greybox_torch.mechanisms.friction import PositionDependentFriction
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.model import Body, GreyBoxModel
 
+LEAST_PERIODS = 5.0
+"""Periods within the travel from which an effect is seen to repeat; anything slow could otherwise pass for periodic."""
+
 BATCH = 32
 """Orders looked at in one compiled pass."""
 
@@ -67,9 +70,9 @@ def _grid(around: Surroundings, fitted: WindowFit) -> np.ndarray:
     position, speed = around.ranges["position"], around.ranges["speed"]
     travel = max(speed.rms * around.sample_time * fitted.windows.steps, 1e-9)
     highest = 1.0 / max(speed.rms * around.sample_time, 1e-12)
-    lowest = 2 * np.pi / max(position.high - position.low, 1e-9)
-    step = max(1.5 / travel, lowest / 2)
-    return np.arange(max(lowest, step / 2), min(highest, 400 * step), step)
+    one = 2 * np.pi / max(position.high - position.low, 1e-9)
+    step = max(1.5 / travel, one / 2)
+    return np.arange(max(LEAST_PERIODS * one, step / 2), min(highest, 400 * step), step)
 
 
 def _batches(grid: np.ndarray) -> list[np.ndarray]:

@@ -31,6 +31,9 @@ LEAST_HELD_OUT = 1.0
 """Standard errors by which an effect must lower the error on held-out experiments to be kept."""
 
 
+BEYOND_CHANCE = 3.0
+"""Standard errors by which a free curve must beat named effects on held-out experiments, to be preferred to them."""
+
 CONFIRMED = 5.0
 """Standard errors of held-out gain from which a finding stands whatever the free runs of the validation experiments say."""
 
@@ -156,6 +159,10 @@ def _confirmed(dataset: DataSet, search: Search, progress: Callable[[str], None]
     progress("confirming on held-out experiments")
     search.progress = progress
     problem = all_starts_free(dataset, make_problem(dataset, search.problem.model, dataset.validation()))
+    if search.named is not None:
+        named, curve = (held_out_fits(h, problem, search.substeps) for h in (search.named[0], search.current))
+        if gain(named, curve).errors_away < BEYOND_CHANCE:
+            search.settle_for_named()
     while search.current.effects:
         full = held_out_fits(search.current, problem, search.substeps)
         gains = {p: gain(held_out_fits(h, problem, search.substeps), full) for p, h in search.without.items()}

@@ -128,12 +128,13 @@ class Screen:
         )
         assert run.normal is not None
         d = run.normal.shape[1] - 1 - n_base
-        order = np.concatenate([np.arange(d), [d + n_base], np.arange(d, d + n_base)])
-        full = np.where(_failed(run.normal), 0.0, run.normal)[:, order][:, :, order]
-        inner, cross, own = full[:, : d + 1, : d + 1], full[:, : d + 1, d + 1 :], full[:, d + 1 :, d + 1 :]
+        full = _sound(run.normal, np.r_[: len(self.free_names), d : d + n_base + 1])
+        keep = np.append(np.arange(d), d + n_base)
+        own, cross = full[:, d : d + n_base, d : d + n_base], full[:, keep, d : d + n_base]
         diagonal = np.einsum("wii->wi", own)
-        own = own + np.eye(n_base) * (1e-9 * diagonal + 1e-12 * diagonal.max())[:, :, None]
-        return inner - cross @ np.linalg.solve(own, np.swapaxes(cross, 1, 2))
+        least = 1e-12 * diagonal.max() + 1e-300  # windows that failed are all zero
+        own = own + np.eye(n_base) * (1e-9 * diagonal + least)[:, :, None]
+        return full[:, keep[:, None], keep] - cross @ np.linalg.solve(own, np.swapaxes(cross, 1, 2))
 
     def _starts(self, fitted: WindowFit, values: np.ndarray, substeps: int) -> np.ndarray:
         """Window starts of the screen's model: the fitted ones, memories carried along from window to window."""
@@ -149,10 +150,17 @@ class Screen:
         return carried_starts(replace(problem, carried=carried), self.stepper, fitted.windows, starts, substeps)
 
 
-def _failed(normal: np.ndarray) -> np.ndarray:
-    """Entries (1, d, d) of directions whose tangents are not finite in some window: such a probe is passed over."""
-    bad = ~np.isfinite(np.einsum("wii->wi", normal)).all(axis=0)
-    return (bad[:, None] | bad[None, :])[None]
+def _sound(normal: np.ndarray, base: np.ndarray) -> np.ndarray:
+    """Normal matrices (W, d, d) with zeros where something is not finite.
+
+    A window in which the model itself fails (the rows ``base``) is passed over; a probe that fails in some window, everywhere.
+    """
+    finite = np.isfinite(np.einsum("wii->wi", normal))
+    if finite.all():
+        return normal
+    lost = ~finite[:, base].all(axis=1)
+    bad = ~finite[~lost].all(axis=0)
+    return np.where(lost[:, None, None] | (bad[:, None] | bad[None, :])[None], 0.0, normal)
 
 
 def _hold(fitted: WindowFit, n_p: int) -> np.ndarray:

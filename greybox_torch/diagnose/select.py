@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from greybox_torch.diagnose.candidates import candidates, periodic_candidates
+from greybox_torch.diagnose.candidates import candidates, periodic_candidates, shifted_states
 from greybox_torch.diagnose.curve import finer
-from greybox_torch.diagnose.leaders import leaders
-from greybox_torch.diagnose.name import Ranked, polished, rank, sureness
+from greybox_torch.diagnose.leaders import Leader, leaders
+from greybox_torch.diagnose.name import PARSIMONY, Ranked, polished, rank, sureness
 from greybox_torch.diagnose.orders import distinct_orders, scan_orders
 from greybox_torch.diagnose.refit import POLISH_SETTINGS, Hypothesis, hypothesis
 from greybox_torch.diagnose.screen import Look, Screen
@@ -31,6 +31,13 @@ CLOSE = 0.7
 
 FRONT_RUNNERS = 3
 MOST_SHAPES = 3
+
+NAMED_SHARE = 0.85
+"""Share of a free curve's gain (in the logarithm of the mean squared error) from which named effects stand for it: real friction is
+never exactly the law of a book."""
+
+LEAST_SHARE_PASSED_OVER = 0.5
+"""Share of the residual over the shortest windows from which what explains it is followed, whatever longer ones say."""
 
 CURVE_MARGIN = 0.1
 """How much better, in the logarithm of the mean squared error, a free curve must be than every named mechanism to be preferred."""
@@ -60,15 +67,80 @@ class Search:
     rounds: list[Round] = field(default_factory=list)
     without: dict[str, Hypothesis] = field(default_factory=dict)
     curves: bool = True
+    named: tuple[Hypothesis, list[Round]] | None = None
+    """Named effects found in the place of a free curve that goes farther, and the rounds that led to them."""
 
     def run(self) -> Hypothesis:
         """Search until nothing pays any more."""
         if not hasattr(self, "plain"):
             self.begin()
-        self._advance()
+        self._explore()
         self._try_named()
         self.prune()
         return self.current
+
+    def _explore(self) -> None:
+        """Take effects while it pays; where the first choice passed over what explains short windows, also from there: the better result.
+
+        Two effects that need one another show over short windows, where start states take up what is slow; over long ones neither of
+        them helps alone, and something that is not there may do better than either.
+        """
+        before, kept = self.current, list(self.rounds)
+        self._advance()
+        passed_over = self._passed_over(before, self.rounds[len(kept)]) if len(self.rounds) > len(kept) else None
+        if passed_over is None:
+            return
+        first_way = self.current, self.rounds
+        if not self._advance_from(passed_over, before, kept) or self._cost() > self._cost(first_way[0]) - CURVE_MARGIN:
+            self.current, self.rounds = first_way
+
+    def _advance_from(self, leader: Leader, before: Hypothesis, kept: list[Round]) -> bool:
+        """Search on from ``before`` with an effect given, which is then chosen once more beside the others; whether it was."""
+        given = self._refitted((*before.effects, leader.attachment), before, leader.starts)
+        if given is None:
+            return False
+        self.current, self.rounds = given, list(kept)
+        self._advance()
+        others, reached = list(self.rounds[len(kept) :]), self.current
+        rest = tuple(e for e in reached.effects if e is not leader.attachment)
+        without = self._refitted(rest, reached) if rest else before
+        if without is None:
+            return False
+        self.current, self.rounds = without, list(kept)
+        again = self.step() and not self.rounds[-1].ranked[0].unknown
+        self.rounds += [r for r in others if r.taken is not None or r is others[-1]]
+        if again and reached.score < self.current.score and reached.effects != self.current.effects:
+            self.current = reached if self._same_names(reached, self.current) else self.current
+        return again
+
+    @staticmethod
+    def _same_names(one: Hypothesis, other: Hypothesis) -> bool:
+        return {e.prefix for e in one.effects} == {e.prefix for e in other.effects}
+
+    def _cost(self, of: Hypothesis | None = None) -> float:
+        """Score with a little for every parameter; lower is better."""
+        of = of or self.current
+        return of.score + PARSIMONY * int(of.problem.free.sum())
+
+    def _passed_over(self, before: Hypothesis, done: Round) -> Leader | None:
+        """The named effect that explains most over the shortest windows, if what was taken explains far less of it."""
+        if done.taken is None or done.taken.unknown:
+            return None
+        shortest = done.looks[0]
+        found = [k for k in leaders(done.looks, before.fits, self.surroundings, self._card()) if not _is_curve(k)]
+        shares = {k.attachment.prefix: _explained(shortest, k.attachment) for k in found}
+        best = max(found, key=lambda k: shares[k.attachment.prefix], default=None)
+        if best is None or shares[best.attachment.prefix] < LEAST_SHARE_PASSED_OVER:
+            return None
+        taken = _explained(shortest, done.taken.leader.attachment)
+        contained = [
+            k
+            for k in found
+            if k.attachment.port == best.attachment.port
+            and k.attachment.mechanism.name in best.attachment.mechanism.generalises
+        ]
+        best = next((k for k in contained if shares[k.attachment.prefix] > 0.9 * shares[best.attachment.prefix]), best)
+        return best if taken < 0.5 * shares[best.attachment.prefix] else None
 
     def _advance(self) -> None:
         while len(self.current.effects) < MOST_EFFECTS and self.step():
@@ -86,10 +158,21 @@ class Search:
         first = next(k for k, r in enumerate(rounds) if r.taken is not None and r.taken.unknown)
         before = [r.taken.fitted for r in rounds[:first] if r.taken is not None]
         self.current, self.rounds, self.curves = (before[-1] if before else self.plain), rounds[:first], False
-        self._advance()
-        if self.current.score > with_curve.score + CURVE_MARGIN:
+        self._explore()
+        start = before[-1] if before else self.plain
+        reached, ceiling = start.score - self.current.score, start.score - with_curve.score
+        if reached < min(ceiling - CURVE_MARGIN, NAMED_SHARE * ceiling):
+            if len(self.current.effects) > len(start.effects):
+                self.named = self.current, self.rounds
             self.current, self.rounds = with_curve, rounds
         self.curves = True
+
+    def settle_for_named(self) -> None:
+        """Take the named effects that were found in the place of a free curve."""
+        assert self.named is not None
+        (self.current, self.rounds), self.named = self.named, None
+        self.without = {}
+        self.prune()
 
     def begin(self) -> None:
         """Fit the model as it stands.
@@ -108,6 +191,7 @@ class Search:
                 "try start values nearer to the truth, or tighter bounds"
             )
         self.plain = self.current = plain
+        self.shifts = shifted_states(self.problem.model, plain.problem)
         self.surroundings: dict[str, Surroundings] = survey(
             self.problem.model, plain.problem, plain.stepper, self.substeps
         )
@@ -186,9 +270,9 @@ class Search:
         scanned = [scan_orders(model, at.effects, self.surroundings, free, fit, **common)[:2] for fit in at.fits[:2]]
         orders = distinct_orders(order for found in scanned for order in found)
         offered = [
-            *candidates(model, self.plain.problem, self.surroundings, flexible=False),
-            *periodic_candidates(model, self.plain.problem, orders),
-            *(candidates(model, self.plain.problem, self.surroundings, flexible=True) if self.curves else []),
+            *candidates(model, self.shifts, self.surroundings, flexible=False),
+            *periodic_candidates(model, self.shifts, self.surroundings, orders),
+            *(candidates(model, self.shifts, self.surroundings, flexible=True) if self.curves else []),
         ]
         there = {(e.port, e.mechanism.name) for e in at.effects}
         offered = [a for a in offered if (a.port, a.mechanism.name) not in there]
@@ -237,12 +321,14 @@ class Search:
         """The parameter values that the problem began with."""
         return dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
 
-    def _refitted(self, effects: Sequence[Attachment], start: Hypothesis) -> Hypothesis | None:
+    def _refitted(
+        self, effects: Sequence[Attachment], start: Hypothesis, starts: Sequence[dict[str, float]] = ()
+    ) -> Hypothesis | None:
         found = hypothesis(
             self.problem,
             effects,
             self.surroundings,
-            [start.values(), {**start.values(), **self._card()}],
+            [start.values(), {**start.values(), **self._card()}, *starts],
             substeps=self.substeps,
             shorter=start.fits[0],
             settings=POLISH_SETTINGS,
@@ -251,9 +337,32 @@ class Search:
         return found
 
 
+def _simplest(ranked: Sequence[Ranked]) -> Ranked | None:
+    """The best, or what it generalises where it is not better than that by more than chance."""
+    best = next(iter(ranked), None)
+    if best is None:
+        return None
+    contained = best.leader.attachment.mechanism.generalises
+    simpler = (
+        r
+        for r in ranked
+        if r.leader.attachment.mechanism.name in contained and r.leader.attachment.port == best.leader.attachment.port
+    )
+    return next((r for r in simpler if sureness(r.fitted, best.fitted) < LEAST_SURENESS), best)
+
+
+def _is_curve(leader: Leader) -> bool:
+    return isinstance(leader.attachment.mechanism, Unknown)
+
+
+def _explained(looks: Sequence[Look], attachment: Attachment) -> float:
+    """The most that any look at an effect explains."""
+    return max((k.explained for k in looks if k.attachment.prefix == attachment.prefix), default=0.0)
+
+
 def _chosen(ranked: Sequence[Ranked]) -> Ranked | None:
     """The best of the hypotheses that pay: a named mechanism, unless a free curve is better by a margin and takes half again as much."""
-    named = next((r for r in ranked if not r.unknown), None)
+    named = _simplest([r for r in ranked if not r.unknown])
     curve = next((r for r in ranked if r.unknown), None)
     if named is None or curve is None:
         return named or curve

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -41,6 +41,8 @@ PATIENCE = 60
 
 FINER = 2
 """How often the steps of the simulation are refined after the parameters."""
+
+Method = Callable[..., Optimum[None] | None]
 
 Progress = Callable[[str, int, float], None]
 """Called with a stage's name, an iteration and the mean squared error there."""
@@ -87,7 +89,7 @@ def descend(problem: Problem, way: Way, starts: int | None) -> Descent | None:
         elsewhere = look_around(
             problem, way.stepper, starts=starts, seed=way.seed, substeps=substeps, progress=way.progress
         )
-        other = None if elsewhere is None else _whole_records(elsewhere, way, 0)
+        other = None if elsewhere is None else _whole_records(elsewhere, way, 0, (minimise_on_logarithms, minimise))
         found = _better(found, other)
     return found
 
@@ -130,12 +132,14 @@ def _by_windows(problem: Problem, way: Way, substeps: int) -> tuple[Problem, int
     return problem, evaluations
 
 
-def _whole_records(problem: Problem, way: Way, before: int) -> Descent | None:
+def _whole_records(
+    problem: Problem, way: Way, before: int, methods: Sequence[Method] = (minimise, minimise_on_logarithms, minimise)
+) -> Descent | None:
     """The optimum of whole records near the values of ``problem``, after so many passes.
 
     Where the parameters have come to need finer steps than they began with, the optimum is found anew with those.
     """
-    found = _optimum(FreeRun(problem, way.stepper, way.substeps(problem)), way, before)
+    found = _optimum(FreeRun(problem, way.stepper, way.substeps(problem)), way, before, methods)
     for _ in range(FINER):
         if found is None:
             return None
@@ -143,18 +147,18 @@ def _whole_records(problem: Problem, way: Way, before: int) -> Descent | None:
         needed = way.substeps(problem)
         if needed <= found.run.substeps:
             return found
-        found = _optimum(FreeRun(problem, way.stepper, needed), way, found.evaluations, creeping=False)
+        found = _optimum(FreeRun(problem, way.stepper, needed), way, found.evaluations, methods[-1:])
     return found
 
 
-def _optimum(run: FreeRun, way: Way, before: int, *, creeping: bool = True) -> Descent | None:
-    """Levenberg-Marquardt; where that creeps, on the scale of logarithms and then once more."""
+def _optimum(run: FreeRun, way: Way, before: int, methods: Sequence[Method]) -> Descent | None:
+    """Descend by one method after the other, until the plain one has arrived; where it creeps, logarithms are for."""
     samples, progress = run.problem.samples, way.progress
     report = None
     if progress is not None:
         report = lambda i, cost, _: progress("whole records", i, 2 * cost / samples)  # noqa: E731
     z, used, optimum = run.start, 0, None
-    for method in (minimise, minimise_on_logarithms, minimise) if creeping else (minimise,):
+    for method in methods:
         settings = replace(way.settings, iterations=min(PATIENCE, way.settings.iterations - used))
         if settings.iterations <= 0:
             break

@@ -34,10 +34,10 @@ SURVIVORS = 32
 DISTINCT = 0.2
 """Difference between two simulations, in units of the error, from which they count as two."""
 
-TURNS, SCREENED = 3, 8
+TURNS, SCREENED = 2, 8
 """How often, at most, the search begins, and how many times as many draws are then simulated once to choose where to descend."""
 
-FINEST = 4
+FINEST = 2
 """Sub-steps that a search takes at most."""
 
 JITTER, UNCERTAIN = 0.1, 0.3

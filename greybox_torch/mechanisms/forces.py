@@ -71,7 +71,7 @@ class TorqueRipple(Mechanism):
             Parameter("a", 0.0, around.force_unit, description="cosine amplitude"),
             Parameter("b", 0.0, around.force_unit, description="sine amplitude"),
             Parameter(
-                "order", self.order, "", lower=0.5 * self.order, upper=2 * self.order, description="periods per turn"
+                "order", self.order, "", lower=0.8 * self.order, upper=1.25 * self.order, description="periods per turn"
             ),
         ]
 

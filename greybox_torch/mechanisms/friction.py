@@ -78,6 +78,7 @@ class StribeckFriction(Mechanism):
     """−(F_c + F_s exp(−(v / v_s)²)) tanh(v / v_0) − c v."""
 
     name = "stribeck_friction"
+    generalises = ("coulomb_friction",)
     kinds = ("body",)
     needs = ("speed",)
     explanation = (
@@ -209,6 +210,7 @@ class PreslidingHysteresis(Mechanism):
     """−F z / z_0 with dz/dt = v − |v| z / z_0 (Dahl)."""
 
     name = "presliding_hysteresis"
+    generalises = ("coulomb_friction",)
     kinds = ("body",)
     needs = ("speed",)
     explanation = "Before sliding, friction acts like a spring that yields (bristles bend, then slip)."
@@ -246,6 +248,7 @@ class PositionDependentFriction(Mechanism):
     """−(a cos nθ + b sin nθ) tanh(v / v_0)."""
 
     name = "position_dependent_friction"
+    generalises = ("coulomb_friction",)
     kinds = ("body",)
     needs = ("speed", "position")
     explanation = "The friction level varies periodically with position (bent shaft, eccentric bearing)."
@@ -260,7 +263,7 @@ class PositionDependentFriction(Mechanism):
             Parameter("a", 0.0, around.force_unit, description="cosine amplitude"),
             Parameter("b", 0.0, around.force_unit, description="sine amplitude"),
             Parameter(
-                "order", self.order, "", lower=0.5 * self.order, upper=2 * self.order, description="periods per turn"
+                "order", self.order, "", lower=0.8 * self.order, upper=1.25 * self.order, description="periods per turn"
             ),
             width_parameter(around),
         ]

@@ -77,6 +77,8 @@ class Mechanism:
     """Whether the law changes a coupling's deflection (:meth:`deflection`) instead of adding a force."""
     fades: ClassVar[bool] = False
     """Whether the memory is gone after a few samples, so that a window may begin with any."""
+    generalises: ClassVar[tuple[str, ...]] = ()
+    """Mechanisms that this one contains: where it does no better than one of them, that one is meant."""
     experiment: ClassVar[str] = ""
     """Which experiment would tell this mechanism from its look-alikes."""
 

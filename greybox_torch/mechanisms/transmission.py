@@ -149,7 +149,7 @@ class TransmissionError(Mechanism):
             Parameter("a", 0.0, unit, description="cosine amplitude"),
             Parameter("b", 0.0, unit, description="sine amplitude"),
             Parameter(
-                "order", self.order, "", lower=0.5 * self.order, upper=2 * self.order, description="periods per turn"
+                "order", self.order, "", lower=0.8 * self.order, upper=1.25 * self.order, description="periods per turn"
             ),
         ]
 

@@ -30,7 +30,7 @@ def library_of(kind: str) -> set[str]:
 
 
 def test_the_arm_is_offered_the_whole_library(arm_search) -> None:
-    found = candidates(RobotArm(), arm_search.plain.problem, arm_search.surroundings, flexible=False)
+    found = candidates(RobotArm(), arm_search.shifts, arm_search.surroundings, flexible=False)
     assert by_port(found) == {
         **{body: library_of("body") for body in ("motor", "gearbox", "arm")},
         **{spring: library_of("coupling") for spring in ("gear_spring", "arm_spring")},
@@ -45,12 +45,12 @@ def test_the_arm_is_offered_the_whole_library(arm_search) -> None:
 
 
 def test_what_needs_a_load_is_not_offered_without_one(dead_zone_search, motor) -> None:
-    found = candidates(motor, dead_zone_search.plain.problem, dead_zone_search.surroundings, flexible=False)
+    found = candidates(motor, dead_zone_search.shifts, dead_zone_search.surroundings, flexible=False)
     assert by_port(found)["rotor"] == library_of("body") - {"load_dependent_friction"}
 
 
 def test_curves(arm_search) -> None:
-    found = candidates(RobotArm(), arm_search.plain.problem, arm_search.surroundings, flexible=True)
+    found = candidates(RobotArm(), arm_search.shifts, arm_search.surroundings, flexible=True)
     assert all(isinstance(a.mechanism, Unknown) for a in found)
     signals = {(a.port, a.mechanism.signal, a.position) for a in found}
     assert signals == {
@@ -62,7 +62,7 @@ def test_curves(arm_search) -> None:
 
 
 def test_periodic_at_the_orders_found(arm_search) -> None:
-    found = periodic_candidates(RobotArm(), arm_search.plain.problem, [1.0, 7.3])
+    found = periodic_candidates(RobotArm(), arm_search.shifts, [1.0, 7.3])
     orders = defaultdict(set)
     for a in found:
         orders[a.mechanism.name].add(a.mechanism.order)

@@ -13,8 +13,8 @@ from greybox_torch.diagnose.screen import Look, Screen
 def screen(dead_zone_search) -> Screen:
     search = dead_zone_search
     offered = [
-        *candidates(search.problem.model, search.plain.problem, search.surroundings, flexible=False),
-        *candidates(search.problem.model, search.plain.problem, search.surroundings, flexible=True),
+        *candidates(search.problem.model, search.shifts, search.surroundings, flexible=False),
+        *candidates(search.problem.model, search.shifts, search.surroundings, flexible=True),
     ]
     return Screen.of(search.problem.model, (), offered, search.surroundings, search.problem.free_names)
 

@@ -108,13 +108,15 @@ def test_a_row_says_what_it_lacks(key: str, monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_a_hundred_columns_are_offered() -> None:
-    from greybox_torch.diagnose.candidates import candidates
+    from greybox_torch.diagnose.candidates import candidates, shifted_states
     from greybox_torch.diagnose.surroundings import survey
     from greybox_torch.simulate.stepper import make_stepper
 
     problem = simulated_problem(4, 1000)
     around = survey(problem.model, problem, make_stepper(problem.model, ()), 1)
-    chosen = hypotheses.chosen(candidates(problem.model, problem, around, flexible=False), around, 100)
+    chosen = hypotheses.chosen(
+        candidates(problem.model, shifted_states(problem.model, problem), around, flexible=False), around, 100
+    )
     assert sum(len(p.directions) for a in chosen for p in a.mechanism.probes(around[a.port])) == 100
 
 

@@ -15,7 +15,7 @@ from experiments.speed.row import Entry, Row, Target, apart
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import Settings
 from experiments.speed.timing import interleaved, once
-from greybox_torch.diagnose.candidates import candidates
+from greybox_torch.diagnose.candidates import candidates, shifted_states
 from greybox_torch.diagnose.screen import Screen
 from greybox_torch.diagnose.surroundings import survey
 from greybox_torch.estimate.problem import Problem, problem_for
@@ -35,7 +35,11 @@ def measure(settings: Settings, progress: Progress) -> Row:
     problem = simulated_problem(4, 2000 if settings.quick else SAMPLES)
     plain = make_stepper(problem.model, problem.free_names)
     surroundings = survey(problem.model, problem, plain, 1)
-    offered = chosen(candidates(problem.model, problem, surroundings, flexible=False), surroundings, COLUMNS)
+    offered = chosen(
+        candidates(problem.model, shifted_states(problem.model, problem), surroundings, flexible=False),
+        surroundings,
+        COLUMNS,
+    )
     progress("compiling the screen")
     screen, compiling = _compiled(lambda: Screen.of(problem.model, (), offered, surroundings, problem.free_names))
     fitted = _windows(problem, plain)

@@ -1,0 +1,99 @@
+"""Verdicts against keys, and probabilities against what came true."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from experiments.concealed.calibrate import brier, fitted_map, main, mapped, reliability
+from experiments.concealed.scoring import score, score_all
+
+KEY = {
+    "effects": ["bias", "friction"],
+    "accept": [[["motor", "constant_bias"], ["actuator", "input_bias"]], [["motor", "coulomb_friction"]]],
+    "near": [[["motor", "coulomb_asymmetry"]], []],
+    "ports": [["motor", "actuator"], ["motor"]],
+    "sigma": 0.1,
+}
+
+
+def verdict(*effects: tuple[str, str, float], before: float = 1.0, after: float = 0.5) -> dict[str, Any]:
+    found = [{"port": port, "mechanism": mechanism, "probability": p} for port, mechanism, p in effects]
+    rows = [("estimation", 9.0, 9.0), ("validation", before, after)]
+    fit = [{"role": r, "refit": {"rmse": b}, "augmented": {"rmse": a}} for r, b, a in rows]
+    return {"mismatch": bool(effects), "effects": found, "fit": fit, "seconds": 3.0}
+
+
+def test_every_effect_is_matched_once_and_right_answers_come_first() -> None:
+    found = score(
+        "c",
+        verdict(("motor", "coulomb_asymmetry", 0.5), ("actuator", "input_bias", 0.8), ("motor", "gravity", 0.4)),
+        KEY,
+    )
+    assert found.detected
+    assert [(f.right, f.located, f.spurious) for f in found.findings] == [
+        (False, True, False),  # the place of the friction is right, its name is not
+        (True, True, False),
+        (False, False, True),
+    ]
+    assert (found.named, found.located, found.spurious) == (1, 2, 1)
+
+
+def test_a_near_miss_takes_its_effect() -> None:
+    found = score("c", verdict(("motor", "coulomb_asymmetry", 0.5), ("motor", "coulomb_friction", 0.9)), KEY)
+    assert [(f.right, f.located) for f in found.findings] == [(False, True), (True, True)]
+
+
+def test_where_nothing_is_concealed_every_finding_is_spurious() -> None:
+    key = {"effects": ["none"], "sigma": 0.1}
+    found = score("c", verdict(("motor", "gravity", 0.4)), key)
+    assert (found.detected, found.spurious, found.closed) == (False, 1, None)
+    assert score("c", verdict(), key).detected
+
+
+def test_closure_counts_what_is_above_the_noise() -> None:
+    found = score("c", verdict(("motor", "gravity", 0.4), before=0.5, after=np.sqrt(0.01 + 0.06)), KEY)
+    assert found.closed == pytest.approx(0.5)
+
+
+def test_probabilities_that_mean_what_they_say_are_left_alone() -> None:
+    rng = np.random.default_rng(0)
+    claimed = rng.uniform(0.05, 0.97, 4000)
+    right = (rng.random(4000) < claimed).astype(float)
+    a, b = fitted_map(claimed, right)
+    assert (a, b) == pytest.approx((0.0, 1.0), abs=0.12)
+    for row in reliability(claimed, right):
+        assert row["right"] == pytest.approx(row["claimed"], abs=0.06)
+
+
+def test_probabilities_that_are_too_sure_are_brought_down() -> None:
+    rng = np.random.default_rng(1)
+    claimed = rng.uniform(0.5, 0.97, 2000)
+    right = (rng.random(2000) < 0.5 + 0.5 * (claimed - 0.5)).astype(float)
+    weights = fitted_map(claimed[::2], right[::2])
+    before, after = brier(claimed[1::2], right[1::2]), brier(mapped(claimed[1::2], weights), right[1::2])
+    assert after < before - 0.01
+    assert np.all(np.diff(mapped(np.linspace(0.1, 0.97, 20), weights)) > 0)
+
+
+def test_the_whole_script(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rng = np.random.default_rng(2)
+    for k in range(12):
+        case, answer = tmp_path / "cases" / f"c{k}", tmp_path / "verdicts" / f"c{k}"
+        case.mkdir(parents=True)
+        answer.mkdir(parents=True)
+        (case / "key.json").write_text(json.dumps(KEY))
+        said = verdict(("motor", "coulomb_friction" if rng.random() < 0.7 else "gravity", 0.6 + 0.03 * k))
+        (answer / "verdict.json").write_text(json.dumps(said))
+    (tmp_path / "cases" / "unanswered").mkdir()
+    (tmp_path / "cases" / "unanswered" / "key.json").write_text(json.dumps(KEY))
+    assert len(score_all(tmp_path / "cases", tmp_path / "verdicts")) == 12
+    main(tmp_path / "out", [tmp_path / "cases", tmp_path / "verdicts"])
+    printed = json.loads(capsys.readouterr().out)
+    assert printed == json.loads((tmp_path / "out" / "calibration.json").read_text())
+    assert printed["fitted on"]["findings"] == printed["tested on"]["findings"] == 6
+    assert (tmp_path / "out" / "reliability.png").stat().st_size > 5000
