@@ -38,17 +38,23 @@ PERIODIC = (TorqueRipple, PositionDependentFriction, TransmissionError)
 
 
 def candidates(
-    model: GreyBoxModel, shifts: Mapping[str, str], surroundings: Mapping[str, Surroundings], *, flexible: bool
+    model: GreyBoxModel,
+    shifts: Mapping[str, str],
+    surroundings: Mapping[str, Surroundings],
+    *,
+    flexible: bool,
+    knots: int = 14,
 ) -> list[Attachment]:
     """Every mechanism of the library at every port that it fits (or, with ``flexible``, the unknown curves).
 
     Args:
         shifts: by coupling, see :func:`shifted_states`.
+        knots: of the unknown curves.
     """
     found = []
     for port in model.all_ports:
         shifted = shifts.get(port.name, "")
-        for mechanism in _curves(port) if flexible else (m() for m in LIBRARY.values()):
+        for mechanism in _curves(port, knots) if flexible else (m() for m in LIBRARY.values()):
             if (
                 port.kind in mechanism.kinds
                 and _available(mechanism, surroundings[port.name])
@@ -89,8 +95,8 @@ def attach(model: GreyBoxModel, port: str, mechanism: Mechanism, shifted: str = 
     return Attachment(port, mechanism, position=position, shifted_state=shifted)
 
 
-def _curves(port: Port) -> Iterable[Unknown]:
-    return (Unknown(signal) for signal in FLEXIBLE.get(port.kind, ()))
+def _curves(port: Port, knots: int) -> Iterable[Unknown]:
+    return (Unknown(signal, knots) for signal in FLEXIBLE.get(port.kind, ()))
 
 
 def _is_angle(around: Surroundings) -> bool:

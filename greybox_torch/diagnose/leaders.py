@@ -16,6 +16,8 @@ from greybox_torch.mechanisms.unknown import Unknown
 NAMED_PER_LENGTH = 4
 CURVES_PER_LENGTH = 1
 LEAST_SHARE = 0.008
+CAUTIOUS = 0.3
+"""Part of a suggested curve that a refit also begins with."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,8 @@ def leaders(
             identity = identity_of(look.attachment)
             suggested = _suggested(look, surroundings)
             starts = ({**fitted, **card, **suggested}, {**fitted, **suggested})
+            if isinstance(look.attachment.mechanism, Unknown):
+                starts = ({**fitted, **suggested}, {**fitted, **_lower(look, suggested)}, starts[0])
             before = found.get(identity)
             if before is None:
                 found[identity] = Leader(look.attachment, starts, look.explained)
@@ -93,6 +97,12 @@ def _physical(look: Look, surroundings: Mapping[str, Surroundings]) -> bool:
         bounds[name][0] <= size <= bounds[name][1] for name, size in zip(look.probe.directions, look.size, strict=True)
     ]
     return any(inside)
+
+
+def _lower(look: Look, suggested: Mapping[str, float]) -> dict[str, float]:
+    """The suggested values with a smaller amplitude: the whole of a curve at once can lead out of the valley its parent is in."""
+    heights = {f"{look.attachment.prefix}.{n}" for n in look.probe.directions}
+    return {n: CAUTIOUS * v if n in heights else v for n, v in suggested.items()}
 
 
 def _suggested(look: Look, surroundings: Mapping[str, Surroundings]) -> dict[str, float]:

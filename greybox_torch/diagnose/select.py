@@ -9,6 +9,7 @@ from greybox_torch.diagnose.candidates import candidates, periodic_candidates, s
 from greybox_torch.diagnose.curve import finer
 from greybox_torch.diagnose.leaders import Leader, leaders
 from greybox_torch.diagnose.name import PARSIMONY, Ranked, polished, rank, sureness
+from greybox_torch.diagnose.noise import noise_floor
 from greybox_torch.diagnose.orders import distinct_orders, scan_orders
 from greybox_torch.diagnose.refit import POLISH_SETTINGS, Hypothesis, hypothesis
 from greybox_torch.diagnose.screen import Look, Screen
@@ -18,6 +19,12 @@ from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
+
+FINE_KNOTS = 40
+"""Knots of the curves that are tried when nothing else pays."""
+
+ABOVE_NOISE = 1.3
+"""How many times the noise the error must be for that."""
 
 MOST_EFFECTS = 4
 LEAST_GAIN = 0.01
@@ -143,8 +150,13 @@ class Search:
         return best if taken < 0.5 * shares[best.attachment.prefix] else None
 
     def _advance(self) -> None:
-        while len(self.current.effects) < MOST_EFFECTS and self.step():
+        while len(self.current.effects) < MOST_EFFECTS and (self.step() or self._step_with_fine_curves()):
             pass
+
+    def _step_with_fine_curves(self) -> bool:
+        """Where nothing pays and yet more than noise is left: one round with curves fine enough for a narrow law."""
+        shortest = self.current.fits[0].mean_square
+        return self.curves and shortest > ABOVE_NOISE**2 * noise_floor(self.problem) and self.step(fine=True)
 
     def _try_named(self) -> None:
         """Where a free curve was taken: the search once more without curves, kept if named effects come as far.
@@ -196,9 +208,13 @@ class Search:
             self.problem.model, plain.problem, plain.stepper, self.substeps
         )
 
-    def step(self) -> bool:
-        """One round: screen, refit the leaders, take the best if it pays. Whether one was taken."""
-        looks = self._screened()
+    def step(self, *, fine: bool = False) -> bool:
+        """One round: screen, refit the leaders, take the best if it pays. Whether one was taken.
+
+        Args:
+            fine: look at curves with many knots, and at nothing else.
+        """
+        looks = self._screened(fine=fine)
         found = leaders(looks, self.current.fits, self.surroundings, self._card())
         ranked = rank(
             self.problem,
@@ -263,21 +279,28 @@ class Search:
         self.progress(f"trying without {effect.prefix}")
         return self._refitted(rest, self.current) or self.plain
 
-    def _screened(self) -> list[list[Look]]:
-        self.progress("screening every port and mechanism")
+    def _screened(self, *, fine: bool) -> list[list[Look]]:
+        self.progress("screening fine curves" if fine else "screening every port and mechanism")
+        offered = self._fine_curves() if fine else self._offered()
         model, at, free = self.problem.model, self.current, self.current.problem.free_names
-        common = {"substeps": self.substeps, "device": self.device}
-        scanned = [scan_orders(model, at.effects, self.surroundings, free, fit, **common)[:2] for fit in at.fits[:2]]
-        orders = distinct_orders(order for found in scanned for order in found)
-        offered = [
-            *candidates(model, self.shifts, self.surroundings, flexible=False),
-            *periodic_candidates(model, self.shifts, self.surroundings, orders),
-            *(candidates(model, self.shifts, self.surroundings, flexible=True) if self.curves else []),
-        ]
         there = {(e.port, e.mechanism.name) for e in at.effects}
         offered = [a for a in offered if (a.port, a.mechanism.name) not in there]
         screen = Screen.of(model, at.effects, offered, self.surroundings, free, device=self.device)
         return [screen.look(fit, self.substeps) for fit in at.fits]
+
+    def _fine_curves(self) -> list[Attachment]:
+        return candidates(self.problem.model, self.shifts, self.surroundings, flexible=True, knots=FINE_KNOTS)
+
+    def _offered(self) -> list[Attachment]:
+        model, at, free = self.problem.model, self.current, self.current.problem.free_names
+        common = {"substeps": self.substeps, "device": self.device}
+        scanned = [scan_orders(model, at.effects, self.surroundings, free, fit, **common)[:2] for fit in at.fits[:2]]
+        orders = distinct_orders(order for found in scanned for order in found)
+        return [
+            *candidates(model, self.shifts, self.surroundings, flexible=False),
+            *periodic_candidates(model, self.shifts, self.surroundings, orders),
+            *(candidates(model, self.shifts, self.surroundings, flexible=True) if self.curves else []),
+        ]
 
     def _fairly(self, ranked: Sequence[Ranked]) -> list[Ranked]:
         """The front runners polished, and compared with their parent refitted from the best one's values.

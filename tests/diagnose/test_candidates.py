@@ -62,7 +62,7 @@ def test_curves(arm_search) -> None:
 
 
 def test_periodic_at_the_orders_found(arm_search) -> None:
-    found = periodic_candidates(RobotArm(), arm_search.shifts, [1.0, 7.3])
+    found = periodic_candidates(RobotArm(), arm_search.shifts, arm_search.surroundings, [1.0, 7.3])
     orders = defaultdict(set)
     for a in found:
         orders[a.mechanism.name].add(a.mechanism.order)

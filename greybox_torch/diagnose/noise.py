@@ -1,0 +1,35 @@
+"""How large the noise of a recording is, from the recording alone."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from greybox_torch.estimate.problem import Problem
+
+DIFFERENCES = 3
+"""How many times the outputs are differenced: what a machine does is smooth at the rate it is sampled at, noise is not."""
+
+
+def noise_floor(problem: Problem) -> float:
+    """Mean squared weighted error that white sensor noise alone would leave, as the outputs' high-frequency floor has it.
+
+    The variance of the third differences of white noise is 20 times its own. Where the sampling is so slow that the motion itself is
+    rough, this is an upper bound.
+
+    Source: J. von Neumann et al., "The mean square successive difference", Annals of Mathematical Statistics 12, 1941.
+    """
+    factor = float((_binomial(DIFFERENCES) ** 2).sum())
+    squares, count = 0.0, 0
+    for e in range(len(problem.tape.first)):
+        y = problem.tape.y[:, problem.tape.span(e)] * problem.weights[:, None]
+        rough = np.diff(y, DIFFERENCES, axis=1)
+        known = rough[~np.isnan(rough)]
+        squares, count = squares + float((known**2).sum()), count + known.size
+    return squares / factor / max(count, 1)
+
+
+def _binomial(order: int) -> np.ndarray:
+    row = np.ones(1)
+    for _ in range(order):
+        row = np.convolve(row, [1.0, -1.0])
+    return row
