@@ -37,8 +37,8 @@ DISTINCT = 0.2
 TURNS, SCREENED = 2, 8
 """How often, at most, the search begins, and how many times as many draws are then simulated once to choose where to descend."""
 
-FINEST = 2
-"""Sub-steps that a search takes at most."""
+FINER, FINEST = 2, 4
+"""How much finer the steps are when what does not matter is drawn anew, as that may be stiff, and how fine they are at most."""
 
 JITTER, UNCERTAIN = 0.1, 0.3
 """By how much what matters is moved then; relative deviation from which a parameter does not matter."""
@@ -68,12 +68,12 @@ def look_around(
             progress(f"search from {starts} starts", turn, 2.0 * float(people.cost[0]) / fine.problem.samples)
         if turn == TURNS:
             break
+        fine = _whole(problem, stepper, max(FINER * substeps, _finer(fine, people)))
         around = _drawn_anew(fine, people, _drawn(problem, SCREENED * starts, WIDE_SPREAD, generator), generator)
         found = _sorted(improve(fine, _promising(fine, around, starts // 4), FINE_ITERATIONS))
         if not len(found) or found.cost[0] > (1.0 - 1e-3) * people.cost[0]:
             break
         people = found
-        fine = _whole(problem, stepper, _finer(fine, people))
     return problem.with_values(people.values[0], people.initial[0])
 
 

@@ -30,7 +30,7 @@ class Scale:
             return np.where(self.logarithmic, np.log(np.where(self.logarithmic, point, 1.0)), point)
 
     def meant(self, seen: np.ndarray) -> np.ndarray:
-        return np.where(self.logarithmic, np.exp(np.where(self.logarithmic, seen, 0.0)), seen)
+        return np.where(self.logarithmic, np.exp(np.where(self.logarithmic, np.minimum(seen, LARGEST), 0.0)), seen)
 
     def slopes(self, point: np.ndarray) -> np.ndarray:
         """Derivative (d,) of the unknowns by what is seen of them."""
@@ -77,5 +77,5 @@ def minimise_on_logarithms(
     return Optimum(point, model, found.iterations, found.evaluations, found.termination)
 
 
-SMALLEST = 1e-30
-"""Stands for zero."""
+SMALLEST, LARGEST = 1e-30, 700.0
+"""Stands for zero; the largest logarithm whose exponential is a number."""
