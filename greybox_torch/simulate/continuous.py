@@ -54,7 +54,10 @@ class Chain:
 
 @dataclass(frozen=True)
 class Trajectory:
-    """A continuous trajectory: window start states (W, n_x), and the derivative (W, n_x, n_x) of each window's end by its start."""
+    """A continuous trajectory: window start states (W, n_x), and the derivative (W, n_x, n_t) of each window's end by its start.
+
+    The first n_t states are those that act on the outputs, directly or through one another. The others are not made continuous.
+    """
 
     starts: np.ndarray
     transitions: np.ndarray
@@ -105,12 +108,14 @@ def continuous(
         directions = np.broadcast_to(np.eye(x0.shape[1]), (len(starts), x0.shape[1], x0.shape[1])) if fresh else None
         run = stepper.run(tape, links.windows, p, starts, start_directions=directions, substeps=substeps)
         if fresh:
+            assert run.dx_end is not None
             transitions = np.array(run.dx_end)
         assert transitions is not None
-        gaps = _gaps(links, starts, run.x_end)
+        acting = transitions.shape[2]
+        gaps = _gaps(links, starts[:, :acting], run.x_end[:, :acting])
         with np.errstate(all="ignore"):
-            largest = _relative(gaps, starts)
-            starts = starts + _corrections(links, transitions, gaps)
+            largest = _relative(gaps, starts[:, :acting])
+            starts[:, :acting] += _corrections(links, transitions, gaps)
         if not np.isfinite(largest) or not np.isfinite(starts).all():
             return None
         rate = min(1.0, largest / before) if before < np.inf else 1.0
@@ -143,19 +148,19 @@ def propagated(links: Chain, first: np.ndarray, own: np.ndarray, transitions: np
 
     Args:
         first: of the experiments' start states, (E, n_d, n_x).
-        own: of every window's end at a fixed start, (W, n_d, n_x).
-        transitions: of every window's end by its start, (W, n_x, n_x), row by row the direction of the start.
+        own: of every window's end at a fixed start, (W, n_d, n_t).
+        transitions: of every window's end by its start, (W, n_x, n_t), row by row the direction of the start.
     """
-    result = np.empty_like(own)
+    result = np.zeros((*own.shape[:2], first.shape[2]))
     result[links.order[:, 0]] = first
     for position in range(links.order.shape[1] - 1):
         now, following = links.links(position)
-        result[following] = own[now] + result[now] @ transitions[now]
+        result[following, :, : own.shape[2]] = own[now] + result[now] @ transitions[now]
     return result
 
 
 def _gaps(links: Chain, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """By how much (W, n_x) the window before ends beyond the start of each; zero for the first ones."""
+    """By how much (W, n_t) the window before ends beyond the start of each; zero for the first ones."""
     gaps = np.zeros_like(starts)
     before, after = links.order[:, :-1], links.order[:, 1:]
     linked = after >= 0
@@ -170,11 +175,11 @@ def _relative(gaps: np.ndarray, starts: np.ndarray) -> float:
 
 
 def _corrections(links: Chain, transitions: np.ndarray, gaps: np.ndarray) -> np.ndarray:
-    """Newton's step (W, n_x) of the window starts: δ of the next = Φ δ + gap."""
-    steps = np.zeros_like(gaps)
+    """Newton's step (W, n_t) of the window starts: δ of the next = Φ δ + gap."""
+    steps, acting = np.zeros_like(gaps), gaps.shape[1]
     for position in range(links.order.shape[1] - 1):
         now, following = links.links(position)
-        steps[following] = gaps[following] + (steps[now, None, :] @ transitions[now])[:, 0]
+        steps[following] = gaps[following] + (steps[now, None, :] @ transitions[now, :acting])[:, 0]
     return steps
 
 

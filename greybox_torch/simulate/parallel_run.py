@@ -13,7 +13,7 @@ from greybox_torch.simulate.tape import Tape
 
 @dataclass(frozen=True)
 class _Known:
-    """Where a trajectory was evaluated, its window starts (W, n_x), their transitions (W, n_x, n_x) and derivatives (W, n_d, n_x)."""
+    """Where a trajectory was evaluated, its window starts (W, n_x), their transitions (W, n_x, n_t) and derivatives (W, n_d, n_x)."""
 
     cost: float
     p: np.ndarray
@@ -79,7 +79,7 @@ class ParallelRun:
         )
         assert run.normal is not None and run.dx_end is not None
         n_p = len(self.estimated)
-        own = np.zeros((count, n_p + len(self.states), n_x))
+        own = np.zeros((count, n_p + len(self.states), run.dx_end.shape[2]))
         own[:, :n_p] = run.dx_end[:, :n_p]
         first = np.zeros((len(x0), n_p + len(self.states), n_x))
         first[:, n_p + np.arange(len(self.states)), self.states] = 1.0

@@ -140,3 +140,29 @@ class Lorenz(GreyBoxModel):
 
     def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
         return {"out": x.x}
+
+
+class Counting(RobotArm):
+    """The arm with a state that grows and acts on nothing."""
+
+    states = [*RobotArm.states, State("count", "")]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return {**super().derivative(x, u, p, port), "count": x.motor_speed * x.motor_speed + x.count}
+
+
+def test_a_state_that_acts_on_nothing_is_no_hindrance() -> None:
+    tape = torque_tape((1200, 900), "zoh")
+    names, results = ("F_v", "a_m", "k_g1"), []
+    for model in (RobotArm(), Counting()):
+        values = model.values()
+        parallel = ParallelRun(
+            make_stepper(model, names), tape, np.array([list(values).index(n) for n in names]), np.array([2, 4])
+        )
+        rough = np.zeros((len(parallel.links.windows.start), len(model.states)))
+        x0 = np.zeros((2, len(model.states)))
+        results.append(parallel.normals(tape, np.array(list(values.values())), x0, rough, np.ones(1)))
+        assert parallel.sequential == 0
+    assert results[0] is not None and results[1] is not None
+    for plain, counting in zip(*results, strict=True):
+        np.testing.assert_allclose(counting, plain, rtol=1e-9, atol=1e-9 * np.abs(plain).max())

@@ -1,0 +1,94 @@
+"""Which of the refitted hypotheses is taken."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnose.candidates import attach, candidates
+from greybox_torch.diagnose.leaders import CAUTIOUS, Leader, leaders
+from greybox_torch.diagnose.name import Ranked
+from greybox_torch.diagnose.refit import Hypothesis
+from greybox_torch.diagnose.screen import Look, _sound
+from greybox_torch.diagnose.select import _chosen, _simplest
+from greybox_torch.estimate.window_fit import WindowFit
+from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
+from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.model import Body
+
+WINDOWS = 40
+
+
+@pytest.fixture
+def ranked(motor, begun, motor_data):
+    """Makes a ranked hypothesis whose windows have given energies."""
+    search = begun(motor_data(), motor)
+
+    def make(mechanism, energies: np.ndarray) -> Ranked:
+        fits = tuple(replace(fit, energies=energies, mean_square=float(energies.mean())) for fit in search.plain.fits)
+        fitted = Hypothesis((), search.plain.model, search.plain.stepper, fits, 1e-12)
+        gain = search.plain.score - fitted.score
+        return Ranked(Leader(attach(motor, "rotor", mechanism), (), 0.5), fitted, gain, 10.0)
+
+    return make
+
+
+def test_the_simpler_law_is_meant_where_the_richer_one_is_not_better_by_more_than_chance(ranked) -> None:
+    rng = np.random.default_rng(0)
+    energies = rng.uniform(0.9, 1.1, WINDOWS)
+    scattered = energies * rng.uniform(0.9, 1.1, WINDOWS)
+    simple, rich = ranked(CoulombFriction(), energies), ranked(StribeckFriction(), scattered * 0.99)
+    assert _simplest([rich, simple]) is simple
+    clearly = ranked(StribeckFriction(), 0.5 * scattered)
+    assert _simplest([clearly, simple]) is clearly
+    assert _simplest([simple, rich]) is simple
+    assert _simplest([]) is None
+
+
+def test_a_curve_is_taken_only_where_it_goes_much_farther(ranked) -> None:
+    named = ranked(CoulombFriction(), np.full(WINDOWS, 1e-3))
+    little, much = (ranked(Unknown("speed"), np.full(WINDOWS, e)) for e in (0.95e-3, 1e-9))
+    assert _chosen([little, named]) is named
+    assert _chosen([much, named]) is much
+    assert _chosen([much]) is much
+
+
+def test_a_curve_is_also_refitted_from_a_part_of_it(dead_zone_search) -> None:
+    search = dead_zone_search
+    fit: WindowFit = search.plain.fits[0]
+    curve = attach(search.problem.model, "rotor", Unknown("speed"))
+    probe = curve.mechanism.probes(search.surroundings["rotor"])[0]
+    look = Look(curve, probe, 31, 0.4, 0.3, np.arange(1.0, 15.0))
+    (leader,) = leaders([[look]], [fit], search.surroundings, {})
+    whole, part = leader.starts[:2]
+    heights = [f"{curve.prefix}.w_{k}" for k in range(14)]
+    assert [whole[n] for n in heights] == list(look.size)
+    assert [part[n] for n in heights] == pytest.approx(CAUTIOUS * look.size)
+
+
+def test_what_repeats_once_per_turn_is_not_offered_on_a_length(motor, dead_zone_search) -> None:
+    around = dict(dead_zone_search.surroundings)
+    names = {"gravity", "torque_ripple", "position_dependent_friction"}
+
+    def offered() -> set[str]:
+        return {a.mechanism.name for a in candidates(motor, {}, around, flexible=False)} & names
+
+    assert any(isinstance(port, Body) for port in motor.ports)
+    assert offered() == names
+    around["rotor"] = replace(around["rotor"], units={**around["rotor"].units, "position": "m"})
+    assert offered() == set()
+
+
+def test_windows_that_fail_are_passed_over_and_probes_that_fail_are_dropped() -> None:
+    normal = np.ones((3, 4, 4))
+    normal[1, 0, 0] = np.nan  # the model itself
+    normal[2, 2, 2] = np.inf  # a probe
+    sound = _sound(normal, np.array([0, 1, 3]))
+    assert np.isfinite(sound).all()
+    assert (sound[1] == 0).all()
+    assert (sound[[0, 2], 2] == 0).all() and (sound[[0, 2], :, 2] == 0).all()
+    assert (sound[0, :2, :2] == 1).all()
+    whole = np.ones((2, 3, 3))
+    assert _sound(whole, np.array([0])) is whole
