@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from greybox_torch.data import DataSet
+from greybox_torch.diagnose.noise import ABOVE_NOISE, times_noise
 from greybox_torch.diagnose.select import LEAST_GAIN, Search
 from greybox_torch.mechanisms.attachment import Attachment
 
@@ -34,6 +35,11 @@ def sentences(
         + ("; with the effects: " + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in final) if effects else "")
         + " (weighted output units).",
     ]
+    times = times_noise(search.problem, search.current)
+    lines.append(
+        f"Over the shortest windows the error is {times:.2g} times the noise that the recordings' high-frequency floor shows"
+        + (": more than noise is left." if times > ABOVE_NOISE else ".")
+    )
     for done in search.rounds:
         best = done.ranked[0] if done.ranked else None
         if done.taken is not None:

@@ -4,10 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
+from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.estimate.problem import Problem
 
 DIFFERENCES = 3
 """How many times the outputs are differenced: what a machine does is smooth at the rate it is sampled at, noise is not."""
+
+ABOVE_NOISE = 1.3
+"""How many times the noise an error must be to count as more than noise."""
+
+
+def times_noise(problem: Problem, fitted: Hypothesis) -> float:
+    """Root mean square error over the shortest windows, in units of the noise."""
+    return float(np.sqrt(fitted.fits[0].mean_square / max(noise_floor(problem), 1e-300)))
 
 
 def noise_floor(problem: Problem) -> float:

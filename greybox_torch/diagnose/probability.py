@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from greybox_torch.diagnose.name import Ranked, sureness
+from greybox_torch.diagnose.noise import ABOVE_NOISE, times_noise
 from greybox_torch.diagnose.verdict import Alternative
 
 if TYPE_CHECKING:
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
 
 TEMPERATURE = 2.0
 """Standard errors that count as one: windows are not independent, and no law of the library is exactly the machine's."""
+
+UNEXPLAINED = 0.6
+"""How sure "nothing is missing" is where the error is clearly larger than the noise, and yet no effect explains any of it."""
 
 CEILING = 0.97
 """The most that is ever claimed."""
@@ -62,5 +66,7 @@ def confidence(search: Search, effects: Sequence[Effect], complete: bool) -> flo
         return CEILING
     if not complete:
         return 0.5
+    if times_noise(search.problem, search.current) > ABOVE_NOISE:
+        return UNEXPLAINED
     best = max((r.gain for r in search.rounds[-1].ranked), default=0.0) if search.rounds else 0.0
     return 0.95 if best < 0.01 else 0.8

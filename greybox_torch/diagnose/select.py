@@ -9,7 +9,7 @@ from greybox_torch.diagnose.candidates import candidates, periodic_candidates, s
 from greybox_torch.diagnose.curve import finer
 from greybox_torch.diagnose.leaders import Leader, leaders
 from greybox_torch.diagnose.name import PARSIMONY, Ranked, polished, rank, sureness
-from greybox_torch.diagnose.noise import noise_floor
+from greybox_torch.diagnose.noise import ABOVE_NOISE, times_noise
 from greybox_torch.diagnose.orders import distinct_orders, scan_orders
 from greybox_torch.diagnose.refit import POLISH_SETTINGS, Hypothesis, hypothesis
 from greybox_torch.diagnose.screen import Look, Screen
@@ -22,9 +22,6 @@ from greybox_torch.mechanisms.unknown import Unknown
 
 FINE_KNOTS = 40
 """Knots of the curves that are tried when nothing else pays."""
-
-ABOVE_NOISE = 1.3
-"""How many times the noise the error must be for that."""
 
 MOST_EFFECTS = 4
 LEAST_GAIN = 0.01
@@ -155,8 +152,8 @@ class Search:
 
     def _step_with_fine_curves(self) -> bool:
         """Where nothing pays and yet more than noise is left: one round with curves fine enough for a narrow law."""
-        shortest = self.current.fits[0].mean_square
-        return self.curves and shortest > ABOVE_NOISE**2 * noise_floor(self.problem) and self.step(fine=True)
+        more = times_noise(self.problem, self.current) > ABOVE_NOISE
+        return self.curves and more and self.step(fine=True)
 
     def _try_named(self) -> None:
         """Where a free curve was taken: the search once more without curves, kept if named effects come as far.
