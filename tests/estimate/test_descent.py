@@ -15,7 +15,7 @@ from greybox_torch.estimate.logarithmic import minimise_on_logarithms
 from greybox_torch.estimate.population import Members, Population, improve
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulate.stepper import make_stepper, whole_records
 
 UNITS = {"torque": "N m", "position": "rad"}
 TRUTH = {"frequency": 2.3, "level": 0.8}
@@ -135,3 +135,27 @@ def test_on_logarithms_bounds_and_signs_are_kept() -> None:
     )
     assert found is not None
     assert found.point == pytest.approx([-3.0, 0.5, 5.0], rel=1e-6)
+
+
+def test_the_result_is_the_optimum_of_the_sequential_free_run(data_set: Any) -> None:
+    """Cost and parameters to 1e-6, against normal matrices of whole records that no window has cut."""
+    rng = np.random.default_rng(3)
+    time = 0.01 * np.arange(3000)
+    noisy = 0.8 * np.sin(2.3 * time) + rng.normal(0, 0.1, 3000)
+    data = data_set(UNITS, [{"torque": 0 * time, "position": noisy}])
+    problem = make_problem(data, Oscillation(), data.estimation()).with_values(np.array([2.29, 0.9]))
+    stepper = make_stepper(problem.model, problem.free_names)
+
+    def sequential(z: np.ndarray) -> Quadratic[None]:
+        run = stepper.run(
+            problem.tape, whole_records(problem.tape), z, problem.initial, tangents=True, weights=problem.weights
+        )
+        assert run.normal is not None
+        matrix = run.normal[0]
+        return Quadratic(0.5 * float(matrix[-1, -1]), -matrix[:-1, -1], matrix[:-1, :-1], None)
+
+    alone = minimise(sequential, problem.values, problem.lower, problem.upper, settings=Settings(tolerance=1e-14))
+    found = fit(problem, starts=1)
+    assert alone is not None
+    assert found.mse == pytest.approx(2 * alone.model.cost / 3000, rel=1e-6)
+    assert found.problem.values == pytest.approx(alone.point, rel=1e-6)
