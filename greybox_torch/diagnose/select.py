@@ -113,13 +113,10 @@ class Search:
         self.current, self.rounds = without, list(kept)
         again = self.step() and not self.rounds[-1].ranked[0].unknown
         self.rounds += [r for r in others if r.taken is not None or r is others[-1]]
-        if again and reached.score < self.current.score and reached.effects != self.current.effects:
-            self.current = reached if self._same_names(reached, self.current) else self.current
+        names, others_names = ({e.prefix for e in h.effects} for h in (reached, self.current))
+        if again and reached.score < self.current.score and names == others_names:
+            self.current = reached
         return again
-
-    @staticmethod
-    def _same_names(one: Hypothesis, other: Hypothesis) -> bool:
-        return {e.prefix for e in one.effects} == {e.prefix for e in other.effects}
 
     def _cost(self, of: Hypothesis | None = None) -> float:
         """Score with a little for every parameter; lower is better."""

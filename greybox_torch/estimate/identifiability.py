@@ -142,7 +142,7 @@ def _weak(view: Information, here: Quadratic[None], held: set[int]) -> list[Weak
     inverse *= np.outer(scale, scale)
     gradient = here.gradient[kept]
     left = 2 * here.cost - float(gradient @ inverse @ gradient)
-    variance = max(left, 0.0) / max(_samples(view.run) - len(kept), 1)
+    variance = max(left, 0.0) / max(view.run.problem.samples - len(kept), 1)
     own = np.flatnonzero((kept < view.run.n_parameters) & (view.z[kept] != 0))
     value = view.z[kept[own]]
     spread = variance * inverse[np.ix_(own, own)] / np.outer(value, value)
@@ -167,7 +167,3 @@ def _names(run: FreeRun) -> list[str]:
     problem = run.problem
     states = [problem.model.states[i].name for i in problem.free_states]
     return [*problem.free_names, *[f"{s} at the start of '{e}'" for e in problem.tape.names for s in states]]
-
-
-def _samples(run: FreeRun) -> int:
-    return int((~np.isnan(run.problem.tape.y)).sum())

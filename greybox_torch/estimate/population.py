@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.simulate.stepper import Stepper, Windows
 from greybox_torch.simulate.tape import Tape
@@ -55,23 +56,17 @@ class Members:
     def outputs(self, people: Population) -> np.ndarray:
         """Weighted outputs (M, E·K·n_y) of the free runs, zero where a sample is missing or beyond the end of an experiment."""
         rows, starts = self._lanes(people)
-        windows = self._windows(len(people))
-        y = self.stepper.run(self.tape, windows, rows, starts, substeps=self.substeps).y
-        index = windows.start[:, None] + np.arange(windows.steps)
-        target = self.tape.y[:, np.minimum(index, windows.last[:, None])]
-        known = (index <= windows.last[:, None]) & ~np.isnan(target)
-        y = np.where(np.moveaxis(known, 0, -1), y, 0.0) * self.problem.weights
+        y = self.stepper.run(self.tape, self._windows(len(people)), rows, starts, substeps=self.substeps).y
+        recorded, known = self._recorded()
+        y = np.where(known, y.reshape(len(people), *recorded.shape), 0.0) * self.problem.weights
         return y.reshape(len(people), -1)
 
     def costs(self, people: Population) -> np.ndarray:
         """Costs (M,) alone, which are quicker to come by; not finite where a run is not."""
-        measured = np.where(np.isnan(self.tape.y), 0.0, self.tape.y) * self.problem.weights[:, None]
-        index = self.tape.first[:, None] + np.arange(int(self.tape.lengths.max()))
-        target = np.where(
-            index <= self.tape.last[:, None], measured[:, np.minimum(index, self.tape.last[:, None])], 0.0
-        )
+        recorded, known = self._recorded()
+        target = (np.where(known, recorded, 0.0) * self.problem.weights).ravel()
         with np.errstate(all="ignore"):
-            return 0.5 * ((self.outputs(people) - np.moveaxis(target, 0, -1).ravel()) ** 2).sum(axis=1)
+            return 0.5 * ((self.outputs(people) - target) ** 2).sum(axis=1)
 
     def normals(self, people: Population) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Costs (M,), gradients (M, d) and Gauss-Newton matrices (M, d, d); cost infinite where a run is not finite or not admissible."""
@@ -96,14 +91,20 @@ class Members:
         cost, gradient, hessian = np.zeros(count), np.zeros((count, size)), np.zeros((count, size, size))
         with np.errstate(invalid="ignore"):
             for e in range(experiments):
-                own = n_p + e * len(states)
-                index = np.concatenate([np.arange(n_p), np.arange(own, own + len(states))])
+                index = FreeRun.columns(e, n_p, len(states))
                 hessian[:, index[:, None], index] += normal[:, e, :-1, :-1]
                 gradient[:, index] -= normal[:, e, :-1, -1]
                 cost += 0.5 * normal[:, e, -1, -1]
         sound = np.isfinite(run.normal).all(axis=(1, 2)).reshape(count, experiments).all(axis=1)
         sound &= self.problem.all_admissible(people.values)
         return np.where(sound, cost, np.inf), gradient, hessian
+
+    def _recorded(self) -> tuple[np.ndarray, np.ndarray]:
+        """The measured outputs (E, K, n_y) side by side, and which are known: neither missing nor beyond the end of an experiment."""
+        windows = self._windows(1)
+        index = windows.start[:, None] + np.arange(windows.steps)
+        recorded = np.moveaxis(self.tape.y[:, np.minimum(index, windows.last[:, None])], 0, -1)
+        return recorded, (index <= windows.last[:, None])[..., None] & ~np.isnan(recorded)
 
     def _lanes(self, people: Population) -> tuple[np.ndarray, np.ndarray]:
         experiments = people.initial.shape[1]
