@@ -63,6 +63,7 @@ INLINE void tangent_output(const vec *C, const vec *d, const vec *z, vec *s) {
 
 struct Job {
   long groups, steps, substeps, foh, samples, directions, threads;
+  long first_probe, last_probe, band;  // products of probes farther apart than the band are left out
   const real *u;           // [NU][samples]   recorded inputs, all experiments one after another
   const real *dt;          // [samples]       time to the next sample
   const long *start;       // [groups][LANES] first sample of each window
@@ -87,9 +88,10 @@ INLINE vec gather(const real *data, const long *index) {
 
 #define TILE 4
 #define CHUNK 32
-INLINE void accumulate(const vec *rows, long count, long width, vec *normal) {
+INLINE void accumulate(const vec *rows, long count, long width, vec *normal, const Job &job) {
   for (long i = 0; i < width; i += TILE)
     for (long j = 0; j <= i; j += TILE) {
+      if (j >= job.first_probe && i + TILE <= job.last_probe && i - j > job.band) continue;
       vec sum[TILE][TILE];
       for (int a = 0; a < TILE; a++) for (int b = 0; b < TILE; b++) sum[a][b] = normal[(i + a) * width + j + b];
       for (long t = 0; t < count; t++) {
@@ -146,7 +148,7 @@ template <bool TANGENTS> static void run_group(const Job &job, long g) {
       else for (int i = 0; i < NY; i++) gdy[(n * NY + i) * nd + d] = s[i];
     }
     if (rows && ((filled += NY) == CHUNK * NY || n == job.steps - 1)) {
-      accumulate(rows, filled, width, gnormal);
+      accumulate(rows, filled, width, gnormal, job);
       filled = 0;
     }
     const vec H = gather(job.dt, now) / (real)job.substeps;

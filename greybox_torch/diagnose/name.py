@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.simulate.side_by_side import side_by_side
 from greybox_torch.simulate.stepper import Stepper, make_stepper
 
 FINALISTS = 3
@@ -71,69 +72,54 @@ def rank(
     steppers = _compiled(base, current, found, surroundings, device)
     at = lengths(base)
     middle = at[min(1, len(at) - 1) :][:1]
-    first: list[tuple[float, Leader, Hypothesis, Stepper]] = []
-    for leader, stepper in zip(found, steppers, strict=True):
+    refit = partial(hypothesis, base, surroundings=surroundings, substeps=substeps, device=device)
+
+    def tried(leader: Leader, stepper: Stepper) -> Hypothesis | None:
         progress(f"refitting {leader.attachment.prefix}")
-        tried = hypothesis(
-            base,
-            (*current.effects, leader.attachment),
-            surroundings,
-            leader.starts[:TRIAL_STARTS],
-            substeps=substeps,
-            at=middle,
-            shorter=current.fits[0],
-            settings=TRIAL_SETTINGS,
-            stepper=stepper,
-            device=device,
-        )
-        if tried is not None:
-            first.append((tried.score, leader, tried, stepper))
-    first.sort(key=lambda entry: entry[0])
-    final = []
-    for _, leader, tried, stepper in _finalists(first):
+        effects = (*current.effects, leader.attachment)
+        own = {"at": middle, "shorter": current.fits[0], "settings": TRIAL_SETTINGS, "stepper": stepper}
+        return refit(effects, starts=leader.starts[:TRIAL_STARTS], **own)
+
+    def in_full(leader: Leader, before: Hypothesis, stepper: Stepper) -> Ranked | None:
         progress(f"refitting {leader.attachment.prefix} in full")
-        fitted = hypothesis(
-            base,
-            tried.effects,
-            surroundings,
-            [tried.values(), *leader.starts[:TRIAL_STARTS]],
-            substeps=substeps,
-            shorter=current.fits[0],
-            stepper=stepper,
-            device=device,
-        )
-        if fitted is not None:
-            final.append(Ranked(leader, fitted, current.score - fitted.score, sureness(current, fitted)))
-    return sorted(
-        [*final, *_distilled(base, current, final, surroundings, substeps, device, progress)],
-        key=lambda r: r.cost,
-    )
+        starts = [before.values(), *leader.starts[:TRIAL_STARTS]]
+        fitted = refit(before.effects, starts=starts, shorter=current.fits[0], stepper=stepper)
+        return None if fitted is None else judged(leader, current, fitted)
+
+    pairs = list(zip(found, steppers, strict=True))
+    trials = zip(side_by_side(partial(tried, *pair) for pair in pairs), pairs, strict=True)
+    first = [(trial.score, leader, trial, stepper) for trial, (leader, stepper) in trials if trial is not None]
+    first.sort(key=lambda entry: entry[0])
+    final = [r for r in side_by_side(partial(in_full, *entry[1:]) for entry in _finalists(first)) if r is not None]
+    return sorted([*final, *_distilled(refit, current, final, surroundings, progress)], key=lambda r: r.cost)
+
+
+def judged(leader: Leader, before: Hypothesis, fitted: Hypothesis) -> Ranked:
+    """A refit compared with the hypothesis ``before`` it."""
+    return Ranked(leader, fitted, before.score - fitted.score, sureness(before, fitted))
 
 
 def _distilled(
-    base: Problem,
+    refit: partial[Hypothesis | None],
     current: Hypothesis,
     final: Sequence[Ranked],
     surroundings: Mapping[str, Surroundings],
-    substeps: int,
-    device: str,
     progress: Callable[[str], None],
 ) -> list[Ranked]:
     """Where a free curve leads: the named laws of the same signal at the same port, refitted from what the curve has learned."""
     best = min(final, key=lambda r: r.fitted.score, default=None)
     if best is None or not best.unknown:
         return []
-    tried = []
+    (base,) = refit.args
     card = dict(zip(base.names, map(float, base.values), strict=True))
-    for leader in laws_on_curve(base.model, best.fitted, best.leader.attachment, surroundings, card):
+
+    def tried(leader: Leader) -> Ranked | None:
         progress(f"refitting {leader.attachment.prefix} from the curve")
-        effects = (*current.effects, leader.attachment)
-        fitted = hypothesis(
-            base, effects, surroundings, leader.starts, substeps=substeps, shorter=best.fitted.fits[0], device=device
-        )
-        if fitted is not None:
-            tried.append(Ranked(leader, fitted, current.score - fitted.score, sureness(current, fitted)))
-    return tried
+        fitted = refit((*current.effects, leader.attachment), starts=leader.starts, shorter=best.fitted.fits[0])
+        return None if fitted is None else judged(leader, current, fitted)
+
+    laws = laws_on_curve(base.model, best.fitted, best.leader.attachment, surroundings, card)
+    return [r for r in side_by_side(partial(tried, law) for law in laws) if r is not None]
 
 
 def polished(
@@ -212,5 +198,4 @@ def _compiled(
         model = augmented(base, (*current.effects, leader.attachment), surroundings)
         return make_stepper(model, problem_for(base, model, {}).free_names, device=device)
 
-    with ThreadPoolExecutor(max_workers=2) as pool:
-        return list(pool.map(build, found))
+    return side_by_side(partial(build, leader) for leader in found)

@@ -8,6 +8,7 @@ highest peaks, a coherent look over the record gives the order finely.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -16,8 +17,9 @@ from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.friction import PositionDependentFriction
-from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.model import Body, GreyBoxModel
+from greybox_torch.simulate.side_by_side import side_by_side
 
 LEAST_PERIODS = 5.0
 """Periods within the travel from which an effect is seen to repeat; anything slow could otherwise pass for periodic."""
@@ -25,35 +27,51 @@ LEAST_PERIODS = 5.0
 BATCH = 32
 """Orders looked at in one compiled pass."""
 
+FAMILIES: tuple[type[Mechanism], ...] = (TorqueRipple, PositionDependentFriction)
+"""What the scan looks for."""
+
 
 def scan_orders(
     base: GreyBoxModel,
     accepted: Sequence[Attachment],
     surroundings: Mapping[str, Surroundings],
     free_names: Sequence[str],
-    fitted: WindowFit,
+    fits: Sequence[WindowFit],
     *,
     substeps: int,
     device: str = "cpu",
     peaks: int = 2,
 ) -> list[float]:
-    """The most promising orders (periods per unit of position) of a periodic effect at the first body, best first."""
+    """The most promising orders (periods per unit of position) of a periodic effect at the first body.
+
+    Of every fit (they differ in window length), the two that explain most, best first.
+    """
     body = next((p for p in base.ports if isinstance(p, Body)), None)
     if body is None:
         return []
-    around = surroundings[body.name]
-    found: list[tuple[float, float]] = []
-    for family in (TorqueRipple, PositionDependentFriction):
+
+    def screen(family: type[Mechanism]) -> Screen:
         attachments = [Attachment(body.name, family(), position=body.name)] * BATCH
-        screen = Screen.of(base, accepted, attachments, surroundings, free_names, device=device)
-        grid = _grid(around, fitted)
-        if len(grid) < 4:
-            return []
-        scores = np.concatenate([_incoherent(screen, fitted, part, substeps) for part in _batches(grid)])
-        for k in _highest(scores, peaks):
-            found.append(_refined(screen, fitted, float(grid[k]), float(grid[1] - grid[0]), substeps))
-    found.sort(reverse=True)
-    return distinct_orders(order for _, order in found)
+        return Screen.of(base, accepted, attachments, surroundings, free_names, device=device)
+
+    around = surroundings[body.name]
+    grids = [(fit, grid) for fit in fits if len(grid := _grid(around, fit)) >= 4]
+    screens = side_by_side(partial(screen, family) for family in FAMILIES) if grids else []
+    pairs = [(one, fit, grid) for fit, grid in grids for one in screens]
+    peaks_of = side_by_side(partial(_peaks, *pair, substeps, peaks) for pair in pairs)
+    orders = []
+    for fit, _ in grids:
+        own = [peak for (_, of, _), some in zip(pairs, peaks_of, strict=True) if of is fit for peak in some]
+        orders += distinct_orders(order for _, order in sorted(own, reverse=True))[:2]
+    return distinct_orders(orders)
+
+
+def _peaks(screen: Screen, fitted: WindowFit, grid: np.ndarray, substeps: int, count: int) -> list[tuple[float, float]]:
+    """The highest peaks over a grid of orders: shares explained, and orders."""
+    starts = _at_orders(screen, grid[:BATCH]).starts(fitted, substeps)  # an order changes no memory
+    scores = np.concatenate([_incoherent(screen, fitted, part, substeps, starts) for part in _batches(grid)])
+    step = float(grid[1] - grid[0])
+    return [_refined(screen, fitted, float(grid[k]), step, substeps, starts) for k in _highest(scores, count)]
 
 
 def distinct_orders(orders: Iterable[float]) -> list[float]:
@@ -84,28 +102,26 @@ def _at_orders(screen: Screen, orders: np.ndarray) -> Screen:
     return screen.with_probes([{"order": float(order)} for order in filled])
 
 
-def _incoherent(screen: Screen, fitted: WindowFit, orders: np.ndarray, substeps: int) -> np.ndarray:
+def _incoherent(screen: Screen, fitted: WindowFit, orders: np.ndarray, substeps: int, starts: np.ndarray) -> np.ndarray:
     """Share of the residual explained when every window has its own amplitude and phase."""
-    normal = _at_orders(screen, orders).matrices(fitted, substeps)
-    n_p, total = len(screen.free_names), float(normal[:, -1, -1].sum())
-    shares = []
-    for k in range(len(orders)):
-        columns = np.arange(n_p + 2 * k, n_p + 2 * k + 2)
-        inner = normal[:, columns[:, None], columns[None, :]]
-        trace = np.trace(inner, axis1=1, axis2=2)
-        inner = inner + (1e-6 * trace + 1e-300)[:, None, None] * np.eye(2)
-        right = normal[:, columns, -1]
-        shares.append(float((right * np.linalg.solve(inner, right[..., None])[..., 0]).sum()) / max(total, 1e-300))
-    return np.array(shares)
+    projected = _at_orders(screen, orders).projected(fitted, substeps, starts)
+    first = len(screen.free_names) + 2 * np.arange(len(orders))
+    inner, right = projected.blocks(np.stack([first, first + 1], axis=1))
+    trace = np.trace(inner, axis1=2, axis2=3)
+    inner = inner + (1e-6 * trace + 1e-300)[..., None, None] * np.eye(2)
+    explained = (right * np.linalg.solve(inner, right[..., None])[..., 0]).sum(axis=(0, 2))
+    return explained / max(projected.energy(), 1e-300)
 
 
-def _refined(screen: Screen, fitted: WindowFit, order: float, step: float, substeps: int) -> tuple[float, float]:
+def _refined(
+    screen: Screen, fitted: WindowFit, order: float, step: float, substeps: int, starts: np.ndarray
+) -> tuple[float, float]:
     """The best coherent share near ``order``, and the order where it is."""
     best = (-np.inf, order)
     width = step
     for _ in range(3):
         orders = np.linspace(max(best[1] - width, 1e-3), best[1] + width, BATCH)
-        looks = _at_orders(screen, orders).look(fitted, substeps)
+        looks = _at_orders(screen, orders).look(fitted, substeps, starts)
         k = int(np.argmax([look.explained for look in looks]))
         best = (looks[k].explained, float(orders[k]))
         width = 2.5 * width / BATCH

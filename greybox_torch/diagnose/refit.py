@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from greybox_torch.estimate.window_fit import WindowFit, carried_starts, fit_win
 from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulate.side_by_side import side_by_side
 from greybox_torch.simulate.stepper import Stepper, make_stepper
 
 FACTORS = (1, 4, 16)
@@ -115,13 +117,12 @@ def _best_fit(
     substeps: int,
     settings: Settings,
 ) -> WindowFit | None:
-    begun = [
-        fit_windows(t, stepper, length, shorter=shorter, substeps=substeps, settings=FIRST_SETTINGS) for t in trials
-    ]
+    begin = partial(fit_windows, stepper=stepper, length=length, shorter=shorter, substeps=substeps)
+    begun = side_by_side(partial(begin, t, settings=FIRST_SETTINGS) for t in trials)
     found = sorted((fit for fit in begun if fit is not None), key=lambda f: f.mean_square)
     if not found:
         return None
-    ended = [_continued(fit, stepper, length, substeps, settings) for fit in _apart(found)]
+    ended = side_by_side(partial(_continued, fit, stepper, length, substeps, settings) for fit in _apart(found))
     return min(ended, key=lambda f: f.mean_square)
 
 

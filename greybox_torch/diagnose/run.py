@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulate.side_by_side import side_by_side
 from greybox_torch.simulate.stepper import Stepper, make_stepper
 from greybox_torch.simulate.substeps import choose_substeps
 
@@ -164,8 +166,9 @@ def _confirmed(dataset: DataSet, search: Search, progress: Callable[[str], None]
         if gain(named, curve).errors_away < BEYOND_CHANCE:
             search.settle_for_named()
     while search.current.effects:
-        full = held_out_fits(search.current, problem, search.substeps)
-        gains = {p: gain(held_out_fits(h, problem, search.substeps), full) for p, h in search.without.items()}
+        on_others = partial(held_out_fits, problem=problem, substeps=search.substeps)
+        full, *without = side_by_side(partial(on_others, h) for h in (search.current, *search.without.values()))
+        gains = {p: gain(fits, full) for p, fits in zip(search.without, without, strict=True)}
         weakest = min(gains, key=lambda p: gains[p].errors_away)
         found = gains[weakest]
         if found.errors_away > LEAST_HELD_OUT or abs(found.share) + found.error < UNEXERCISED:

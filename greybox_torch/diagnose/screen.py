@@ -2,7 +2,7 @@
 
 At the fitted parameters, the output's sensitivity to the amplitude of an effect that is not there is one more tangent of the pass that
 computes the sensitivities anyway. Tangents of parameters and window start states are projected out; the share of the residual that
-the rest explains, on stretches that took no part in choosing its size, ranks the candidate.
+the rest explains ranks the candidate.
 
 Source: C. R. Rao, score test, 1948; N. R. Kristensen, H. Madsen, S. B. Jørgensen, Automatica 40(2), 2004, for the idea of asking the
 data which equation is deficient.
@@ -20,24 +20,21 @@ from greybox_torch.estimate.window_fit import WindowFit, carried_starts
 from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
 from greybox_torch.mechanisms.mechanism import Probe, Surroundings
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulate.stepper import Stepper, make_stepper
-
-FOLDS = 6
+from greybox_torch.simulate.packed_normals import PackedNormals
+from greybox_torch.simulate.stepper import Probes, Stepper, make_stepper
 
 
 @dataclass(frozen=True)
 class Look:
     """What one probe of one attachment explains at one window length.
 
-    ``explained`` is the share of the residual's energy after projection, ``predicted`` that on stretches left out, ``size`` the
-    estimated values of the probe's directions.
+    ``explained`` is the share of the residual's energy after projection, ``size`` the estimated values of the probe's directions.
     """
 
     attachment: Attachment
     probe: Probe
     length: int
     explained: float
-    predicted: float
     size: np.ndarray
 
 
@@ -77,6 +74,12 @@ class Screen:
         stepper = make_stepper(model, [*free_names, *zero], at_zero=zero, device=device)
         return Screen(base, tuple(accepted), tuple(looks), model, stepper, directions, tuple(free_names))
 
+    @property
+    def probes(self) -> Probes:
+        """Which products of its directions are wanted: those of the same probe."""
+        sizes = [len(group) for group in self.directions]
+        return Probes(sum(sizes), max(sizes) - 1)
+
     def values(self, problem: Problem) -> np.ndarray:
         """Parameter vector of the screen's model: the problem's values, the probes' values, zero in the directions."""
         numbers = dict(zip(problem.names, problem.values, strict=True))
@@ -86,20 +89,24 @@ class Screen:
             numbers |= dict.fromkeys(group, 0.0)
         return np.array([numbers.get(p.name, p.value) for p in self.model.declared_parameters])
 
-    def look(self, fitted: WindowFit, substeps: int) -> list[Look]:
-        """Score every probe on windows whose parameters and start states were fitted."""
-        normal = self.matrices(fitted, substeps)
+    def look(self, fitted: WindowFit, substeps: int, starts: np.ndarray | None = None) -> list[Look]:
+        """Score every probe on windows whose parameters and start states were fitted.
+
+        Args:
+            starts: what :meth:`starts` gave for the same windows, where only the probes' values have changed since.
+        """
+        total = self.projected(fitted, substeps, starts).total()
         n_p = len(self.free_names)
         hold = _hold(fitted, n_p)
-        total = normal.sum(axis=0)
-        parts = [normal[f].sum(axis=0) for f in np.array_split(np.arange(len(normal)), min(FOLDS, len(normal)))]
+        base = np.arange(n_p)
+        before = _energy(total, base, _solve(total, base, hold))
         results, at = [], n_p
         for group, (attachment, probe) in zip(self.directions, self.looks, strict=True):
-            columns = np.arange(at, at + len(group))
+            both = np.concatenate([base, np.arange(at, at + len(group))])
             at += len(group)
-            explained, size = _explained(total, n_p, columns, hold)
-            predicted = _predicted(total, parts, n_p, columns, hold)
-            results.append(Look(attachment, probe, fitted.windows.steps, explained, predicted, size))
+            size = _solve(total, both, hold)
+            explained = (before - _energy(total, both, size)) / max(before, 1e-300)
+            results.append(Look(attachment, probe, fitted.windows.steps, explained, size[n_p:]))
         return results
 
     def with_probes(self, values: Sequence[Mapping[str, float]]) -> Screen:
@@ -107,17 +114,16 @@ class Screen:
         looks = tuple((a, replace(p, values={**p.values, **v})) for (a, p), v in zip(self.looks, values, strict=True))
         return replace(self, looks=looks)
 
-    def matrices(self, fitted: WindowFit, substeps: int) -> np.ndarray:
-        """Per window the normal matrix (W, d, d) of [parameters, probes, residual], window start states projected out."""
+    def projected(self, fitted: WindowFit, substeps: int, starts: np.ndarray | None = None) -> Projected:
+        """Normal matrices of [parameters, probes, residual] with the window start states projected out; ``starts`` as in :meth:`look`."""
         problem, windows = fitted.problem, fitted.windows
         values = self.values(problem)
-        tape = self.model.prepared(problem.tape, values)
-        starts = self._starts(fitted, values, substeps)
+        starts = self.starts(fitted, substeps) if starts is None else starts
         count, n_base = len(windows.start), fitted.starts.shape[1]
         eye = np.zeros((count, n_base, starts.shape[1]))
         eye[:, np.arange(n_base), np.arange(n_base)] = 1.0
         run = self.stepper.run(
-            tape,
+            self.model.prepared(problem.tape, values),
             windows,
             values,
             starts,
@@ -125,19 +131,14 @@ class Screen:
             start_directions=eye,
             substeps=substeps,
             weights=problem.weights,
+            probes=self.probes,
         )
-        assert run.normal is not None
-        d = run.normal.shape[1] - 1 - n_base
-        full = _sound(run.normal, np.r_[: len(self.free_names), d : d + n_base + 1])
-        keep = np.append(np.arange(d), d + n_base)
-        own, cross = full[:, d : d + n_base, d : d + n_base], full[:, keep, d : d + n_base]
-        diagonal = np.einsum("wii->wi", own)
-        least = 1e-12 * diagonal.max() + 1e-300  # windows that failed are all zero
-        own = own + np.eye(n_base) * (1e-9 * diagonal + least)[:, :, None]
-        return full[:, keep[:, None], keep] - cross @ np.linalg.solve(own, np.swapaxes(cross, 1, 2))
+        assert run.packed is not None
+        return Projected.of(run.packed, len(self.free_names), n_base)
 
-    def _starts(self, fitted: WindowFit, values: np.ndarray, substeps: int) -> np.ndarray:
+    def starts(self, fitted: WindowFit, substeps: int) -> np.ndarray:
         """Window starts of the screen's model: the fitted ones, memories carried along from window to window."""
+        values = self.values(fitted.problem)
         n_base = fitted.starts.shape[1]
         problem = problem_for(
             fitted.problem, self.model, dict(zip((p.name for p in self.model.declared_parameters), values, strict=True))
@@ -150,17 +151,58 @@ class Screen:
         return carried_starts(replace(problem, carried=carried), self.stepper, fitted.windows, starts, substeps)
 
 
-def _sound(normal: np.ndarray, base: np.ndarray) -> np.ndarray:
-    """Normal matrices (W, d, d) with zeros where something is not finite.
+@dataclass(frozen=True)
+class Projected:
+    """Normal matrices of [parameters, probes, residual] without what the window start states explain.
 
-    A window in which the model itself fails (the rows ``base``) is passed over; a probe that fails in some window, everywhere.
+    ``packed``, with the start states before the residual; ``explained`` (W, n_x, d), the whitened share of them in every column, of
+    which the matrices are to lose the products; ``keep`` (d,) the columns that are left.
     """
-    finite = np.isfinite(np.einsum("wii->wi", normal))
+
+    packed: PackedNormals
+    explained: np.ndarray
+    keep: np.ndarray
+
+    @staticmethod
+    def of(packed: PackedNormals, n_p: int, n_base: int) -> Projected:
+        """Project ``n_base`` start states, the last columns but one, out of ``packed``; the first ``n_p`` columns are the model's own."""
+        d = packed.size - 1 - n_base
+        packed = _sound(packed, np.r_[:n_p, d : packed.size])
+        rows = packed.rows(np.arange(d, d + n_base))
+        own = rows[:, :, d : d + n_base]
+        diagonal = np.einsum("wii->wi", own)
+        least = 1e-12 * diagonal.max() + 1e-300  # windows that failed are all zero
+        lower = np.linalg.cholesky(own + np.eye(n_base) * (1e-9 * diagonal + least)[:, :, None])
+        keep = np.append(np.arange(d), d + n_base)
+        return Projected(packed, np.linalg.solve(lower, rows[:, :, keep]), keep)
+
+    def total(self) -> np.ndarray:
+        """The sum (d, d) over all windows."""
+        stacked = self.explained.reshape(-1, len(self.keep))
+        return self.packed.total()[np.ix_(self.keep, self.keep)] - stacked.T @ stacked
+
+    def energy(self) -> float:
+        """The residual's energy."""
+        return float(self.packed.diagonal()[:, -1].sum() - (self.explained[:, :, -1] ** 2).sum())
+
+    def blocks(self, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """By window, the blocks (W, K, k, k) of groups of ``columns`` (K, k) and their products with the residual (W, K, k)."""
+        part, last = self.explained[:, :, columns], self.explained[:, :, -1]
+        residual = self.packed.rows(np.array([self.packed.size - 1]))[:, 0, columns]
+        inner = self.packed.blocks(columns) - np.einsum("wska,wskb->wkab", part, part, optimize=True)
+        return inner, residual - np.einsum("wska,ws->wka", part, last, optimize=True)
+
+
+def _sound(packed: PackedNormals, base: np.ndarray) -> PackedNormals:
+    """Zeros where something is not finite.
+
+    A window in which the model itself fails (the columns ``base``) is passed over; a probe that fails in some window, everywhere.
+    """
+    finite = np.isfinite(packed.diagonal())
     if finite.all():
-        return normal
-    lost = ~finite[:, base].all(axis=1)
-    bad = ~finite[~lost].all(axis=0)
-    return np.where(lost[:, None, None] | (bad[:, None] | bad[None, :])[None], 0.0, normal)
+        return packed
+    lost = np.logical_not(finite[:, base].all(axis=1))
+    return packed.without(lost, np.logical_not(finite[~lost].all(axis=0)))
 
 
 def _hold(fitted: WindowFit, n_p: int) -> np.ndarray:
@@ -184,22 +226,3 @@ def _energy(matrix: np.ndarray, unknown: np.ndarray, size: np.ndarray) -> float:
     """Residual energy left when ``unknown`` columns take the values ``size``."""
     inner = matrix[np.ix_(unknown, unknown)]
     return float(matrix[-1, -1] - 2 * size @ matrix[unknown, -1] + size @ inner @ size)
-
-
-def _explained(total: np.ndarray, n_p: int, columns: np.ndarray, hold: np.ndarray) -> tuple[float, np.ndarray]:
-    base, both = np.arange(n_p), np.concatenate([np.arange(n_p), columns])
-    before = _energy(total, base, _solve(total, base, hold))
-    size = _solve(total, both, hold)
-    return (before - _energy(total, both, size)) / max(before, 1e-300), size[n_p:]
-
-
-def _predicted(
-    total: np.ndarray, parts: Sequence[np.ndarray], n_p: int, columns: np.ndarray, hold: np.ndarray
-) -> float:
-    base, both = np.arange(n_p), np.concatenate([np.arange(n_p), columns])
-    before = after = 0.0
-    for part in parts:
-        rest = total - part
-        before += _energy(part, base, _solve(rest, base, hold))
-        after += _energy(part, both, _solve(rest, both, hold))
-    return (before - after) / max(before, 1e-300)

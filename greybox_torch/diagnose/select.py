@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 from greybox_torch.diagnose.candidates import candidates, periodic_candidates, shifted_states
 from greybox_torch.diagnose.curve import finer
 from greybox_torch.diagnose.leaders import Leader, leaders
-from greybox_torch.diagnose.name import PARSIMONY, Ranked, polished, rank, sureness
+from greybox_torch.diagnose.name import PARSIMONY, Ranked, judged, polished, rank, sureness
 from greybox_torch.diagnose.noise import ABOVE_NOISE, times_noise
-from greybox_torch.diagnose.orders import distinct_orders, scan_orders
+from greybox_torch.diagnose.orders import scan_orders
 from greybox_torch.diagnose.refit import POLISH_SETTINGS, Hypothesis, hypothesis
 from greybox_torch.diagnose.screen import Look, Screen
 from greybox_torch.diagnose.surroundings import survey
@@ -19,6 +20,7 @@ from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.simulate.side_by_side import side_by_side
 
 FINE_KNOTS = 40
 """Knots of the curves that are tried when nothing else pays."""
@@ -250,8 +252,8 @@ class Search:
         while dropped:
             dropped = False
             self.without = {}
-            for effect in self.current.effects:
-                rest = self._without(effect)
+            effects = self.current.effects
+            for effect, rest in zip(effects, side_by_side(partial(self._without, e) for e in effects), strict=True):
                 gain = rest.score - self.current.score
                 if len(self.current.effects) > 1 and (
                     gain < LEAST_GAIN or sureness(rest, self.current) < LEAST_SURENESS
@@ -280,16 +282,16 @@ class Search:
         there = {(e.port, e.mechanism.name) for e in at.effects}
         offered = [a for a in offered if (a.port, a.mechanism.name) not in there]
         screen = Screen.of(model, at.effects, offered, self.surroundings, free, device=self.device)
-        return [screen.look(fit, self.substeps) for fit in at.fits]
+        return side_by_side(partial(screen.look, fit, self.substeps) for fit in at.fits)
 
     def _fine_curves(self) -> list[Attachment]:
         return candidates(self.problem.model, self.shifts, self.surroundings, flexible=True, knots=FINE_KNOTS)
 
     def _offered(self) -> list[Attachment]:
         model, at, free = self.problem.model, self.current, self.current.problem.free_names
-        common = {"substeps": self.substeps, "device": self.device}
-        scanned = [scan_orders(model, at.effects, self.surroundings, free, fit, **common)[:2] for fit in at.fits[:2]]
-        orders = distinct_orders(order for found in scanned for order in found)
+        orders = scan_orders(
+            model, at.effects, self.surroundings, free, at.fits[:2], substeps=self.substeps, device=self.device
+        )
         return [
             *candidates(model, self.shifts, self.surroundings, flexible=False),
             *periodic_candidates(model, self.shifts, self.surroundings, orders),
@@ -305,7 +307,7 @@ class Search:
         if not ranked or ranked[0].gain < LEAST_GAIN:
             return list(ranked)
         front = [r for r in ranked if r.gain > CLOSE * ranked[0].gain][:FRONT_RUNNERS]
-        polish = [self._polished(r.fitted, self._shapes(r)) for r in front]
+        polish = side_by_side(partial(self._polished, r.fitted, self._shapes(r)) for r in front)
         best = min(polish, key=lambda fitted: fitted.score)
         parent = self._polished(self.current, [best.values(), {**best.values(), **self._card()}])
         if parent.score < self.current.score:
@@ -313,11 +315,8 @@ class Search:
             if not parent.effects:
                 self.plain = parent
         rest = [r.fitted for r in ranked[len(front) :]]
-        again = [self._judged(r, fitted) for r, fitted in zip(ranked, polish + rest, strict=True)]
+        again = [judged(r.leader, self.current, fitted) for r, fitted in zip(ranked, polish + rest, strict=True)]
         return sorted(again, key=lambda r: r.cost)
-
-    def _judged(self, ranked: Ranked, fitted: Hypothesis) -> Ranked:
-        return Ranked(ranked.leader, fitted, self.current.score - fitted.score, sureness(self.current, fitted))
 
     def _polished(self, fitted: Hypothesis, starts: Sequence[dict[str, float]]) -> Hypothesis:
         self.progress(f"polishing {' + '.join(e.prefix for e in fitted.effects) or 'the model as it stands'}")

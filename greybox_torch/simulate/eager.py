@@ -10,7 +10,8 @@ import torch
 from torch.func import jvp, vmap
 
 from greybox_torch.model import GreyBoxModel, Signals
-from greybox_torch.simulate.stepper import Run, Windows
+from greybox_torch.simulate.packed_normals import PackedNormals
+from greybox_torch.simulate.stepper import Probes, Run, Windows
 from greybox_torch.simulate.tape import Tape
 
 Vector = torch.Tensor
@@ -48,6 +49,7 @@ class EagerStepper:
         substeps: int = 1,
         keep_states: bool = False,
         weights: np.ndarray | None = None,
+        probes: Probes | None = None,
     ) -> Run:
         count, n_x = len(windows.start), len(self.model.states)
         n_p = len(self.sensitive) if tangents else 0
@@ -74,13 +76,17 @@ class EagerStepper:
         directed = n_p + n_s > 0
         y = _array(torch.stack(ys), (2, 0, 1))
         dy = _array(torch.stack(dys), (3, 0, 2, 1)) if directed else np.zeros((*y.shape, 0))
+        normal = None if weights is None else _normal(tape, windows, y, dy, weights)
         return Run(
             y=y,
             dy=dy if directed and weights is None else None,
             x_end=_array(x, (1, 0)),
             dx_end=_array(dx, (2, 0, 1)) if directed else None,
             states=_array(torch.stack(xs), (2, 0, 1)) if keep_states else None,
-            normal=None if weights is None else _normal(tape, windows, y, dy, weights),
+            normal=None if probes is not None else normal,
+            packed=None
+            if probes is None or normal is None
+            else PackedNormals.of(normal[..., None], len(normal), normal.shape[1]),
         )
 
     def _pushed(

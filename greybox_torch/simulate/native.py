@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import os
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +10,9 @@ import numpy as np
 from greybox_torch.codegen.build import library
 from greybox_torch.codegen.emit import emit
 from greybox_torch.codegen.lower import Equations
-from greybox_torch.simulate.stepper import Run, Windows
+from greybox_torch.simulate.packed_normals import PackedNormals
+from greybox_torch.simulate.side_by_side import cores
+from greybox_torch.simulate.stepper import Probes, Run, Windows
 from greybox_torch.simulate.tape import Tape
 
 _LONG, _POINTER = ctypes.c_long, ctypes.c_void_p
@@ -29,6 +30,7 @@ class _Job(ctypes.Structure):
 
     _fields_ = [
         *[(n, _LONG) for n in ("groups", "steps", "substeps", "foh", "samples", "directions", "threads")],
+        *[(n, _LONG) for n in ("first_probe", "last_probe", "band")],
         *[
             (n, _POINTER)
             for n in (
@@ -83,6 +85,7 @@ class NativeStepper:
         substeps: int = 1,
         keep_states: bool = False,
         weights: np.ndarray | None = None,
+        probes: Probes | None = None,
     ) -> Run:
         real = np.float64 if self.precision == "double" else np.float32
         lanes = 64 // np.dtype(real).itemsize
@@ -118,9 +121,10 @@ class NativeStepper:
         }
         threads = _threads(groups, windows.steps * substeps * (1 + n_d))
         sizes = (groups, windows.steps, substeps, int(tape.hold == "foh"), len(tape.dt), n_d, threads)
+        sparse = (n_d, n_d, 0) if probes is None else (n_p - probes.count, n_p, probes.band + _TILE)
         pointers = [None if a is None else a.ctypes.data for a in packed.values()]
-        self.loaded.run(ctypes.byref(_Job(*sizes, *pointers)))
-        dy = packed["dy"]
+        self.loaded.run(ctypes.byref(_Job(*sizes, *sparse, *pointers)))
+        dy, normal = packed["dy"], packed["normal"]
         return Run(
             y=_windows(packed["y"], count),
             dy=None if dy is None else _windows(dy, count),
@@ -128,15 +132,15 @@ class NativeStepper:
             dx_end=_windows(packed["dx"], count) if n_d else None,
             states=_windows(packed["trace"], count) if keep_states else None,
             normal=None
-            if packed["normal"] is None
-            else _mirrored(_windows(packed["normal"], count)[:, : n_d + 1, : n_d + 1]),
+            if normal is None or probes is not None
+            else _mirrored(_windows(normal, count)[:, : n_d + 1, : n_d + 1]),
+            packed=None if normal is None or probes is None else PackedNormals.of(normal, count, n_d + 1),
         )
 
 
 def _threads(groups: int, work: int) -> int:
     """How many threads a pass over ``groups`` of so much work each is worth: waking them costs as much as a short one."""
-    cores = int(os.environ.get("OMP_NUM_THREADS", os.cpu_count() or 1))
-    return max(1, min(groups, cores, groups * work // WORTH_A_THREAD))
+    return max(1, min(groups, cores(), groups * work // WORTH_A_THREAD))
 
 
 def _empty(shape: tuple[int, ...], real: type) -> np.ndarray:

@@ -15,6 +15,7 @@ import numpy as np
 from greybox_torch.codegen.lower import lower
 from greybox_torch.codegen.trace import UnsupportedOperation
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulate.packed_normals import PackedNormals
 from greybox_torch.simulate.tape import Tape
 
 
@@ -35,7 +36,7 @@ class Run:
     ``x_end`` (W, n_x) and ``dx_end`` (W, n_d, n_x) after the last step; ``states`` (W, K, n_x) if they were asked for.
     ``normal`` (W, n_d + 1, n_d + 1), if errors against a measurement were asked for: the matrix [J e]ᵀ[J e] of the directions' output
     sensitivities J and the weighted errors e = measured − simulated; then ``dy`` is None. Samples beyond a window's end are
-    meaningless, and carry no weight in ``normal``.
+    meaningless, and carry no weight in ``normal``. ``packed`` holds the same matrices where probes were named.
     """
 
     y: np.ndarray
@@ -44,6 +45,15 @@ class Run:
     dx_end: np.ndarray | None
     states: np.ndarray | None
     normal: np.ndarray | None = None
+    packed: PackedNormals | None = None
+
+
+@dataclass(frozen=True)
+class Probes:
+    """The last ``count`` sensitive parameters look at effects one by one: products more than ``band`` columns apart are not wanted."""
+
+    count: int
+    band: int
 
 
 class Stepper(Protocol):
@@ -72,6 +82,7 @@ class Stepper(Protocol):
         substeps: int = 1,
         keep_states: bool = False,
         weights: np.ndarray | None = None,
+        probes: Probes | None = None,
     ) -> Run:
         """Advance all windows.
 
@@ -84,6 +95,7 @@ class Stepper(Protocol):
             substeps: Runge-Kutta steps per sample.
             keep_states: also return the states at the samples.
             weights: (n_y,) factors on the errors against the tape's outputs; asks for ``normal`` instead of ``dy``.
+            probes: asks for ``packed`` instead of ``normal``, without what is not wanted of it.
         """
         ...
 
@@ -140,4 +152,4 @@ def cut(tape: Tape, length: int) -> Windows:
     return Windows(np.array(starts), np.array(lasts), int(sizes.max()))
 
 
-__all__ = ["Run", "Stepper", "Windows", "cut", "make_stepper", "whole_records"]
+__all__ = ["Probes", "Run", "Stepper", "Windows", "cut", "make_stepper", "whole_records"]

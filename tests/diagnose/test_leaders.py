@@ -17,7 +17,7 @@ from greybox_torch.mechanisms.unknown import Unknown
 
 def look(mechanism, explained: float, *size: float, directions=(), port="rotor", **values: float) -> Look:
     probe = Probe(directions or ("bias",), values)
-    return Look(Attachment(port, mechanism), probe, 100, explained, explained, np.array(size))
+    return Look(Attachment(port, mechanism), probe, 100, explained, np.array(size))
 
 
 @pytest.fixture

@@ -40,7 +40,6 @@ def test_shares_are_shares(looks) -> None:
     for look in (look for at_length in looks for look in at_length):
         assert np.isfinite(look.size).all() and len(look.size) == len(look.probe.directions)
         assert -1e-6 < look.explained <= 1.0
-        assert look.predicted < look.explained + 0.05, "left-out stretches are not explained better"
 
 
 def test_what_a_parameter_takes_up_already_explains_nothing(looks) -> None:
@@ -62,5 +61,5 @@ def test_size_of_the_effect_is_near_the_truth(looks) -> None:
 
 def test_no_effect_no_share(motor_data, motor, begun, screen) -> None:
     clean = begun(motor_data(), motor)
-    explained = [look.predicted for fit in clean.plain.fits[:1] for look in screen.look(fit, 1)]
+    explained = [look.explained for fit in clean.plain.fits[:1] for look in screen.look(fit, 1)]
     assert max(explained) < 0.02

@@ -17,6 +17,7 @@ from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Body
+from greybox_torch.simulate.packed_normals import PackedNormals
 
 WINDOWS = 40
 
@@ -60,7 +61,7 @@ def test_a_curve_is_also_refitted_from_a_part_of_it(dead_zone_search) -> None:
     fit: WindowFit = search.plain.fits[0]
     curve = attach(search.problem.model, "rotor", Unknown("speed"))
     probe = curve.mechanism.probes(search.surroundings["rotor"])[0]
-    look = Look(curve, probe, 31, 0.4, 0.3, np.arange(1.0, 15.0))
+    look = Look(curve, probe, 31, 0.4, np.arange(1.0, 15.0))
     (leader,) = leaders([[look]], [fit], search.surroundings, {})
     whole, part = leader.starts[:2]
     heights = [f"{curve.prefix}.w_{k}" for k in range(14)]
@@ -85,10 +86,11 @@ def test_windows_that_fail_are_passed_over_and_probes_that_fail_are_dropped() ->
     normal = np.ones((3, 4, 4))
     normal[1, 0, 0] = np.nan  # the model itself
     normal[2, 2, 2] = np.inf  # a probe
-    sound = _sound(normal, np.array([0, 1, 3]))
+    packed = PackedNormals.of(normal[..., None], 3, 4)
+    sound = _sound(packed, np.array([0, 1, 3])).rows(np.arange(4))
     assert np.isfinite(sound).all()
     assert (sound[1] == 0).all()
     assert (sound[[0, 2], 2] == 0).all() and (sound[[0, 2], :, 2] == 0).all()
     assert (sound[0, :2, :2] == 1).all()
-    whole = np.ones((2, 3, 3))
+    whole = PackedNormals.of(np.ones((2, 3, 3, 1)), 2, 3)
     assert _sound(whole, np.array([0])) is whole

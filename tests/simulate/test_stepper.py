@@ -15,7 +15,7 @@ from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.simulate.eager import EagerStepper
 from greybox_torch.simulate.native import NativeStepper
 from greybox_torch.simulate.odeint import solve
-from greybox_torch.simulate.stepper import Windows, cut, make_stepper, whole_records
+from greybox_torch.simulate.stepper import Probes, Windows, cut, make_stepper, whole_records
 from greybox_torch.simulate.tape import Tape
 from greybox_torch.systems import RobotArm
 
@@ -353,6 +353,33 @@ def test_normal_matrices(compiled: bool) -> None:
         columns = np.column_stack([0.3 * kept.dy[w, :size, 0], errors])[~np.isnan(errors)]
         expected = columns.T @ columns
         np.testing.assert_allclose(summed.normal[w], expected, rtol=1e-10, atol=1e-10 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+def test_normal_matrices_of_probes_lack_only_what_is_not_wanted(compiled: bool) -> None:
+    tape = arm_tape((50, 33))
+    windows = Windows(np.arange(0, 80, 8), np.arange(7, 87, 8).clip(max=82), 8)
+    names, x0 = PARAMETERS, np.tile(X0, (10, 1))
+    stepper = native(names=names) if compiled else EagerStepper.of(ARM, names, "cpu", "double")
+    directions = np.broadcast_to(np.eye(5), (10, 5, 5))
+    options: dict[str, Any] = {"tangents": True, "start_directions": directions, "weights": np.ones(1)}
+    full = stepper.run(tape, windows, P, x0, **options).normal
+    probes = Probes(len(names) - 2, 1)
+    run = stepper.run(tape, windows, P, x0, probes=probes, **options)
+    packed = run.packed
+    assert full is not None and packed is not None and run.normal is None
+    size = full.shape[1]
+    near = np.ones((size, size), dtype=bool)
+    near[2 : len(names), 2 : len(names)] = (
+        np.abs(np.subtract.outer(np.arange(2, len(names)), np.arange(2, len(names)))) <= 1
+    )
+    close = {"rtol": 1e-12, "atol": 1e-12 * np.abs(full).max()}
+    np.testing.assert_allclose(np.where(near, packed.total(), 0.0), np.where(near, full.sum(axis=0), 0.0), **close)
+    index = np.arange(len(names), size)
+    np.testing.assert_allclose(packed.rows(index), full[:, index], **close)
+    np.testing.assert_allclose(packed.diagonal(), np.einsum("wii->wi", full), **close)
+    pairs = np.array([[2, 3], [5, 6]])
+    np.testing.assert_allclose(packed.blocks(pairs), full[:, pairs[:, :, None], pairs[:, None, :]], **close)
 
 
 def test_parameters_that_are_zero_throughout() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,8 +17,8 @@ from experiments.speed.timing import interleaved, once
 from greybox_torch.diagnose.candidates import candidates, shifted_states
 from greybox_torch.diagnose.screen import Screen
 from greybox_torch.diagnose.surroundings import survey
-from greybox_torch.estimate.problem import Problem, problem_for
-from greybox_torch.estimate.window_fit import WindowFit, carried_starts
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.simulate.stepper import cut, make_stepper, whole_records
@@ -61,7 +60,7 @@ def measure(settings: Settings, progress: Progress) -> Row:
 
     progress("timing")
     columns_pass = _columns_pass(screen, fitted)
-    rivals = {PLAIN: sensitivities, COLUMNS_PASS: columns_pass, SCREEN: lambda: screen.matrices(fitted, 1)}
+    rivals = {PLAIN: sensitivities, COLUMNS_PASS: columns_pass, SCREEN: lambda: screen.projected(fitted, 1).total()}
     agreement = apart(columns_pass()[:, :12, :12], sensitivities()[:, :12, :12])
     times = {n: t.median for n, t in interleaved(rivals, repeats=settings.repeats(9)).items()}
     columns = sum(len(group) for group in screen.directions)
@@ -83,24 +82,23 @@ def measure(settings: Settings, progress: Progress) -> Row:
 
 def _columns_pass(screen: Screen, fitted: WindowFit) -> Callable[[], np.ndarray]:
     """The screen's pass alone: memories begin where carrying them along has put them, once."""
-    values = screen.values(fitted.problem)
-    names = [p.name for p in screen.model.declared_parameters]
-    problem = problem_for(fitted.problem, screen.model, dict(zip(names, values, strict=True)))
-    tape, (count, own) = screen.model.prepared(problem.tape, values), fitted.starts.shape
-    experiment = np.searchsorted(problem.tape.first, fitted.windows.start, side="right") - 1
-    begun = problem.initial[experiment]
-    begun[:, :own] = fitted.starts
-    begun = screen.model.begun(begun, problem.driving_tape, fitted.windows.start, values)
-    memories = replace(problem, carried=np.arange(begun.shape[1]) >= own)
-    begun = carried_starts(memories, screen.stepper, fitted.windows, begun, 1)
+    values, begun = screen.values(fitted.problem), screen.starts(fitted, 1)
+    tape, (count, own) = screen.model.prepared(fitted.problem.tape, values), fitted.starts.shape
     eye = np.broadcast_to(np.eye(own, begun.shape[1]), (count, own, begun.shape[1]))
 
     def columns() -> np.ndarray:
         run = screen.stepper.run(
-            tape, fitted.windows, values, begun, tangents=True, start_directions=eye, weights=problem.weights
+            tape,
+            fitted.windows,
+            values,
+            begun,
+            tangents=True,
+            start_directions=eye,
+            weights=fitted.problem.weights,
+            probes=screen.probes,
         )
-        assert run.normal is not None
-        return run.normal
+        assert run.packed is not None
+        return run.packed.rows(np.arange(12))
 
     return columns
 

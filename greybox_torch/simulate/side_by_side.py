@@ -1,0 +1,42 @@
+"""Independent pieces of work on all cores at once.
+
+A refit is a chain of short passes with a little Python between them: two refits beside one another keep two cores busier than two
+threads in every pass, which have to be woken and waited for each time.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from typing import TypeVar
+
+Result = TypeVar("Result")
+
+_here = threading.local()
+
+
+def cores() -> int:
+    """Cores that the present thread may use: one within :func:`side_by_side`, else all (or what OMP_NUM_THREADS says)."""
+    if getattr(_here, "beside_others", False):
+        return 1
+    return max(1, int(os.environ.get("OMP_NUM_THREADS", os.cpu_count() or 1)))
+
+
+def side_by_side(tasks: Iterable[Callable[[], Result]]) -> list[Result]:
+    """Results of independent ``tasks``, in their order; where one raises, what has not begun is left undone and the exception goes on."""
+    tasks = list(tasks)
+    workers = min(cores(), len(tasks))
+    if workers < 2:
+        return [task() for task in tasks]
+    pool = ThreadPoolExecutor(workers, initializer=_begin)
+    try:
+        waiting = [pool.submit(task) for task in tasks]
+        return [each.result() for each in waiting]
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _begin() -> None:
+    _here.beside_others = True
