@@ -119,9 +119,8 @@ class Screen:
         problem, windows = fitted.problem, fitted.windows
         values = self.values(problem)
         starts = self.starts(fitted, substeps) if starts is None else starts
-        count, n_base = len(windows.start), fitted.starts.shape[1]
-        eye = np.zeros((count, n_base, starts.shape[1]))
-        eye[:, np.arange(n_base), np.arange(n_base)] = 1.0
+        free = self._places(fitted)[~fitted.problem.carried]
+        eye = np.broadcast_to(np.eye(starts.shape[1])[free], (len(windows.start), len(free), starts.shape[1]))
         run = self.stepper.run(
             self.model.prepared(problem.tape, values),
             windows,
@@ -134,21 +133,26 @@ class Screen:
             probes=self.probes,
         )
         assert run.packed is not None
-        return Projected.of(run.packed, len(self.free_names), n_base)
+        return Projected.of(run.packed, len(self.free_names), len(free))
 
     def starts(self, fitted: WindowFit, substeps: int) -> np.ndarray:
         """Window starts of the screen's model: the fitted ones, memories carried along from window to window."""
         values = self.values(fitted.problem)
-        n_base = fitted.starts.shape[1]
+        own = self._places(fitted)
         problem = problem_for(
             fitted.problem, self.model, dict(zip((p.name for p in self.model.declared_parameters), values, strict=True))
         )
         experiment = np.searchsorted(problem.tape.first, fitted.windows.start, side="right") - 1
         starts = problem.initial[experiment]
-        starts[:, :n_base] = fitted.starts
+        starts[:, own] = fitted.starts
         starts = self.model.begun(starts, problem.driving_tape, fitted.windows.start, values)
-        carried = np.arange(starts.shape[1]) >= n_base
+        carried = ~np.isin(np.arange(starts.shape[1]), own)
         return carried_starts(replace(problem, carried=carried), self.stepper, fitted.windows, starts, substeps)
+
+    def _places(self, fitted: WindowFit) -> np.ndarray:
+        """Where the fitted model's states stand among those of the screen's model, which adds some before memories and some behind."""
+        names = [s.name for s in self.model.states]
+        return np.array([names.index(s.name) for s in fitted.problem.model.states])
 
 
 @dataclass(frozen=True)

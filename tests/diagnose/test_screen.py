@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
-from greybox_torch.diagnose.candidates import candidates
+from greybox_torch.diagnose.candidates import attach, candidates
 from greybox_torch.diagnose.screen import Look, Screen
+from greybox_torch.mechanisms.forces import TorqueRipple
+from greybox_torch.mechanisms.library import LIBRARY
 
 
 @pytest.fixture(scope="module")
@@ -63,3 +66,15 @@ def test_no_effect_no_share(motor_data, motor, begun, screen) -> None:
     clean = begun(motor_data(), motor)
     explained = [look.explained for fit in clean.plain.fits[:1] for look in screen.look(fit, 1)]
     assert max(explained) < 0.02
+
+
+def test_memories_of_accepted_effects_are_not_taken_for_positions(motor_data, motor, begun) -> None:
+    """A screen adds positions before the memories of effects that are there already: a ripple beside a lag is still seen."""
+    data = motor_data(torque=lambda q, v: 0.04 * np.cos(7.0 * q + 0.7), acting=lambda v: lfilter([0.2], [1.0, -0.8], v))
+    search = begun(data, motor)
+    lag = attach(motor, "actuator", LIBRARY["input_lag"]())
+    fitted = search._refitted((lag,), search.current, [{"actuator.input_lag.T": 0.045}])
+    assert fitted is not None
+    offered = [attach(motor, "rotor", TorqueRipple(7.0))]
+    screen = Screen.of(motor, (lag,), offered, search.surroundings, fitted.problem.free_names)
+    assert max(look.explained for look in screen.look(fitted.fits[0], 1)) > 0.5
