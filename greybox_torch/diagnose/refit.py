@@ -26,6 +26,9 @@ WINDOW_SETTINGS = Settings(iterations=30, tolerance=3e-4, trials=6)
 RIVAL = 4.0
 """How many times the best mean squared error a start may be at, after its first iterations, and still be followed."""
 
+MOST_TURNS, TURN_GAIN = 6, 0.02
+"""How often a fit is taken up again after carried states were brought along, and the gain from which that is worth another turn."""
+
 POLISH_SETTINGS = Settings(iterations=60, tolerance=1e-5, trials=6)
 
 
@@ -139,9 +142,16 @@ def _apart(found: Sequence[WindowFit]) -> list[WindowFit]:
 
 
 def _continued(fit: WindowFit, stepper: Stepper, length: int, substeps: int, settings: Settings) -> WindowFit:
-    starts = carried_starts(fit.problem, stepper, fit.windows, fit.starts, substeps)
-    again = fit_windows(fit.problem, stepper, length, starts=starts, substeps=substeps, settings=settings)
-    return fit if again is None or again.mean_square > fit.mean_square else again
+    """The fit carried on to the end; where states are carried, in turns with bringing those along anew, while that gains anything."""
+    for _ in range(MOST_TURNS):
+        starts = carried_starts(fit.problem, stepper, fit.windows, fit.starts, substeps)
+        again = fit_windows(fit.problem, stepper, length, starts=starts, substeps=substeps, settings=settings)
+        if again is None or again.mean_square > fit.mean_square:
+            break
+        gained, fit = again.mean_square < (1 - TURN_GAIN) * fit.mean_square, again
+        if not (gained and fit.problem.carried.any()):
+            break
+    return fit
 
 
 def _distinct(problems: Sequence[Problem]) -> list[Problem]:

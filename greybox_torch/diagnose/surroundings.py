@@ -52,6 +52,8 @@ def _around(
                 values["position"] = _evaluated(body.position, x, u, p, times)
             else:
                 values["position"] = _integrated(_evaluated(body.speed, x, u, p, times), problem)
+            if body.load is not None and _turns_with(port, body, x, u, p):
+                values["load"] = _evaluated(body.load, x, u, p, times)
     if isinstance(port, Sensor):
         row = [o.name for o in model.outputs].index(port.output)
         values["output"] = problem.tape.y[row][~np.isnan(problem.tape.y[row])]
@@ -63,6 +65,14 @@ def _around(
         _force_unit(port, units),
         float(np.median(problem.tape.dt)),
     )
+
+
+def _turns_with(coupling: Coupling, body: Body, x: Signals, u: Signals, p: Signals) -> bool:
+    """Whether a body's speed is one of the two that make a coupling's deflection change."""
+    if not isinstance(body.speed, str) or isinstance(coupling.rate, str):
+        return False
+    faster = x.replaced(**{body.speed: x[body.speed] + 1.0})
+    return bool(torch.as_tensor(coupling.rate(faster, u, p) != coupling.rate(x, u, p)).any())
 
 
 def driving_body(model: GreyBoxModel) -> Body | None:

@@ -83,9 +83,10 @@ def fit_windows(
     """
     windows = cut(problem.tape, length)
     states = starts
-    if states is None:
-        states = rough_starts(problem, windows) if shorter is None else _starts_of(shorter, problem, windows)
-        states = carried_starts(problem, stepper, windows, states, substeps)
+    if states is None and shorter is not None:
+        states = _starts_of(shorter, problem, stepper, windows, substeps)
+    elif states is None:
+        states = carried_starts(problem, stepper, windows, rough_starts(problem, windows), substeps)
     here = _evaluate(problem, stepper, windows, states, None, substeps)
     if here is None:
         return None
@@ -107,25 +108,35 @@ def fit_windows(
                 accepted_steps += 1
                 break
             damping, growth = damping * growth, growth * 2.0
-        if not accepted or change < settings.tolerance:
-            break
-        if problem.carried.any() and accepted_steps % CARRY_EVERY == 0:
-            states = carried_starts(problem, stepper, windows, states, substeps)
-            again = _evaluate(problem, stepper, windows, states, hold, substeps)
-            here = here if again is None else again
+        still = not accepted or change < settings.tolerance
+        if problem.carried.any() and (still or accepted_steps % CARRY_EVERY == 0):
+            carried = carried_starts(problem, stepper, windows, states, substeps)
+            again = _evaluate(problem, stepper, windows, carried, hold, substeps)
             evaluations += 1
+            if again is not None and again.cost < here.cost:
+                still = still and again.cost > (1 - settings.tolerance) * here.cost
+                states, here, damping = carried, again, min(damping, 1e-2)
+        if still:
+            break
     return WindowFit(problem, windows, states, here.mean_square, here.energies, evaluations)
 
 
-def _starts_of(shorter: WindowFit, problem: Problem, windows: Windows) -> np.ndarray:
-    """Start states from a fit on shorter windows, where one of those begins; rough ones elsewhere and for states it does not have."""
+def _starts_of(shorter: WindowFit, problem: Problem, stepper: Stepper, windows: Windows, substeps: int) -> np.ndarray:
+    """Start states from a fit on shorter windows, where one of those begins; rough ones elsewhere.
+
+    States that it does not have and that are carried are brought along its windows: their trajectories stay near the measured one, so that
+    a position does not drift.
+    """
+    known = [s.name for s in shorter.problem.model.states]
+    between = rough_starts(problem, shorter.windows)
+    for i, state in enumerate(problem.model.states):
+        if state.name in known:
+            between[:, i] = shorter.starts[:, known.index(state.name)]
+    between = carried_starts(problem, stepper, shorter.windows, between, substeps)
     states = rough_starts(problem, windows)
     index = np.minimum(np.searchsorted(shorter.windows.start, windows.start), len(shorter.windows.start) - 1)
     same = shorter.windows.start[index] == windows.start
-    known = [s.name for s in shorter.problem.model.states]
-    for i, state in enumerate(problem.model.states):
-        if state.name in known:
-            states[same, i] = shorter.starts[index[same], known.index(state.name)]
+    states[same] = between[index[same]]
     return states
 
 

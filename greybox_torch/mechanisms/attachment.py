@@ -11,7 +11,7 @@ import torch
 
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Surroundings
-from greybox_torch.model import Body, GreyBoxModel, Input, Parameter, Signals, State
+from greybox_torch.model import Body, Coupling, GreyBoxModel, Input, Parameter, Signals, State
 from greybox_torch.model.ports import Actuator, Sensor, Signal
 
 
@@ -95,6 +95,9 @@ class AugmentedModel(GreyBoxModel):
             local, own, memory = self._local(a, seen, u if isinstance(site, Actuator) else acting, p)
             if not a.mechanism.kinematic and not isinstance(site, Actuator | Sensor):
                 forces[a.port] = forces[a.port] + self._share(a, p) * a.mechanism.force(local, own, memory)
+            reaction = a.mechanism.reaction(local, own) if a.mechanism.kinematic else None
+            if reaction is not None:
+                forces[a.position] = forces[a.position] + self._share(a, p) * reaction
             for name, rate in a.mechanism.rates(local, own, memory).items():
                 extra[f"{a.prefix}.{name}"] = rate
         rates = dict(self.base.derivative(seen, acting, p, Signals("port", forces)))
@@ -205,6 +208,8 @@ class AugmentedModel(GreyBoxModel):
         }
         if "position" in a.mechanism.needs or getattr(a.mechanism, "signal", "") == "position":
             values["position"] = self._position(a.position, x, u, p)
+        if isinstance(site, Coupling) and a.position and "load" in self.surroundings[a.port].ranges:
+            values["load"] = _value(self._body(a.position).signals["load"], x, u, p)
         if isinstance(site, Sensor):
             values["output"] = self.base.output(x, u, p)[site.output]
         if "delayed" in a.mechanism.needs:

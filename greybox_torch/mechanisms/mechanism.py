@@ -106,6 +106,10 @@ class Mechanism:
         """For a kinematic law, the deflection that the spring sees."""
         raise NotImplementedError
 
+    def reaction(self, s: Signals, p: Signals) -> Any | None:
+        """For a kinematic law that follows a body's position, the force on that body, if there is one."""
+        return None
+
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         """The looks that the screen takes."""
         raise NotImplementedError

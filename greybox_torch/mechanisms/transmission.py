@@ -41,7 +41,7 @@ class Backlash(Mechanism):
 
 
 class NonlinearStiffness(Mechanism):
-    """k_2 δ |δ| + k_3 δ³."""
+    """k_2 δ |δ| + k_3 δ³ + F_0 tanh(δ / δ_0): stiffening or softening polynomials, and a spring that is stiff at first."""
 
     name = "nonlinear_stiffness"
     kinds = ("coupling",)
@@ -51,16 +51,24 @@ class NonlinearStiffness(Mechanism):
     experiment = "static loads up to the largest"
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
+        reach, unit = around.ranges["deflection"].reach, around.units.get("deflection", "")
         return [
             Parameter("k_2", 0.0, around.per("deflection", 2), description="coefficient of δ|δ|"),
             Parameter("k_3", 0.0, around.per("deflection", 3), description="coefficient of δ³"),
+            Parameter("F_0", 0.0, around.force_unit, lower=0.0, description="level of the part that is stiff at first"),
+            Parameter(
+                "d_0", 0.2 * reach, unit, lower=0.01 * reach, upper=reach, description="deflection where it gives way"
+            ),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return p.k_2 * s.deflection * torch.abs(s.deflection) + p.k_3 * s.deflection**3
+        polynomial = p.k_2 * s.deflection * torch.abs(s.deflection) + p.k_3 * s.deflection**3
+        return polynomial + p.F_0 * torch.tanh(s.deflection / p.d_0)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(("k_3",)), Probe(("k_2", "k_3"))]
+        reach = around.ranges["deflection"].reach
+        softening = (Probe(("F_0",), {"d_0": f * reach}) for f in (0.03, 0.1, 0.3))
+        return [*(Probe(names, {"d_0": 0.2 * reach}) for names in (("k_3",), ("k_2", "k_3"))), *softening]
 
 
 class HystereticSpring(Mechanism):
@@ -130,7 +138,11 @@ class NonlinearDamping(Mechanism):
 
 
 class TransmissionError(Mechanism):
-    """The spring sees the deflection plus a cos nθ + b sin nθ, with θ the position of the driving body."""
+    """The spring sees the deflection plus e(θ) = a cos nθ + b sin nθ, with θ the position of the driving body.
+
+    By virtual work that body feels de/dθ times the spring's force as well; ``reaction`` is the share of it that acts (an error on the
+    far side of a reduction reaches the near side divided by the ratio), where the model says what load the body carries.
+    """
 
     name = "transmission_error"
     kinds = ("coupling",)
@@ -151,11 +163,26 @@ class TransmissionError(Mechanism):
             Parameter(
                 "order", self.order, "", lower=0.8 * self.order, upper=1.25 * self.order, description="periods per turn"
             ),
+            *(
+                [Parameter("reaction", 0.5, "", lower=0.0, upper=1.0, description="share of e'T")]
+                if self._reacts(around)
+                else []
+            ),
         ]
 
     def deflection(self, s: Signals, p: Signals) -> Any:
         angle = p.order * s.position
         return s.deflection + p.a * torch.cos(angle) + p.b * torch.sin(angle)
 
+    def reaction(self, s: Signals, p: Signals) -> Any:
+        angle = p.order * s.position
+        return (
+            -p.reaction * p.order * (p.b * torch.cos(angle) - p.a * torch.sin(angle)) * s.load if "load" in s else None
+        )
+
     def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(("a", "b"), {"order": self.order})]
+        shares: list[dict[str, float]] = [{"reaction": 0.0}, {"reaction": 1.0}] if self._reacts(around) else [{}]
+        return [Probe(("a", "b"), {"order": self.order, **share}) for share in shares]
+
+    def _reacts(self, around: Surroundings) -> bool:
+        return "load" in around.ranges

@@ -18,7 +18,7 @@ from greybox_torch.mechanisms.friction import CoulombFriction, FrictionWarmup, P
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Surroundings
 from greybox_torch.mechanisms.sensor import SensorGain, SensorLag
-from greybox_torch.mechanisms.transmission import Backlash
+from greybox_torch.mechanisms.transmission import Backlash, TransmissionError
 from greybox_torch.model import Balance, Body, GreyBoxModel, Input, Output, Parameter, Signals, State
 from greybox_torch.simulate.eager import EagerStepper
 from greybox_torch.simulate.native import NativeStepper
@@ -384,3 +384,25 @@ def test_constraint_of_the_base_is_kept(full) -> None:
     model = full[0]
     values = Signals("parameter", {**model.values(), "a_m": 0.5, "a_g": 0.6})
     assert all(v < 0 for v in model.admissible(values).values())
+
+
+@pytest.mark.parametrize(("share", "conserved"), [(1.0, True), (0.0, False)])
+def test_transmission_error_with_its_whole_reaction_neither_makes_nor_loses_energy(around, share, conserved) -> None:
+    """Virtual work: an arm without friction, dampers and input keeps its energy."""
+    error = Attachment("gear_spring", TransmissionError(3.0), position="motor", shifted_state="+gear_twist")
+    model = attached(ARM, around, error)
+    none = {"F_v": 0.0, "F_c": 0.0, "F_cs": 0.0, "d_g": 0.0, "d_a": 0.0}
+    p = values_of(model, **none, a=0.02, b=0.01, reaction=share)
+    tape = replace(tape_of(2000), u=np.zeros((1, 2000)))
+    x0 = starts(model, np.array([[0.3, 0.0, 6.0, 5.0, 4.0]]))
+    stepper = EagerStepper.of(model, (), "cpu", "double")
+    states = stepper.run(tape, whole_records(tape), p, x0, keep_states=True).states
+    assert states is not None
+    value = dict(zip((q.name for q in model.declared_parameters), p, strict=True))
+    gear, arm, *speeds, angle = states[0].T
+    twist = gear + 0.02 * np.cos(3.0 * angle) + 0.01 * np.sin(3.0 * angle)
+    shares = (value["a_m"], value["a_g"], 1 - value["a_m"] - value["a_g"])
+    energy = 0.5 * value["k_g1"] * twist**2 + 0.25 * value["k_g3"] * twist**4 + 0.5 * value["k_a"] * arm**2
+    energy += sum(0.5 * value["J"] * s * w**2 for s, w in zip(shares, speeds, strict=True))
+    assert (np.ptp(energy) < 1e-5 * energy[0]) == conserved
+    assert (np.ptp(energy) > 1e-3 * energy[0]) != conserved

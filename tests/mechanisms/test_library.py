@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import torch
 
 from greybox_torch.mechanisms import library
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Range, Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.model import Signals
 
 # Names and kinds of port as users' scripts know them.
 NAMES = {
@@ -20,7 +22,7 @@ NAMES = {
     "actuator": "input_delay input_lag input_bias input_gain torque_saturation actuator_deadzone unknown",
     "sensor": "output_delay sensor_lag sensor_bias sensor_gain unknown",
 }
-PURE_NUMBERS = {"gain_error", "order", "side", "zeta", "load_dependent_friction.c"}
+PURE_NUMBERS = {"gain_error", "order", "side", "zeta", "reaction", "load_dependent_friction.c"}
 
 MECHANISMS = [pytest.param(m(), id=m.name) for m in LIBRARY.values()]
 ALL = [*MECHANISMS, pytest.param(Unknown("speed", knots=5), id="unknown")]
@@ -121,6 +123,15 @@ def test_absent_at_zero_amplitude(mechanism: Mechanism, around, anywhere, law) -
     assert np.array_equal(value, expected)
 
 
+def reaction(mechanism: Mechanism, values: dict[str, float], signals: dict[str, np.ndarray]) -> np.ndarray:
+    as_tensors = (
+        {n: torch.as_tensor(np.asarray(v, dtype=float)) for n, v in each.items()} for each in (signals, values)
+    )
+    force = mechanism.reaction(*(Signals("given", each) for each in as_tensors))
+    assert force is not None
+    return force.numpy()
+
+
 @every
 def test_every_parameter_moves_the_law(mechanism: Mechanism, around, anywhere, law, rates) -> None:
     signals, memory = seen(mechanism, anywhere), memory_of(mechanism, around)
@@ -138,6 +149,8 @@ def test_every_parameter_moves_the_law(mechanism: Mechanism, around, anywhere, l
         if memory:
             moved = rates(mechanism, other, memory, **signals) - rates(mechanism, values, memory, **signals)
             change = max(change, np.abs(moved).max())
+        if mechanism.kinematic and p.name == "reaction":
+            change = np.abs(reaction(mechanism, other, anywhere) - reaction(mechanism, values, anywhere)).max()
         assert change > 1e-6, p.name
 
 

@@ -36,6 +36,15 @@ def test_stiffening(law) -> None:
     assert (np.diff(force)[121:] > np.diff(force)[120]).all()
 
 
+def test_softening_is_stiff_at_first_and_levels_off(law) -> None:
+    force = law(NonlinearStiffness(), {"F_0": 3.0, "d_0": 0.005}, deflection=TWIST)
+    np.testing.assert_allclose(force, -force[::-1], atol=1e-15)
+    assert (force * TWIST >= 0).all() and (np.diff(force) >= 0).all()
+    assert force[-1] == pytest.approx(3.0, rel=1e-6)
+    slope = np.diff(force) / np.diff(TWIST)
+    assert slope.max() == pytest.approx(3.0 / 0.005, rel=0.01) and (np.diff(slope)[121:] <= 0).all()
+
+
 def test_nonlinear_damping_opposes_the_rate(law) -> None:
     force = law(NonlinearDamping(), {"d_2": 0.5, "d_0": 0.2, "r_0": 0.01}, rate=RATES)
     np.testing.assert_allclose(force, -force[::-1], atol=1e-15)
