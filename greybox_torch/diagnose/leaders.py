@@ -15,6 +15,9 @@ from greybox_torch.mechanisms.unknown import Unknown
 
 NAMED_PER_LENGTH = 4
 CURVES_PER_LENGTH = 1
+TIE, MOST_TIED = 0.97, 8
+"""Share of the best look's from which a look ties with it, and how many of those are followed."""
+
 LEAST_SHARE = 0.008
 CAUTIOUS = 0.3
 """Part of a suggested curve that a refit also begins with."""
@@ -46,7 +49,7 @@ def leaders(
     found: dict[tuple, Leader] = {}
     for at_length, fit in zip(looks, fits, strict=True):
         best = _best_of_each(at_length, surroundings)
-        named = [b for b in best if not isinstance(b.attachment.mechanism, Unknown)][:NAMED_PER_LENGTH]
+        named = _with_ties([b for b in best if not isinstance(b.attachment.mechanism, Unknown)])
         curves = [b for b in best if isinstance(b.attachment.mechanism, Unknown)][:CURVES_PER_LENGTH]
         fitted = dict(zip(fit.problem.names, map(float, fit.problem.values), strict=True))
         for look in named + curves:
@@ -65,6 +68,12 @@ def leaders(
                 order = (*starts, *before.starts) if look.explained > before.explained else (*before.starts, *starts)
                 found[identity] = Leader(look.attachment, order, explained)
     return sorted(found.values(), key=lambda leader: -leader.explained)
+
+
+def _with_ties(ranked: Sequence[Look]) -> list[Look]:
+    """The first few, and what explains as much as the best: what the data cannot tell apart has to share the probability."""
+    tied = sum(look.explained > TIE * ranked[0].explained for look in ranked)
+    return list(ranked[: min(max(NAMED_PER_LENGTH, tied), MOST_TIED)])
 
 
 def identity_of(attachment: Attachment) -> tuple:

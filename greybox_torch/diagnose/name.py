@@ -21,6 +21,9 @@ from greybox_torch.simulate.stepper import Stepper, make_stepper
 FINALISTS = 3
 """Hypotheses that are fitted at all window lengths, after a first round at the middle one."""
 
+TIE, MOST_TIED = 0.03, 6
+"""Difference of the scores within which named hypotheses tie after the first round, and how many of those go on."""
+
 TRIAL_SETTINGS = Settings(iterations=14, tolerance=1e-3, trials=5)
 TRIAL_STARTS = 2
 PARSIMONY = 0.003
@@ -179,10 +182,16 @@ def _standard_errors(values: np.ndarray) -> float:
 def _finalists(
     first: list[tuple[float, Leader, Hypothesis, Stepper]],
 ) -> list[tuple[float, Leader, Hypothesis, Stepper]]:
-    """The best few, with at least one named hypothesis and one curve among them where there are any, and what they generalise."""
+    """The best few, with at least one named hypothesis and one curve among them where there are any; what ties with the best named one,
+    and what they generalise.
+    """
     chosen = first[:FINALISTS]
+    named = [e for e in first if not isinstance(e[1].attachment.mechanism, Unknown)]
+    chosen += [e for e in named[:MOST_TIED] if e[0] < named[0][0] + TIE and e not in chosen]
     contained = {(e[1].attachment.port, name) for e in chosen for name in e[1].attachment.mechanism.generalises}
-    chosen += [e for e in first[FINALISTS:] if (e[1].attachment.port, e[1].attachment.mechanism.name) in contained]
+    chosen += [
+        e for e in first if (e[1].attachment.port, e[1].attachment.mechanism.name) in contained and e not in chosen
+    ]
     for unknown in (True, False):
         if not any(isinstance(e[1].attachment.mechanism, Unknown) == unknown for e in chosen):
             chosen += [e for e in first if isinstance(e[1].attachment.mechanism, Unknown) == unknown][:1]

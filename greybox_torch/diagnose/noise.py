@@ -10,6 +10,13 @@ from greybox_torch.estimate.problem import Problem
 DIFFERENCES = 3
 """How many times the outputs are differenced: what a machine does is smooth at the rate it is sampled at, noise is not."""
 
+FLOORS_AGREE = 1.05
+"""Ratio of the noises that differences of several orders show up to which they agree."""
+
+AT_NOISE = 1.0
+"""How many times the mean square of the noise an error may have to be noise alone. (Under feedback the noise shakes the machine as well,
+which the differences count and a model explains: the floor is a few per cent high.)"""
+
 ABOVE_NOISE = 1.3
 """How many times the noise an error must be to count as more than noise."""
 
@@ -19,7 +26,17 @@ def times_noise(problem: Problem, fitted: Hypothesis) -> float:
     return float(np.sqrt(fitted.fits[0].mean_square / max(noise_floor(problem), 1e-300)))
 
 
-def noise_floor(problem: Problem) -> float:
+def only_noise(problem: Problem, fitted: Hypothesis) -> bool:
+    """Whether nothing but noise is left at any window length, where the recordings tell how much of it there is.
+
+    They do where differences of several orders agree: what is left of the motion in them would not be the same in each.
+    """
+    floors = [noise_floor(problem, order) for order in (DIFFERENCES, DIFFERENCES + 1, DIFFERENCES + 2)]
+    known = max(floors) < FLOORS_AGREE * min(floors)
+    return known and max(f.mean_square for f in fitted.fits) < AT_NOISE * floors[0]
+
+
+def noise_floor(problem: Problem, order: int = DIFFERENCES) -> float:
     """Mean squared weighted error that white sensor noise alone would leave, as the outputs' high-frequency floor has it.
 
     The variance of the third differences of white noise is 20 times its own. Where the sampling is so slow that the motion itself is
@@ -27,11 +44,11 @@ def noise_floor(problem: Problem) -> float:
 
     Source: J. von Neumann et al., "The mean square successive difference", Annals of Mathematical Statistics 12, 1941.
     """
-    factor = float((_binomial(DIFFERENCES) ** 2).sum())
+    factor = float((_binomial(order) ** 2).sum())
     squares, count = 0.0, 0
     for e in range(len(problem.tape.first)):
         y = problem.tape.y[:, problem.tape.span(e)] * problem.weights[:, None]
-        rough = np.diff(y, DIFFERENCES, axis=1)
+        rough = np.diff(y, order, axis=1)
         known = rough[~np.isnan(rough)]
         squares, count = squares + float((known**2).sum()), count + known.size
     return squares / factor / max(count, 1)

@@ -56,8 +56,10 @@ def _weight(chosen: Ranked, rival: Ranked) -> float:
 
 
 def round_of(search: Search, prefix: str) -> Round | None:
-    """The round in which an effect was taken."""
-    return next((r for r in search.rounds if r.taken is not None and r.taken.leader.attachment.prefix == prefix), None)
+    """The round in which an effect was taken, the last one where it was chosen anew beside the others."""
+    return next(
+        (r for r in reversed(search.rounds) if r.taken is not None and r.taken.leader.attachment.prefix == prefix), None
+    )
 
 
 def confidence(search: Search, effects: Sequence[Effect], complete: bool) -> float:

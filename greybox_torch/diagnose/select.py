@@ -10,7 +10,7 @@ from greybox_torch.diagnose.candidates import candidates, periodic_candidates, s
 from greybox_torch.diagnose.curve import finer
 from greybox_torch.diagnose.leaders import Leader, leaders
 from greybox_torch.diagnose.name import PARSIMONY, Ranked, judged, polished, rank, sureness
-from greybox_torch.diagnose.noise import ABOVE_NOISE, times_noise
+from greybox_torch.diagnose.noise import ABOVE_NOISE, only_noise, times_noise
 from greybox_torch.diagnose.orders import scan_orders
 from greybox_torch.diagnose.refit import POLISH_SETTINGS, Hypothesis, hypothesis
 from greybox_torch.diagnose.screen import Look, Screen
@@ -44,6 +44,9 @@ never exactly the law of a book."""
 
 LEAST_SHARE_PASSED_OVER = 0.5
 """Share of the residual over the shortest windows from which what explains it is followed, whatever longer ones say."""
+
+LEAST_PART = 0.02
+"""Share of the plain model's mean squared error that a free curve has to remove at some window length."""
 
 CURVE_MARGIN = 0.1
 """How much better, in the logarithm of the mean squared error, a free curve must be than every named mechanism to be preferred."""
@@ -83,6 +86,7 @@ class Search:
         self._explore()
         self._try_named()
         self.prune()
+        self._revisit()
         return self.current
 
     def _explore(self) -> None:
@@ -94,7 +98,7 @@ class Search:
         before, kept = self.current, list(self.rounds)
         self._advance()
         passed_over = self._passed_over(before, self.rounds[len(kept)]) if len(self.rounds) > len(kept) else None
-        if passed_over is None:
+        if passed_over is None or passed_over.attachment.prefix in {e.prefix for e in self.current.effects}:
             return
         first_way = self.current, self.rounds
         if not self._advance_from(passed_over, before, kept) or self._cost() > self._cost(first_way[0]) - CURVE_MARGIN:
@@ -146,8 +150,9 @@ class Search:
         return best if taken < 0.5 * shares[best.attachment.prefix] else None
 
     def _advance(self) -> None:
-        while len(self.current.effects) < MOST_EFFECTS and (self.step() or self._step_with_fine_curves()):
-            pass
+        while len(self.current.effects) < MOST_EFFECTS and not only_noise(self.problem, self.current):
+            if not (self.step() or self._step_with_fine_curves()):
+                break
 
     def _step_with_fine_curves(self) -> bool:
         """Where nothing pays and yet more than noise is left: one round with curves fine enough for a narrow law."""
@@ -181,6 +186,25 @@ class Search:
         (self.current, self.rounds), self.named = self.named, None
         self.without = {}
         self.prune()
+
+    def _revisit(self) -> None:
+        """Choose every one of several effects once more, beside the others: an early choice was made while they were still missing."""
+        if len(self.current.effects) < 2:
+            return
+        for effect in self.current.effects:
+            whole, rounds = self.current, list(self.rounds)
+            self.progress(f"choosing {effect.prefix} once more")
+            self.current = self.without[effect.prefix]
+            try:
+                chosen = self.step() and self._cost() < self._cost(whole) + LEAST_GAIN
+            finally:
+                reached, self.current = self.current, whole
+            if not chosen:
+                self.rounds = rounds
+            elif effect.prefix not in {e.prefix for e in reached.effects}:
+                self.current = reached
+                self.prune()
+                return
 
     def begin(self) -> None:
         """Fit the model as it stands.
@@ -222,11 +246,17 @@ class Search:
             progress=self.progress,
         )
         ranked = self._fairly(ranked)
-        taken = _chosen([r for r in ranked if r.gain > LEAST_GAIN and r.surely > LEAST_SURENESS])
+        paying = (r for r in ranked if r.gain > LEAST_GAIN and r.surely > LEAST_SURENESS)
+        taken = _chosen([r for r in paying if not r.unknown or self._substantial(r)])
         self.rounds.append(Round(tuple(tuple(at) for at in looks), tuple(ranked), taken))
         if taken is not None:
             self.current = self._detailed(taken) if taken.unknown else taken.fitted
         return taken is not None
+
+    def _substantial(self, curve: Ranked) -> bool:
+        """Whether a free curve explains a part of the whole mismatch that counts, and not what a named law lacks to be the machine's."""
+        fits = zip(self.plain.fits, self.current.fits, curve.fitted.fits, strict=True)
+        return any(b.mean_square - a.mean_square > LEAST_PART * p.mean_square for p, b, a in fits)
 
     def _detailed(self, taken: Ranked) -> Hypothesis:
         """The hypothesis with its new curve drawn more finely, where that pays."""
