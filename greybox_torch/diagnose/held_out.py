@@ -13,6 +13,10 @@ from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 
 
+WHOLE = 1.0
+"""Of a held-out record, the part that start positions are found on: all of it, as an effect may act at one place alone."""
+
+
 @dataclass(frozen=True)
 class Gain:
     """The share of the held-out squared error that an effect removes, and its standard error over windows."""
@@ -45,7 +49,7 @@ def held_out_fits(hypothesis: Hypothesis, problem: Problem, substeps: int) -> tu
         else problem.with_values(hypothesis.problem.values)
     )
     fixed = replace(restated, free=np.zeros_like(restated.free))
-    started = estimate_initial(fixed, hypothesis.stepper, substeps=substeps)
+    started = estimate_initial(fixed, hypothesis.stepper, fraction=WHOLE, substeps=substeps)
     found = []
     for length in lengths(problem)[1:] or lengths(problem):
         fit = fit_windows(started, hypothesis.stepper, length, substeps=substeps, settings=WINDOW_SETTINGS)

@@ -25,6 +25,9 @@ from greybox_torch.simulate.side_by_side import side_by_side
 FINE_KNOTS = 40
 """Knots of the curves that are tried when nothing else pays."""
 
+MOST_PARAMETERS = 60
+"""Free parameters of a hypothesis from which its curve is not drawn any finer."""
+
 MOST_EFFECTS = 4
 LEAST_GAIN = 0.01
 """Improvement of the mean squared error (as a share, averaged over window lengths) below which nothing is claimed."""
@@ -157,7 +160,11 @@ class Search:
     def _step_with_fine_curves(self) -> bool:
         """Where nothing pays and yet more than noise is left: one round with curves fine enough for a narrow law."""
         more = times_noise(self.problem, self.current) > ABOVE_NOISE
-        return self.curves and more and self.step(fine=True)
+        return self._may_be_a_curve() and more and self.step(fine=True)
+
+    def _may_be_a_curve(self) -> bool:
+        """Whether free curves are offered: one says that something is unknown, and where; a second one would only fit what is left."""
+        return self.curves and not any(isinstance(e.mechanism, Unknown) for e in self.current.effects)
 
     def _try_named(self) -> None:
         """Where a free curve was taken: the search once more without curves, kept if named effects come as far.
@@ -259,22 +266,25 @@ class Search:
         return any(b.mean_square - a.mean_square > LEAST_PART * p.mean_square for p, b, a in fits)
 
     def _detailed(self, taken: Ranked) -> Hypothesis:
-        """The hypothesis with its new curve drawn more finely, where that pays."""
-        self.progress("drawing the curve more finely")
-        attachment, values = finer(taken.fitted, taken.leader.attachment, self.surroundings)
-        effects = (*taken.fitted.effects[:-1], attachment)
-        fitted = hypothesis(
-            self.problem,
-            effects,
-            self.surroundings,
-            [values],
-            substeps=self.substeps,
-            shorter=taken.fitted.fits[0],
-            settings=POLISH_SETTINGS,
-            device=self.device,
-        )
-        pays = fitted is not None and fitted.score < taken.fitted.score - LEAST_GAIN
-        return fitted if pays and fitted is not None else taken.fitted
+        """The hypothesis with its new curve drawn more and more finely, as long as that pays."""
+        drawn = taken.fitted
+        while len(drawn.problem.free_names) < MOST_PARAMETERS:
+            self.progress("drawing the curve more finely")
+            attachment, values = finer(drawn, drawn.effects[-1], self.surroundings)
+            fitted = hypothesis(
+                self.problem,
+                (*drawn.effects[:-1], attachment),
+                self.surroundings,
+                [values],
+                substeps=self.substeps,
+                shorter=drawn.fits[0],
+                settings=POLISH_SETTINGS,
+                device=self.device,
+            )
+            if fitted is None or fitted.score > drawn.score - LEAST_GAIN:
+                break
+            drawn = fitted
+        return drawn
 
     def prune(self) -> None:
         """Drop every effect whose loss the rest make up for, until none can go; ``without`` keeps what was compared with."""
@@ -325,7 +335,7 @@ class Search:
         return [
             *candidates(model, self.shifts, self.surroundings, flexible=False),
             *periodic_candidates(model, self.shifts, self.surroundings, orders),
-            *(candidates(model, self.shifts, self.surroundings, flexible=True) if self.curves else []),
+            *(candidates(model, self.shifts, self.surroundings, flexible=True) if self._may_be_a_curve() else []),
         ]
 
     def _fairly(self, ranked: Sequence[Ranked]) -> list[Ranked]:

@@ -11,11 +11,15 @@ from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Settings, minimise
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import fit_windows
-from greybox_torch.simulate.stepper import Stepper
+from greybox_torch.simulate.stepper import Stepper, Windows
 from greybox_torch.simulate.tape import Tape
 
 SHORT = 6
 """Into how many windows the beginning of a record is cut for a first guess of its start states."""
+
+
+MOST_TRIALS = 5
+"""How many of the possible start values are followed to their optimum."""
 
 
 def estimate_initial(problem: Problem, stepper: Stepper, *, fraction: float = 0.1, substeps: int = 1) -> Problem:
@@ -46,17 +50,31 @@ def estimate_initial(problem: Problem, stepper: Stepper, *, fraction: float = 0.
 def _best_start(part: Problem, trials: Sequence[Mapping[str, float]], stepper: Stepper, substeps: int) -> np.ndarray:
     """The start states (n_x,) of the one experiment of ``part`` that fit it best."""
     names = [s.name for s in part.model.states]
+    rows = np.repeat(part.initial, max(len(trials), 1), axis=0)
+    for row, trial in zip(rows, trials, strict=False):
+        row[[names.index(n) for n in trial]] = list(trial.values())
+    if len(rows) > MOST_TRIALS:
+        rows = _promising(part, rows, stepper, substeps)
     best, cost = part.initial[0], np.inf
-    for trial in trials or [{}]:
-        initial = part.initial.copy()
-        for name, value in trial.items():
-            initial[0, names.index(name)] = value
+    for initial in rows[:, None]:
         for begin in (initial, _from_short_windows(replace(part, initial=initial), stepper, substeps)):
             run = FreeRun(replace(part, initial=begin), _AllFixed(stepper), substeps)
             optimum = minimise(run.quadratic, run.start, *run.bounds, settings=Settings(iterations=30, tolerance=1e-8))
             if optimum is not None and optimum.model.cost < (1 - 1e-6) * cost:
                 best, cost = run.at(optimum.point).initial[0], optimum.model.cost
     return best
+
+
+def _promising(part: Problem, rows: np.ndarray, stepper: Stepper, substeps: int) -> np.ndarray:
+    """Those of the start states ``rows`` (K, n_x) that simulate best, the states that are not tried from short windows."""
+    others = part.initial_free & (np.ptp(rows, axis=0) == 0)
+    rows = np.where(others, _from_short_windows(part, stepper, substeps), rows)
+    first, last = (np.repeat(end, len(rows)) for end in (part.tape.first, part.tape.last))
+    windows = Windows(first, last, int(part.tape.lengths[0]))
+    run = stepper.run(part.driving_tape, windows, part.values, rows, substeps=substeps, weights=part.weights)
+    assert run.normal is not None
+    energies = np.nan_to_num(run.normal[:, -1, -1], nan=np.inf)
+    return rows[np.argsort(energies, kind="stable")[:MOST_TRIALS]]
 
 
 def _from_short_windows(part: Problem, stepper: Stepper, substeps: int) -> np.ndarray:

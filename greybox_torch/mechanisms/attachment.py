@@ -31,7 +31,7 @@ class Attachment:
         return f"{self.port}.{self.mechanism.name}{self.label}"
 
 
-OFFSETS = (0.0, -0.25, 0.25, -0.5, 0.5, -0.75, 0.75)
+OFFSETS = sorted(np.linspace(-0.9, 0.9, 37), key=abs)
 """Start positions tried, in shares of the travel, where an effect acts at one place."""
 
 START_POSITIONS = 12

@@ -84,11 +84,11 @@ class TorqueRipple(Mechanism):
 
 
 class EndStop(Mechanism):
-    """−k (θ − θ_1) beyond θ_1 (``side`` +1), or −k (θ − θ_1) below it (``side`` −1)."""
+    """−k (θ − θ_1) − c ω beyond θ_1 (``side`` +1) or below it (``side`` −1), as long as that pushes back: a stop does not pull."""
 
     name = "end_stop"
     kinds = ("body",)
-    needs = ("position",)
+    needs = ("position", "speed")
     explanation = "Past a position something stiff pushes back (mechanical stop, cable)."
     source = "F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts, 1996"
     experiment = "slow approach to the ends of travel"
@@ -106,19 +106,26 @@ class EndStop(Mechanism):
                 upper=end,
                 description="stop",
             ),
+            Parameter("c", 0.0, around.per("speed"), lower=0.0, description="damping of the stop"),
             Parameter("side", 1.0, "", fixed=True, description="+1: the stop is above, -1: below"),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        beyond = torch.clamp(p.side * (s.position - p.where), min=0.0)
-        return -p.k * p.side * beyond
+        beyond = p.side * (s.position - p.where)
+        back = p.k * beyond + p.c * p.side * s.speed
+        return -p.side * torch.where((beyond > 0.0) & (back >= 0.0), back, 0.0)
+
+    def signals(self) -> tuple[str, ...]:
+        return ("position",)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         travel = around.ranges["position"]
         width = travel.span
-        above = [Probe(("k",), {"where": travel.high - share * width, "side": 1.0}) for share in (0.03, 0.1, 0.25)]
+        above = [
+            Probe(("k",), {"where": travel.high - share * width, "side": 1.0, "c": 0.0}) for share in (0.03, 0.1, 0.25)
+        ]
         return above + [
-            Probe(("k",), {"where": travel.low + share * width, "side": -1.0}) for share in (0.03, 0.1, 0.25)
+            Probe(("k",), {"where": travel.low + share * width, "side": -1.0, "c": 0.0}) for share in (0.03, 0.1, 0.25)
         ]
 
 

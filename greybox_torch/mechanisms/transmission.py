@@ -72,7 +72,10 @@ class NonlinearStiffness(Mechanism):
 
 
 class HystereticSpring(Mechanism):
-    """F z / z_0 with dz/dt = δ' − |δ'| z / z_0 (an elasto-slip element in parallel with the spring)."""
+    """F r with r = z / z_0 and dz/dt = δ' − |δ'| r (1 − m + m |r|), an elasto-slip element in parallel with the spring.
+
+    ``sharpness`` m leads from the exponent 1 of Bouc and Wen (0), where slip sets in gradually, to their exponent 2 (1).
+    """
 
     name = "hysteretic_spring"
     kinds = ("coupling",)
@@ -92,19 +95,21 @@ class HystereticSpring(Mechanism):
             Parameter(
                 "z_0", 4 * least, unit, lower=0.5 * least, upper=1e3 * least, description="deflection at which it slips"
             ),
+            Parameter("sharpness", 0.5, "", lower=0.0, upper=1.0, description="how suddenly slip sets in"),
         ]
 
     def states(self, around: Surroundings) -> list[State]:
         return [State("slip", around.units.get("deflection", ""))]
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
-        return {"slip": s.rate - torch.abs(s.rate) * z.slip / p.z_0}
+        share = z.slip / p.z_0
+        return {"slip": s.rate - torch.abs(s.rate) * share * (1.0 - p.sharpness + p.sharpness * torch.abs(share))}
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         return p.F * z.slip / p.z_0
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(("F",), {"z_0": factor * self._smallest(around)}) for factor in (2, 8, 32)]
+        return [Probe(("F",), {"z_0": factor * self._smallest(around), "sharpness": 0.5}) for factor in (2, 8, 32)]
 
 
 class NonlinearDamping(Mechanism):

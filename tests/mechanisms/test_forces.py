@@ -36,7 +36,7 @@ def test_ripple_is_periodic_with_its_order_and_no_other(law, order) -> None:
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_end_stop_pushes_back_beyond_and_is_absent_before(law, side) -> None:
-    force = law(EndStop(), {"k": 10.0, "where": 1.0, "side": side}, position=ANGLES)
+    force = law(EndStop(), {"k": 10.0, "where": 1.0, "side": side}, position=ANGLES, speed=np.zeros_like(ANGLES))
     beyond = side * (ANGLES - 1.0)
     assert (force[beyond <= 0] == 0).all()
     np.testing.assert_allclose(force[beyond > 0], -side * 10.0 * beyond[beyond > 0])
@@ -76,3 +76,14 @@ def test_leak_is_proportional_and_loses(law) -> None:
 def test_threshold_flow_begins_at_its_threshold(law) -> None:
     flow = law(ThresholdFlow(), {"c": 2.0, "threshold": 1.5}, level=np.array([0.0, 1.5, 2.0, 2.5]))
     np.testing.assert_allclose(flow, [0.0, 0.0, -1.0, -2.0], atol=1e-12)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_damped_end_stop_takes_energy_and_never_pulls(law, side) -> None:
+    speed = 5.0 * np.cos(3.0 * ANGLES)
+    values = {"k": 10.0, "c": 4.0, "where": 0.2 * side, "side": side}
+    force = law(EndStop(), values, position=ANGLES, speed=speed)
+    bare = law(EndStop(), {**values, "c": 0.0}, position=ANGLES, speed=speed)
+    assert (side * force <= 0).all() and (force[side * ANGLES <= 0.2] == 0).all()
+    assert ((force - bare) * speed <= 1e-12).all()
+    assert np.abs(force - bare).max() > 1.0
