@@ -12,7 +12,6 @@ from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 
-
 WHOLE = 1.0
 """Of a held-out record, the part that start positions are found on: all of it, as an effect may act at one place alone."""
 
