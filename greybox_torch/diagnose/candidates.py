@@ -32,6 +32,9 @@ FLEXIBLE = {
 }
 """Signals that the flexible curve is tried over, by kind of port."""
 
+FADING = {"actuator": "input"}
+"""Signals that a flexible curve over time is tried as a gain of (a motor that warms up, a battery that sags), by kind of port."""
+
 
 PERIODIC = (TorqueRipple, PositionDependentFriction, TransmissionError)
 """Mechanisms whose order has to be found in the data first."""
@@ -96,7 +99,9 @@ def attach(model: GreyBoxModel, port: str, mechanism: Mechanism, shifted: str = 
 
 
 def _curves(port: Port, knots: int) -> Iterable[Unknown]:
-    return (Unknown(signal, knots) for signal in FLEXIBLE.get(port.kind, ()))
+    yield from (Unknown(signal, knots) for signal in FLEXIBLE.get(port.kind, ()))
+    if port.kind in FADING:
+        yield Unknown("time", knots, FADING[port.kind])
 
 
 def _is_angle(around: Surroundings) -> bool:
@@ -108,7 +113,7 @@ def _available(mechanism: Mechanism, around: Surroundings) -> bool:
         return False  # as the library offers them they repeat once per turn; periodic_candidates has those with other periods
     needed = set(mechanism.needs) - {"delayed"}
     if isinstance(mechanism, Unknown):
-        needed = {mechanism.signal}
+        needed = set(mechanism.signals())
     return needed <= set(around.ranges)
 
 

@@ -85,7 +85,7 @@ def finer(
     """The curve with twice the knots, and the values of the hypothesis with it: the same curve to begin with."""
     unknown, around = curve.mechanism, surroundings[curve.port]
     assert isinstance(unknown, Unknown) and isinstance(fitted.model, AugmentedModel)
-    detailed = Unknown(unknown.signal, 2 * unknown.knots)
+    detailed = Unknown(unknown.signal, 2 * unknown.knots, unknown.factor)
     reached = around.ranges[unknown.signal]
     grid = torch.linspace(reached.low, reached.high, POINTS, dtype=torch.float64)
     p = Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in fitted.values().items()})

@@ -17,7 +17,9 @@ from greybox_torch.model import GreyBoxModel
 def attachment_json(attachment: Attachment, around: Surroundings) -> dict[str, Any]:
     """Everything needed to attach the same mechanism again."""
     mechanism = attachment.mechanism
-    options = {name: getattr(mechanism, name) for name in ("order", "signal", "knots") if name in vars(mechanism)}
+    options = {
+        name: getattr(mechanism, name) for name in ("order", "signal", "knots", "factor") if name in vars(mechanism)
+    }
     return {
         "port": attachment.port,
         "mechanism": mechanism.name,

@@ -15,6 +15,7 @@ class Unknown(Mechanism):
     """A sum of smooth bumps over the range of one signal.
 
     ``knots`` bumps exp(−((s − s_k) / w)²) with centres spread evenly over where the signal moved; beyond that the curve stays level.
+    With a ``factor`` the curve is what that other signal is multiplied by: a gain that changes.
     """
 
     name = "unknown"
@@ -22,12 +23,13 @@ class Unknown(Mechanism):
     explanation = "Something repeatable is missing here that no known mechanism describes; the curve shows what."
     source = "radial basis functions: D. S. Broomhead, D. Lowe, Complex Systems 2, 1988"
 
-    def __init__(self, signal: str, knots: int = 14) -> None:
+    def __init__(self, signal: str, knots: int = 14, factor: str = "") -> None:
         self.signal = signal
         self.knots = knots
+        self.factor = factor
 
     def signals(self) -> tuple[str, ...]:
-        return (self.signal,)
+        return (self.signal, self.factor) if self.factor else (self.signal,)
 
     def centres(self, around: Surroundings) -> list[float]:
         """Centres of the bumps, in the signal's unit; one lies beyond either end of the range, so that the ends are covered as well."""
@@ -39,7 +41,9 @@ class Unknown(Mechanism):
         centres = self.centres(around)
         unit = around.units.get(self.signal, "")
         heights = [
-            Parameter(f"w_{k}", 0.0, around.force_unit, description=f"height at {c:g}", shrunk=True)
+            Parameter(
+                f"w_{k}", 0.0, "" if self.factor else around.force_unit, description=f"height at {c:g}", shrunk=True
+            )
             for k, c in enumerate(centres)
         ]
         first = Parameter("first", centres[0], unit, fixed=True, description="first centre")
@@ -48,7 +52,8 @@ class Unknown(Mechanism):
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         place = torch.clamp((s[self.signal] - p.first) / p.spacing, 1.0, self.knots - 2.0)
-        return sum(p[f"w_{k}"] * torch.exp(-((place - k) ** 2)) for k in range(self.knots))
+        curve = sum(p[f"w_{k}"] * torch.exp(-((place - k) ** 2)) for k in range(self.knots))
+        return curve * s[self.factor] if self.factor in s else curve
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(tuple(f"w_{k}" for k in range(self.knots)))]

@@ -58,6 +58,7 @@ def test_curves(arm_search) -> None:
         *((b, "position", b) for b in ("motor", "gearbox", "arm")),
         *((s, q, "") for s in ("gear_spring", "arm_spring") for q in ("deflection", "rate")),
         ("actuator", "input", ""),
+        ("actuator", "time", ""),
     }
 
 

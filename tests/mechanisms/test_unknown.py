@@ -31,3 +31,15 @@ def test_centres_span_the_range_and_do_not_move(around) -> None:
 
 def test_signal_of_the_curve_is_what_it_is_told() -> None:
     assert Unknown("input").signals() == ("input",)
+
+
+def test_a_curve_with_a_factor_is_a_gain_that_changes(law, around, anywhere) -> None:
+    gain, force = Unknown("time", 6, "input"), Unknown("time", 6)
+    heights = {f"w_{k}": 0.1 * k for k in range(6)}
+    time, u = anywhere["time"], anywhere["input"]
+    np.testing.assert_allclose(law(gain, heights, time=time, input=u), u * law(force, heights, time=time))
+    assert gain.signals() == ("time", "input")
+    assert {p.unit for p in gain.parameters(around) if p.shrunk} == {""}
+    assert law(gain, heights, time=time) == pytest.approx(law(force, heights, time=time)), (
+        "without the factor: the gain itself"
+    )
