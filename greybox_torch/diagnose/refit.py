@@ -26,7 +26,7 @@ WINDOW_SETTINGS = Settings(iterations=30, tolerance=3e-4, trials=6)
 RIVAL = 4.0
 """How many times the best mean squared error a start may be at, after its first iterations, and still be followed."""
 
-MOST_TURNS, TURN_GAIN = 6, 0.02
+MOST_TURNS, TURN_GAIN = 3, 0.03
 """How often a fit is taken up again after carried states were brought along, and the gain from which that is worth another turn."""
 
 POLISH_SETTINGS = Settings(iterations=60, tolerance=1e-5, trials=6)

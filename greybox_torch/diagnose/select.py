@@ -12,7 +12,7 @@ from greybox_torch.diagnose.leaders import Leader, leaders
 from greybox_torch.diagnose.name import PARSIMONY, Ranked, judged, polished, rank, sureness
 from greybox_torch.diagnose.noise import ABOVE_NOISE, only_noise, times_noise
 from greybox_torch.diagnose.orders import scan_orders
-from greybox_torch.diagnose.refit import POLISH_SETTINGS, Hypothesis, hypothesis
+from greybox_torch.diagnose.refit import POLISH_SETTINGS, WINDOW_SETTINGS, Hypothesis, hypothesis
 from greybox_torch.diagnose.screen import Look, Screen
 from greybox_torch.diagnose.surroundings import survey
 from greybox_torch.errors import NumericalError
@@ -278,7 +278,7 @@ class Search:
                 [values],
                 substeps=self.substeps,
                 shorter=drawn.fits[0],
-                settings=POLISH_SETTINGS,
+                settings=WINDOW_SETTINGS,
                 device=self.device,
             )
             if fitted is None or fitted.score > drawn.score - LEAST_GAIN:
