@@ -10,7 +10,7 @@ import numpy as np
 
 from greybox_torch.diagnose.curve import laws_on_curve
 from greybox_torch.diagnose.leaders import Leader
-from greybox_torch.diagnose.refit import POLISH_SETTINGS, Hypothesis, augmented, hypothesis, lengths
+from greybox_torch.diagnose.refit import POLISH_SETTINGS, Hypothesis, augmented, hypothesis, lengths, without_free
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.mechanisms.mechanism import Surroundings
@@ -72,10 +72,13 @@ def rank(
     progress: Callable[[str], None] = lambda text: None,
 ) -> list[Ranked]:
     """Refit every leader on top of ``current`` and rank them, best first."""
-    steppers = _compiled(base, current, found, surroundings, device)
+    frozen = frozenset(
+        p.name for p in current.model.declared_parameters if p.shrunk
+    )  # heights of a curve: many, and good already
+    steppers = _compiled(base, current, found, surroundings, frozen, device)
     at = lengths(base)
     middle = at[min(1, len(at) - 1) :][:1]
-    refit = partial(hypothesis, base, surroundings=surroundings, substeps=substeps, device=device)
+    refit = partial(hypothesis, base, surroundings=surroundings, substeps=substeps, frozen=frozen, device=device)
 
     def tried(leader: Leader, stepper: Stepper) -> Hypothesis | None:
         progress(f"refitting {leader.attachment.prefix}")
@@ -143,7 +146,7 @@ def polished(
         substeps=substeps,
         shorter=fitted.fits[0],
         settings=POLISH_SETTINGS,
-        stepper=fitted.stepper,
+        stepper=None if fitted.frozen else fitted.stepper,
         device=device,
     )
     return fitted if again is None or again.score > fitted.score else again
@@ -199,12 +202,17 @@ def _finalists(
 
 
 def _compiled(
-    base: Problem, current: Hypothesis, found: Sequence[Leader], surroundings: Mapping[str, Surroundings], device: str
+    base: Problem,
+    current: Hypothesis,
+    found: Sequence[Leader],
+    surroundings: Mapping[str, Surroundings],
+    frozen: frozenset[str],
+    device: str,
 ) -> list[Stepper]:
     """Steppers of all leaders, compiled side by side."""
 
     def build(leader: Leader) -> Stepper:
         model = augmented(base, (*current.effects, leader.attachment), surroundings)
-        return make_stepper(model, problem_for(base, model, {}).free_names, device=device)
+        return make_stepper(model, without_free(problem_for(base, model, {}), frozen).free_names, device=device)
 
     return side_by_side(partial(build, leader) for leader in found)

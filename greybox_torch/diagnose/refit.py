@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -42,6 +42,8 @@ class Hypothesis:
     fits: tuple[WindowFit, ...]
     floor: float
     """Mean squared weighted error below which nothing matters: 10⁻⁵ of the outputs' spread."""
+    frozen: frozenset[str] = frozenset()
+    """Parameters that were kept as they are though they are free."""
 
     @property
     def score(self) -> float:
@@ -76,6 +78,7 @@ def hypothesis(
     shorter: WindowFit | None = None,
     settings: Settings = WINDOW_SETTINGS,
     stepper: Stepper | None = None,
+    frozen: frozenset[str] = frozenset(),
     device: str = "cpu",
 ) -> Hypothesis | None:
     """Fit ``base`` with ``effects`` attached, on windows of every length, from each of several start values; None where none simulates.
@@ -86,10 +89,11 @@ def hypothesis(
         starts: parameter values by name, of the base and of the effects.
         at: window lengths; by default :func:`lengths`.
         shorter: a fit on shorter windows that the start states are taken from.
-        stepper: one made for this model before.
+        stepper: one made for this model and these ``frozen`` parameters before.
+        frozen: parameters that are to keep their start values.
     """
     model = augmented(base, effects, surroundings)
-    problems = [problem_for(base, model, start) for start in starts]
+    problems = [without_free(problem_for(base, model, start), frozen) for start in starts]
     stepper = stepper or make_stepper(model, problems[0].free_names, device=device)
     fits: list[WindowFit] = []
     for length in at or lengths(base):
@@ -99,7 +103,12 @@ def hypothesis(
             return None
         fits.append(fit)
         shorter = fit
-    return Hypothesis(tuple(effects), model, stepper, tuple(fits), _floor(base))
+    return Hypothesis(tuple(effects), model, stepper, tuple(fits), _floor(base), frozen)
+
+
+def without_free(problem: Problem, names: Collection[str]) -> Problem:
+    """``problem`` with some parameters no longer free."""
+    return replace(problem, free=problem.free & ~np.isin(problem.names, list(names)))
 
 
 def augmented(base: Problem, effects: Sequence[Attachment], surroundings: Mapping[str, Surroundings]) -> GreyBoxModel:

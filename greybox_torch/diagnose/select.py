@@ -87,7 +87,6 @@ class Search:
         if not hasattr(self, "plain"):
             self.begin()
         self._explore()
-        self._try_named()
         self.prune()
         self._revisit()
         return self.current
@@ -154,8 +153,12 @@ class Search:
 
     def _advance(self) -> None:
         while len(self.current.effects) < MOST_EFFECTS and not only_noise(self.problem, self.current):
+            before, rounds = self.current, list(self.rounds)
             if not (self.step() or self._step_with_fine_curves()):
                 break
+            taken = self.rounds[-1].taken
+            if taken is not None and taken.unknown:
+                self._named_instead(before, rounds)
 
     def _step_with_fine_curves(self) -> bool:
         """Where nothing pays and yet more than noise is left: one round with curves fine enough for a narrow law."""
@@ -166,26 +169,25 @@ class Search:
         """Whether free curves are offered: one says that something is unknown, and where; a second one would only fit what is left."""
         return self.curves and not any(isinstance(e.mechanism, Unknown) for e in self.current.effects)
 
-    def _try_named(self) -> None:
-        """Where a free curve was taken: the search once more without curves, kept if named effects come as far.
+    def _named_instead(self, before: Hypothesis, rounds: list[Round]) -> None:
+        """Where a free curve was taken: the search from ``before`` without curves, kept if named effects come as far.
 
         One curve can stand for several laws of the same signal, none of which would come near it alone.
         """
-        curves = [e for e in self.current.effects if isinstance(e.mechanism, Unknown)]
-        if not curves:
-            return
-        with_curve, rounds = self.current, list(self.rounds)
-        first = next(k for k, r in enumerate(rounds) if r.taken is not None and r.taken.unknown)
-        before = [r.taken.fitted for r in rounds[:first] if r.taken is not None]
-        self.current, self.rounds, self.curves = (before[-1] if before else self.plain), rounds[:first], False
-        self._explore()
-        start = before[-1] if before else self.plain
-        reached, ceiling = start.score - self.current.score, start.score - with_curve.score
+        with_curve, its_rounds = self.current, self.rounds
+        self.current, self.rounds, self.curves = before, rounds, False
+        try:
+            self._advance()
+        except BaseException:  # interrupted: the curve is the best so far
+            self.current, self.rounds = with_curve, its_rounds
+            raise
+        finally:
+            self.curves = True
+        reached, ceiling = (before.score - h.score for h in (self.current, with_curve))
         if reached < min(ceiling - CURVE_MARGIN, NAMED_SHARE * ceiling):
-            if len(self.current.effects) > len(start.effects):
+            if len(self.current.effects) > len(before.effects):
                 self.named = self.current, self.rounds
-            self.current, self.rounds = with_curve, rounds
-        self.curves = True
+            self.current, self.rounds = with_curve, its_rounds
 
     def settle_for_named(self) -> None:
         """Take the named effects that were found in the place of a free curve."""
