@@ -32,8 +32,8 @@ FLEXIBLE = {
 }
 """Signals that the flexible curve is tried over, by kind of port."""
 
-FADING = {"actuator": "input"}
-"""Signals that a flexible curve over time is tried as a gain of (a motor that warms up, a battery that sags), by kind of port."""
+GAINS = {"actuator": (("time", "input"), ("speed", "input"))}
+"""By kind of port, signals over which the gain of another may change: a battery that sags, a motor whose field weakens with speed."""
 
 
 PERIODIC = (TorqueRipple, PositionDependentFriction, TransmissionError)
@@ -100,8 +100,7 @@ def attach(model: GreyBoxModel, port: str, mechanism: Mechanism, shifted: str = 
 
 def _curves(port: Port, knots: int) -> Iterable[Unknown]:
     yield from (Unknown(signal, knots) for signal in FLEXIBLE.get(port.kind, ()))
-    if port.kind in FADING:
-        yield Unknown("time", knots, FADING[port.kind])
+    yield from (Unknown(signal, knots, factor) for signal, factor in GAINS.get(port.kind, ()))
 
 
 def _is_angle(around: Surroundings) -> bool:

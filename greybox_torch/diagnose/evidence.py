@@ -37,7 +37,7 @@ def sentences(
     ]
     times = times_noise(search.problem, search.current)
     lines.append(
-        f"Over the shortest windows the error is {times:.2g} times the noise that the recordings' high-frequency floor shows"
+        f"Over the windows that show it best the error is {times:.2g} times the noise that the recordings' high-frequency floor shows"
         + (": more than noise is left." if times > ABOVE_NOISE else ".")
     )
     for done in search.rounds:

@@ -22,8 +22,8 @@ ABOVE_NOISE = 1.3
 
 
 def times_noise(problem: Problem, fitted: Hypothesis) -> float:
-    """Root mean square error over the shortest windows, in units of the noise."""
-    return float(np.sqrt(fitted.fits[0].mean_square / max(noise_floor(problem), 1e-300)))
+    """Root mean square error in units of the noise, over the windows where it is largest: long ones show what is slow."""
+    return float(np.sqrt(max(f.mean_square for f in fitted.fits) / max(noise_floor(problem), 1e-300)))
 
 
 def only_noise(problem: Problem, fitted: Hypothesis) -> bool:

@@ -51,6 +51,9 @@ LEAST_SHARE_PASSED_OVER = 0.5
 LEAST_PART = 0.02
 """Share of the plain model's mean squared error that a free curve has to remove at some window length."""
 
+LEAST_BESIDE_CURVE = 0.1
+"""Share of what a free curve leaves from which a further effect is worth refits, which are slow beside it."""
+
 CURVE_MARGIN = 0.1
 """How much better, in the logarithm of the mean squared error, a free curve must be than every named mechanism to be preferred."""
 
@@ -245,6 +248,8 @@ class Search:
         """
         looks = self._screened(fine=fine)
         found = leaders(looks, self.current.fits, self.surroundings, self._card())
+        if any(isinstance(e.mechanism, Unknown) for e in self.current.effects):
+            found = [k for k in found if k.explained > LEAST_BESIDE_CURVE]
         ranked = rank(
             self.problem,
             self.current,
@@ -285,7 +290,9 @@ class Search:
             )
             if fitted is None or fitted.score > drawn.score - LEAST_GAIN:
                 break
-            drawn = fitted
+            narrow, drawn = fitted.score < drawn.score - CURVE_MARGIN, fitted
+            if not narrow:
+                break
         return drawn
 
     def prune(self) -> None:

@@ -59,6 +59,7 @@ def test_curves(arm_search) -> None:
         *((s, q, "") for s in ("gear_spring", "arm_spring") for q in ("deflection", "rate")),
         ("actuator", "input", ""),
         ("actuator", "time", ""),
+        ("actuator", "speed", ""),
     }
 
 

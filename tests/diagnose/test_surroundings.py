@@ -49,7 +49,7 @@ def test_signals_by_port(arm_search) -> None:
         **{body: {"speed", "position", "load", "time"} for body in ("motor", "gearbox", "arm")},
         "gear_spring": {"deflection", "rate", "position", "load", "time"},
         "arm_spring": {"deflection", "rate", "position", "time"},
-        "actuator": {"input", "time"},
+        "actuator": {"input", "speed", "time"},
         "sensor": {"output", "time"},
     }
 
