@@ -29,6 +29,7 @@ MOST_PARAMETERS = 60
 """Free parameters of a hypothesis from which its curve is not drawn any finer."""
 
 MOST_EFFECTS = 4
+MOST_REVISIONS = 2
 LEAST_GAIN = 0.01
 """Improvement of the mean squared error (as a share, averaged over window lengths) below which nothing is claimed."""
 
@@ -91,7 +92,11 @@ class Search:
             self.begin()
         self._explore()
         self.prune()
-        self._revisit()
+        for _ in range(MOST_REVISIONS):
+            if not self._revised():
+                break
+            self._advance()
+            self.prune()
         return self.current
 
     def _explore(self) -> None:
@@ -199,11 +204,12 @@ class Search:
         self.without = {}
         self.prune()
 
-    def _revisit(self) -> None:
-        """Choose every one of several effects once more, beside the others: an early choice was made while they were still missing."""
-        if len(self.current.effects) < 2:
-            return
-        for effect in self.current.effects:
+    def _revised(self) -> bool:
+        """Choose every one of several effects once more, beside the others: an early choice was made while they were still missing.
+
+        Whether one was replaced; the rest is then left as it is.
+        """
+        for effect in self.current.effects if len(self.current.effects) > 1 else ():
             whole, rounds = self.current, list(self.rounds)
             self.progress(f"choosing {effect.prefix} once more")
             self.current = self.without[effect.prefix]
@@ -216,7 +222,8 @@ class Search:
             elif effect.prefix not in {e.prefix for e in reached.effects}:
                 self.current = reached
                 self.prune()
-                return
+                return True
+        return False
 
     def begin(self) -> None:
         """Fit the model as it stands.

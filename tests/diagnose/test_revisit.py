@@ -1,0 +1,88 @@
+"""Several effects: chosen once more beside the others; rivals refitted while a curve rests; positions brought along short windows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnose.candidates import attach
+from greybox_torch.diagnose.leaders import MOST_TIED, NAMED_PER_LENGTH, _with_ties
+from greybox_torch.diagnose.name import polished
+from greybox_torch.diagnose.noise import only_noise
+from greybox_torch.diagnose.refit import hypothesis
+from greybox_torch.diagnose.screen import Look
+from greybox_torch.diagnose.select import Round
+from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.friction import QuadraticDrag
+from greybox_torch.mechanisms.mechanism import Probe
+from greybox_torch.mechanisms.unknown import Unknown
+
+
+def look(motor, explained: float) -> Look:
+    return Look(attach(motor, "rotor", ConstantBias()), Probe(("bias",)), 31, explained, np.ones(1))
+
+
+def test_what_ties_with_the_best_look_is_followed_as_well(motor) -> None:
+    few = [look(motor, 0.8 - 0.2 * k) for k in range(4)]
+    assert _with_ties(few) == few
+    clear = [look(motor, 0.9), *[look(motor, 0.3)] * 9]
+    assert len(_with_ties(clear)) == NAMED_PER_LENGTH
+    assert len(_with_ties([look(motor, 0.8)] * 6)) == 6
+    assert len(_with_ties([look(motor, 0.8)] * 30)) == MOST_TIED
+    assert _with_ties([]) == []
+
+
+def test_an_early_wrong_choice_is_mended_beside_the_others(motor_data, motor, begun) -> None:
+    """Quadratic drag and a bias; the search is told a ripple in the place of the drag."""
+    data = motor_data(torque=lambda q, v: -0.004 * v * abs(v) + 0.05)
+    search = begun(data, motor)
+    bias, wrong = attach(motor, "rotor", ConstantBias()), attach(motor, "rotor", TorqueRipple(3.0))
+    search.current = search._refitted((bias, wrong), search.plain)
+    search.without = {
+        bias.prefix: search._refitted((wrong,), search.plain),
+        wrong.prefix: search._refitted((bias,), search.plain),
+    }
+    assert search._revised()
+    assert "torque_ripple" not in {e.mechanism.name for e in search.current.effects}
+    assert isinstance(search.rounds[-1], Round)
+
+
+def test_what_stands_is_left_where_the_choice_is_the_same(motor_data, motor, begun) -> None:
+    search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v) + 0.05), motor)
+    drag, bias = attach(motor, "rotor", QuadraticDrag()), attach(motor, "rotor", ConstantBias())
+    search.current = whole = search._refitted((drag, bias), search.plain)
+    search.without = {
+        drag.prefix: search._refitted((bias,), search.plain),
+        bias.prefix: search._refitted((drag,), search.plain),
+    }
+    assert not search._revised()
+    assert {e.mechanism.name for e in search.current.effects} == {e.mechanism.name for e in whole.effects}
+
+
+def test_frozen_parameters_keep_their_values_and_are_free_again_when_polished(dead_zone_search) -> None:
+    search = dead_zone_search
+    curve = attach(search.problem.model, "actuator", Unknown("input", 6))
+    heights = [f"actuator.unknown.w_{k}" for k in range(6)]
+    start = {**search.plain.values(), **dict.fromkeys(heights, 0.1)}
+    frozen = hypothesis(search.problem, (curve,), search.surroundings, [start], substeps=1, frozen=frozenset(heights))
+    assert frozen is not None
+    assert [frozen.values()[n] for n in heights] == [0.1] * 6
+    assert not set(heights) & set(frozen.problem.free_names)
+    free = polished(search.problem, frozen, search.surroundings, substeps=1)
+    assert set(heights) <= set(free.problem.free_names)
+    assert free.score < frozen.score
+
+
+@pytest.mark.parametrize(("torque", "expected"), [(None, True), (lambda q, v: -0.004 * v * abs(v), False)])
+def test_nothing_is_looked_for_below_the_noise(motor_data, motor, begun, torque, expected) -> None:
+    search = begun(motor_data(torque=torque, noise=0.1), motor)
+    assert only_noise(search.problem, search.plain) == expected
+
+
+def test_noise_is_not_known_where_the_motion_is_rough(motor_data, motor, begun) -> None:
+    """Differences of several orders do not agree: nothing says that this little error is only noise."""
+    search = begun(motor_data(noise=1e-6), motor)
+    tiny = tuple(replace(f, mean_square=1e-12) for f in search.plain.fits)
+    assert not only_noise(search.problem, replace(search.plain, fits=tiny))
