@@ -32,8 +32,10 @@ FLEXIBLE = {
 }
 """Signals that the flexible curve is tried over, by kind of port."""
 
-GAINS = {"actuator": (("time", "input"), ("speed", "input"))}
-"""By kind of port, signals over which the gain of another may change: a battery that sags, a motor whose field weakens with speed."""
+GAINS = {"actuator": (("time", "input"), ("speed", "input")), "coupling": (("speed", "rate"),)}
+"""By kind of port, signals over which the gain of another may change: a battery that sags, a motor whose field weakens with its speed,
+a damper whose oil is torn along.
+"""
 
 
 PERIODIC = (TorqueRipple, PositionDependentFriction, TransmissionError)

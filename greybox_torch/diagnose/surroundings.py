@@ -54,7 +54,7 @@ def _around(
                 values["position"] = _integrated(_evaluated(body.speed, x, u, p, times), problem)
             if body.load is not None and _turns_with(port, body, x, u, p):
                 values["load"] = _evaluated(body.load, x, u, p, times)
-    if isinstance(port, Actuator) and (body := driving_body(model)) is not None:
+    if isinstance(port, Actuator | Coupling) and (body := driving_body(model)) is not None:
         values["speed"] = _evaluated(body.speed, x, u, p, times)
     if isinstance(port, Sensor):
         row = [o.name for o in model.outputs].index(port.output)
@@ -115,9 +115,9 @@ def _units(model: GreyBoxModel, port: Port) -> dict[str, str]:
             units["deflection"] = units["rate"].removesuffix("/s")
     if isinstance(port, Actuator):
         units["input"] = of[port.input]
-        body = driving_body(model)
-        if body is not None and isinstance(body.speed, str):
-            units["speed"] = of[body.speed]
+    body = driving_body(model)
+    if isinstance(port, Actuator | Coupling) and body is not None and isinstance(body.speed, str):
+        units["speed"] = of[body.speed]
     if isinstance(port, Sensor):
         units["output"] = next(o.unit for o in model.outputs if o.name == port.output)
     units["time"] = "s"

@@ -210,7 +210,7 @@ class AugmentedModel(GreyBoxModel):
             values["position"] = self._position(a.position, x, u, p)
         if isinstance(site, Coupling) and a.position and "load" in self.surroundings[a.port].ranges:
             values["load"] = _value(self._body(a.position).signals["load"], x, u, p)
-        if isinstance(site, Actuator) and getattr(a.mechanism, "signal", "") == "speed":
+        if isinstance(site, Actuator | Coupling) and getattr(a.mechanism, "signal", "") == "speed":
             driving = next(port for port in self.base_ports.values() if isinstance(port, Body))
             values["speed"] = _value(driving.speed, x, u, p)
         if isinstance(site, Sensor):
