@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.data import DataSet, Recording
+from greybox_torch.diagnose.detect import detect
 from greybox_torch.diagnose.effects import describe
 from greybox_torch.diagnose.evidence import sentences
 from greybox_torch.diagnose.final import Final, finish
-from greybox_torch.diagnose.held_out import Gain, gain, held_out_fits
+from greybox_torch.diagnose.held_out import Gain, gain, held_out_fits, timelines
 from greybox_torch.diagnose.locate import window_errors
 from greybox_torch.diagnose.probability import confidence
 from greybox_torch.diagnose.restore import attachment_json
@@ -132,7 +133,9 @@ def diagnose(
         gains = _without_weakest(search, gains)
         augmented = finish(search.current, substeps, device=device) if search.current.effects else plain
         judged = _Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
-    effects = describe(search, augmented, substeps, judged.sums) if search.current.effects else ()
+    effects = describe(search, augmented, substeps, judged.sums, gains) if search.current.effects else ()
+    traces = judged.traces(bool(effects))
+    detected = detect(judged.problem, traces)
     clock.stage("validation and report data", at)
     verdict = Verdict(
         dataset=dataset.name,
@@ -142,10 +145,10 @@ def diagnose(
         confidence=confidence(search, effects, not interrupted),
         effects=effects,
         scores={name: comparison.scores for name, comparison in judged.comparisons(bool(effects)).items()},
-        evidence=sentences(dataset, search, effects, gains, interrupted),
+        evidence=sentences(dataset, search, effects, gains, detected, interrupted),
         stages=clock.stages,
         ranking=_ranking(search),
-        traces=judged.traces(bool(effects)),
+        traces=traces,
         complete=not interrupted,
     )
     final = augmented if effects else plain
@@ -168,7 +171,10 @@ def _confirmed(dataset: DataSet, search: Search, progress: Callable[[str], None]
     while search.current.effects:
         on_others = partial(held_out_fits, problem=problem, substeps=search.substeps)
         full, *without = side_by_side(partial(on_others, h) for h in (search.current, *search.without.values()))
-        gains = {p: gain(fits, full) for p, fits in zip(search.without, without, strict=True)}
+        gains = {
+            p: replace(gain(fits, full), timelines=timelines(fits, full))
+            for p, fits in zip(search.without, without, strict=True)
+        }
         weakest = min(gains, key=lambda p: gains[p].errors_away)
         found = gains[weakest]
         if found.errors_away > LEAST_HELD_OUT or abs(found.share) + found.error < UNEXERCISED:
