@@ -11,6 +11,12 @@ import numpy as np
 from scipy.signal import correlate
 
 LAGS = 25
+ORDER = 50
+"""Past samples that predict what is not new in a signal."""
+
+LEAST_NEW = 1e-6
+"""Share of a signal's size from which what is new in it is more than rounding."""
+
 NORMAL_99 = 2.58
 """99 % of a standard normal variable lies within plus and minus this."""
 
@@ -61,12 +67,12 @@ def input_correlation(errors: np.ndarray, signal: np.ndarray, lags: int = LAGS) 
     """Correlation of prediction errors e (N,) with an input u (N,) some samples before, at the lags −``lags`` … ``lags``.
 
     At a positive lag k it is that of e(t) with u(t − k): a model with the right dynamics leaves none. At negative lags it is that with
-    future inputs, which betrays feedback from the output to the input; these lags are for the eye and not tested. The bound allows for
-    the colour of both signals, 2.58 √(P / N) with P = Σ_k R_e(k) R_u(k) over the lags up to N/4, tapered; the input's mean is removed.
+    future inputs, for the eye and not tested: it betrays feedback where the input is white (else :func:`feedback_correlation`). The
+    bound allows for the colour of both signals, 2.58 √(P / N) with P = Σ_k R_e(k) R_u(k) over the lags up to N/4, tapered; the input's
+    mean is removed.
     """
-    level = signal[~np.isnan(signal)]
     filled = np.where(np.isnan(errors), 0.0, errors)
-    centred = np.where(np.isnan(signal), 0.0, signal - (level.mean() if level.size else 0.0))
+    centred = np.where(np.isnan(signal), 0.0, signal - _mean(signal))
     count, middle, reach = len(errors), len(errors) - 1, _reach(errors, lags)
     of_errors, of_signal = _covariance(filled, filled), _covariance(centred, centred)
     size = float(np.sqrt(of_errors[middle] * of_signal[middle]))
@@ -79,6 +85,36 @@ def input_correlation(errors: np.ndarray, signal: np.ndarray, lags: int = LAGS) 
     taper = 1.0 - np.abs(np.arange(near.start, near.stop) - middle) / (widest + 1)
     spread = float(np.sum(taper * of_errors[near] * of_signal[near])) / size**2
     return Correlation(steps, values, NORMAL_99 * float(np.sqrt(spread / count)))
+
+
+def feedback_correlation(errors: np.ndarray, signal: np.ndarray, lags: int = LAGS) -> Correlation:
+    """Correlation of an input u (N,) with prediction errors e (N,) some samples before, both without what their own past predicts.
+
+    At a positive lag k it is that of what is new in u(t) with what is new in e(t − k). An input that is not driven by the output has
+    nothing new to do with errors before it, however wrong the model and however coloured the input; one that has nothing new in it (a
+    sum of sines) gives zeros. At lag zero it is feedback within the sample time, where the input cannot act on the output as fast.
+    An input that is recorded later than it acts, or with noise of its own, looks the same.
+
+    Source: D. A. Pierce, L. D. Haugh, "Causality in temporal systems", Journal of Econometrics 5, 1977.
+    """
+    return input_correlation(_new(signal), _new(errors), lags)
+
+
+def _new(signal: np.ndarray) -> np.ndarray:
+    """What a linear prediction from the last :data:`ORDER` samples leaves of a signal (N,); NaN where one of those is missing."""
+    result, order = np.full(len(signal), np.nan), min(ORDER, len(signal) // 10)
+    rows = np.lib.stride_tricks.sliding_window_view(signal - _mean(signal), order + 1)
+    known = ~np.isnan(rows).any(axis=1)
+    past, present = rows[known, :-1], rows[known, -1]
+    if len(present) > order:
+        new = present - past @ np.linalg.lstsq(past, present, rcond=None)[0]
+        result[np.flatnonzero(known) + order] = new if new.std() > LEAST_NEW * present.std() else 0.0
+    return result
+
+
+def _mean(signal: np.ndarray) -> float:
+    known = signal[~np.isnan(signal)]
+    return float(known.mean()) if known.size else 0.0
 
 
 def _covariance(later: np.ndarray, earlier: np.ndarray) -> np.ndarray:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from greybox_torch.estimate.residuals import input_correlation, whiteness
+from greybox_torch.estimate.residuals import feedback_correlation, input_correlation, whiteness
 
 Noise = Callable[[np.random.Generator, int], np.ndarray]
 
@@ -90,3 +90,32 @@ def test_nothing_to_correlate() -> None:
     assert input_correlation(np.random.default_rng(0).standard_normal(50), np.full(50, 3.0)).largest == 0.0
     assert input_correlation(np.zeros(50), np.arange(50.0)).largest == 0.0
     assert whiteness(np.arange(12.0)).tested == 11
+
+
+@pytest.mark.parametrize("signal", [white, coloured, periodic])
+def test_a_wrong_model_in_open_loop_is_no_feedback(signal: Noise) -> None:
+    """Errors that the input explains altogether, in a way that is not linear."""
+    rng, outside = np.random.default_rng(5), 0
+    for _ in range(50):
+        u = signal(rng, 2000)
+        found = feedback_correlation(np.abs(lfilter([0.0, 1.0], [1.0, -0.9], u)) + 0.1 * white(rng, 2000), u)
+        outside += found.outside
+    assert outside / (50 * found.tested) < 0.02
+
+
+def test_feedback_is_seen_behind_a_wrong_model_and_under_a_coloured_input() -> None:
+    """A hundredth of the input is noise that comes back after two samples; most of the error is of the model's making."""
+    rng = np.random.default_rng(6)
+    noise, wanted = 0.1 * white(rng, 4000), 10.0 * lfilter([1.0], [1.0, -1.9, 0.91], white(rng, 4000))
+    u = wanted + lfilter([0.0, 0.0, 0.2 * wanted.std()], [1.0], noise)
+    found = feedback_correlation(lfilter([0.0, 0.5], [1.0, -0.9], wanted) / wanted.std() + noise, u)
+    largest = int(np.argmax(np.abs(found.values)))
+    assert found.lags[largest] == 2
+    assert found.values[largest] > 3.0 * found.bound
+
+
+def test_an_input_without_anything_new() -> None:
+    rng = np.random.default_rng(7)
+    assert feedback_correlation(white(rng, 2000), periodic(rng, 2000)).largest == 0.0
+    assert feedback_correlation(white(rng, 2000), np.full(2000, 3.0)).largest == 0.0
+    assert feedback_correlation(np.full(40, np.nan), white(rng, 40)).largest == 0.0
