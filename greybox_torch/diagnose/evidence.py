@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from greybox_torch.data import DataSet
-from greybox_torch.diagnose.noise import ABOVE_NOISE, times_noise
+from greybox_torch.diagnose.noise import ABOVE_NOISE, floor_known, times_noise
 from greybox_torch.diagnose.select import LEAST_GAIN, Search
 from greybox_torch.mechanisms.attachment import Attachment
 
 if TYPE_CHECKING:
+    from greybox_torch.diagnose.detect import Detection, Largest
     from greybox_torch.diagnose.held_out import Gain
     from greybox_torch.diagnose.verdict import Effect
 
@@ -22,6 +23,7 @@ def sentences(
     search: Search,
     effects: Sequence[Effect],
     gains: Mapping[str, Gain],
+    detected: Sequence[Detection],
     interrupted: bool,
 ) -> tuple[str, ...]:
     """The evidence for a reader: what was looked at, what it showed, and what limits it."""
@@ -35,11 +37,7 @@ def sentences(
         + ("; with the effects: " + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in final) if effects else "")
         + " (weighted output units).",
     ]
-    times = times_noise(search.problem, search.current)
-    lines.append(
-        f"Over the windows that show it best the error is {times:.2g} times the noise that the recordings' high-frequency floor shows"
-        + (": more than noise is left." if times > ABOVE_NOISE else ".")
-    )
+    lines += [_noise(search), *detection_sentences(detected, bool(effects))]
     for done in search.rounds:
         best = done.ranked[0] if done.ranked else None
         if done.taken is not None:
@@ -73,6 +71,53 @@ def sentences(
     if interrupted:
         lines.append("The search was stopped before it was done (time limit or interruption): the best verdict so far.")
     return tuple(lines)
+
+
+def detection_sentences(detected: Sequence[Detection], effects: bool) -> list[str]:
+    """What the errors of the free runs show, where that is clearest, and which recordings were made under feedback."""
+    lines = []
+    if detected:
+        first = max(detected, key=lambda d: d.plain.past.ratio)
+        lines.append(
+            f"The free run's errors, model as it stands, are {'' if first.plain.past.beyond else 'not '}correlated with past inputs"
+            + (f" up to {first.band:.3g} Hz" if first.feedback else "")
+            + _changed(first.plain.past, first.final.past, "correlation", effects, _place(first, detected))
+        )
+        first = max(detected, key=lambda d: d.plain.colour.ratio)
+        lines.append(
+            f"They are {'not ' if first.plain.colour.beyond else ''}white"
+            + _changed(first.plain.colour, first.final.colour, "autocorrelation", effects, _place(first, detected))
+        )
+    answering = [d for d in detected if d.feedback]
+    if answering:
+        clearest, band = max(answering, key=lambda d: d.later.ratio), max(d.band for d in answering)
+        lines.append(
+            f"Recorded under feedback: {', '.join(dict.fromkeys(d.experiment for d in answering))} (what is new in the input is correlated "
+            f"with errors before it: {_size(clearest.later, 'correlation')}). Coherence above {band:.3g} Hz, where the input is hardly "
+            "excited, is not counted as evidence."
+        )
+    return lines
+
+
+def _place(where: Detection, detected: Sequence[Detection]) -> str:
+    return f", in {where.output} of {where.experiment}" if len(detected) > 1 else ""
+
+
+def _changed(before: Largest, after: Largest, what: str, effects: bool, place: str) -> str:
+    with_effects = f"; with the effects {after.value:.2g} (bound {after.bound:.2g})" if effects else ""
+    return f" ({_size(before, what)}{place}){with_effects}."
+
+
+def _size(largest: Largest, what: str) -> str:
+    return f"largest {what} {largest.value:.2g}, 99 % bound {largest.bound:.2g}"
+
+
+def _noise(search: Search) -> str:
+    times = times_noise(search.problem, search.current)
+    shown = f"Over the windows that show it best the error is {times:.2g} times the noise that the recordings' high-frequency floor shows"
+    if times > ABOVE_NOISE:
+        return shown + ": more than noise is left."
+    return shown + ("." if floor_known(search.problem) else ", an upper bound, as part of that is motion.")
 
 
 def _name(attachment: Attachment) -> str:

@@ -27,13 +27,17 @@ def times_noise(problem: Problem, fitted: Hypothesis) -> float:
 
 
 def only_noise(problem: Problem, fitted: Hypothesis) -> bool:
-    """Whether nothing but noise is left at any window length, where the recordings tell how much of it there is.
+    """Whether nothing but noise is left at any window length, where the recordings tell how much of it there is."""
+    return floor_known(problem) and max(f.mean_square for f in fitted.fits) < AT_NOISE * noise_floor(problem)
 
-    They do where differences of several orders agree: what is left of the motion in them would not be the same in each.
+
+def floor_known(problem: Problem) -> bool:
+    """Whether the recordings tell how much noise there is: differences of several orders agree on it.
+
+    What is left of the motion in them would not be the same in each.
     """
     floors = [noise_floor(problem, order) for order in (DIFFERENCES, DIFFERENCES + 1, DIFFERENCES + 2)]
-    known = max(floors) < FLOORS_AGREE * min(floors)
-    return known and max(f.mean_square for f in fitted.fits) < AT_NOISE * floors[0]
+    return max(floors) < FLOORS_AGREE * min(floors)
 
 
 def noise_floor(problem: Problem, order: int = DIFFERENCES) -> float:

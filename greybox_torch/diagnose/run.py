@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.data import DataSet, Recording
+from greybox_torch.diagnose.detect import detect
 from greybox_torch.diagnose.effects import describe
 from greybox_torch.diagnose.evidence import sentences
 from greybox_torch.diagnose.final import Final, finish
@@ -133,6 +134,8 @@ def diagnose(
         augmented = finish(search.current, substeps, device=device) if search.current.effects else plain
         judged = _Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
     effects = describe(search, augmented, substeps, judged.sums) if search.current.effects else ()
+    traces = judged.traces(bool(effects))
+    detected = detect(judged.problem, traces)
     clock.stage("validation and report data", at)
     verdict = Verdict(
         dataset=dataset.name,
@@ -142,10 +145,10 @@ def diagnose(
         confidence=confidence(search, effects, not interrupted),
         effects=effects,
         scores={name: comparison.scores for name, comparison in judged.comparisons(bool(effects)).items()},
-        evidence=sentences(dataset, search, effects, gains, interrupted),
+        evidence=sentences(dataset, search, effects, gains, detected, interrupted),
         stages=clock.stages,
         ranking=_ranking(search),
-        traces=judged.traces(bool(effects)),
+        traces=traces,
         complete=not interrupted,
     )
     final = augmented if effects else plain

@@ -45,6 +45,9 @@ def test_verdict_says_how_it_came_about(found) -> None:
     verdict = found.verdict
     assert verdict.complete and verdict.seed == 7 and verdict.mismatch
     assert verdict.evidence and any("Held out: actuator.actuator_deadzone" in line for line in verdict.evidence)
+    assert any("errors, model as it stands, are not correlated with past inputs" in line for line in verdict.evidence)
+    assert any(line.startswith("They are not white") for line in verdict.evidence)
+    assert not any("feedback" in line for line in verdict.evidence)
     assert sum(verdict.stages.values()) == pytest.approx(verdict.seconds, rel=0.1)
     assert [(row[0], row[1]) for row in verdict.ranking[:3]].count(("actuator", "actuator_deadzone")) == 1
     trace = verdict.traces[1]
@@ -71,7 +74,7 @@ def test_nothing_is_missing(nothing, motor) -> None:
     assert verdict.confidence >= 0.8
     assert verdict.scores["augmented"] == verdict.scores["refit"]
     assert nothing.attachments == [] and nothing.model is motor
-    assert verdict.evidence
+    assert any(line.startswith("They are white") for line in verdict.evidence)
     assert nothing.values["J"] == pytest.approx(0.02, rel=0.02)
 
 
