@@ -2,27 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from greybox_torch.diagnose.final import Final
+from greybox_torch.diagnose.held_out import Gain
 from greybox_torch.diagnose.locate import explained_energy, law_curve, local_signals, most_of, profile
 from greybox_torch.diagnose.probability import round_of, shared
 from greybox_torch.diagnose.refit import Hypothesis
-from greybox_torch.diagnose.select import Search
-from greybox_torch.diagnose.verdict import Effect, Profile
+from greybox_torch.diagnose.select import Round, Search
+from greybox_torch.diagnose.verdict import Effect, Profile, Timeline
 from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.ports import Port
 
 
-def describe(search: Search, final: Final, substeps: int, sums: tuple[float, ...]) -> tuple[Effect, ...]:
+def describe(
+    search: Search, final: Final, substeps: int, sums: tuple[float, ...], gains: Mapping[str, Gain]
+) -> tuple[Effect, ...]:
     """The effects of the search's final hypothesis.
 
     Args:
         final: that hypothesis fitted to whole records.
         sums: mean squared validation errors of the plain and the augmented model, summed over experiments.
+        gains: by effect, on held-out experiments, where there are any.
     """
     hypothesis = search.current
     assert isinstance(hypothesis.model, AugmentedModel)
@@ -30,7 +35,7 @@ def describe(search: Search, final: Final, substeps: int, sums: tuple[float, ...
     whole = max(0.0, (sums[0] - sums[1]) / max(sums[0] - floor, 1e-300))
     parts = _parts(search)
     return tuple(
-        _effect(search, hypothesis, hypothesis.model, e, final, substeps, min(1.0, whole * part))
+        _effect(search, hypothesis, hypothesis.model, e, final, substeps, min(1.0, whole * part), gains.get(e.prefix))
         for e, part in zip(hypothesis.effects, parts, strict=True)
     )
 
@@ -56,19 +61,21 @@ def _effect(
     final: Final,
     substeps: int,
     explained: float,
+    gain: Gain | None,
 ) -> Effect:
     around = search.surroundings[attachment.port]
     taken = round_of(search, attachment.prefix)
     probability, alternatives = (0.5, ()) if taken is None or taken.taken is None else shared(taken.taken, taken.ranked)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     profiles = _profiles(search, hypothesis, model, attachment, site, substeps)
+    timelines = () if gain is None else gain.timelines
     mechanism = attachment.mechanism
     return Effect(
         port=attachment.port,
         mechanism=mechanism.name,
         probability=probability,
         signals=tuple(signal_name(model.base, site, s) for s in mechanism.signals()),
-        where=_where(profiles),
+        where=where(profiles, timelines),
         parameters=_parameters(model, attachment, final),
         explained=round(explained, 4),
         alternatives=alternatives,
@@ -77,7 +84,20 @@ def _effect(
         explanation=mechanism.explanation,
         source=mechanism.source,
         separating_experiment=mechanism.experiment,
+        ceiling=None if taken is None else ceiling_share(taken),
+        timelines=timelines,
     )
+
+
+def ceiling_share(done: Round) -> float | None:
+    """The share of the best free curve's gain, in the logarithm of the mean squared error, that the named effect of a round reaches.
+
+    At most one, where the law does better than any curve; None where there is no curve beside it in the round.
+    """
+    gains = [r.gain for r in done.ranked if r.unknown]
+    if done.taken is None or done.taken.unknown or not gains or done.taken.gain <= 0:
+        return None
+    return round(done.taken.gain / max(done.taken.gain, *gains), 4)
 
 
 def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:
@@ -121,13 +141,15 @@ def _profiles(
     )
 
 
-def _where(profiles: tuple[Profile, ...]) -> str:
-    """The first signal's interval that holds most of the explained error energy, in words."""
+def where(profiles: Sequence[Profile], timelines: Sequence[Timeline]) -> str:
+    """In words: the first signal's interval that holds most of the explained error energy, and the experiment with most per second."""
+    strongest = max(timelines, key=lambda t: t.intensity).experiment if len(timelines) > 1 else ""
     if not profiles:
-        return "everywhere along the records"
+        return "everywhere along the records" + (f", strongest in {strongest}" if strongest else "")
     first = profiles[0]
     low, high, share = most_of(first)
     return (
         f"{low:.3g} < {first.signal} < {high:.3g} {first.unit}".rstrip()
         + f"; {100 * share:.0f} % of the explained error energy"
+        + (f", strongest in {strongest}" if strongest else "")
     )

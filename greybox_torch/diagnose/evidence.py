@@ -53,6 +53,7 @@ def sentences(
             )
         else:
             lines.append("No candidate explains any of the remaining error.")
+    lines += [ceiling_sentence(e) for e in effects if e.ceiling is not None]
     for prefix, gain in gains.items():
         low, high = gain.interval
         lines.append(
@@ -71,6 +72,15 @@ def sentences(
     if interrupted:
         lines.append("The search was stopped before it was done (time limit or interruption): the best verdict so far.")
     return tuple(lines)
+
+
+def ceiling_sentence(effect: Effect) -> str:
+    """How near a named effect comes to what any law of its kind could explain."""
+    share = 100 * (effect.ceiling or 0.0)
+    return (
+        f"{effect.mechanism.replace('_', ' ')} at {effect.port} reaches {share:.0f} % of the ceiling: the gain, in the logarithm "
+        "of the mean squared error, of the best free curve that was fitted in its place."
+    )
 
 
 def detection_sentences(detected: Sequence[Detection], effects: bool) -> list[str]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from greybox_torch.diagnose.refit import WINDOW_SETTINGS, Hypothesis, lengths
+from greybox_torch.diagnose.verdict import Timeline
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
@@ -18,10 +19,11 @@ WHOLE = 1.0
 
 @dataclass(frozen=True)
 class Gain:
-    """The share of the held-out squared error that an effect removes, and its standard error over windows."""
+    """The share of the held-out squared error that an effect removes, its standard error over windows, and where along the experiments."""
 
     share: float
     error: float
+    timelines: tuple[Timeline, ...] = ()
 
     @property
     def errors_away(self) -> float:
@@ -71,3 +73,24 @@ def gain(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> Gain:
             scatter = float(np.std(difference - share * old.energies, ddof=1)) if count > 1 else np.inf
             found.append(Gain(share, float(scatter * np.sqrt(count) / total)))
     return max(found, key=lambda g: g.errors_away, default=Gain(0.0, float("inf")))
+
+
+def timelines(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> tuple[Timeline, ...]:
+    """Where along the held-out experiments ``after`` removes error of ``before``: over the shortest windows that both could be fitted on.
+
+    Windows in which the effect costs a little count as none.
+    """
+    pairs = zip(before, after, strict=False)
+    found = next(((old, new) for old, new in pairs if old.windows.steps == new.windows.steps), None)
+    if found is None:
+        return ()
+    old, new = found
+    removed = np.maximum(old.energies - new.energies, 0.0)
+    shares, tape, windows = removed / max(float(removed.sum()), 1e-300), old.problem.tape, old.windows
+    of = np.searchsorted(tape.first, windows.start, side="right") - 1
+    result = []
+    for e, name in enumerate(tape.names):
+        time, first = tape.time(e), int(tape.first[e])
+        edges = np.append(time[windows.start[of == e] - first], time[-1])
+        result.append(Timeline(name, edges, shares[of == e]))
+    return tuple(result)

@@ -15,7 +15,7 @@ from greybox_torch.diagnose.detect import detect
 from greybox_torch.diagnose.effects import describe
 from greybox_torch.diagnose.evidence import sentences
 from greybox_torch.diagnose.final import Final, finish
-from greybox_torch.diagnose.held_out import Gain, gain, held_out_fits
+from greybox_torch.diagnose.held_out import Gain, gain, held_out_fits, timelines
 from greybox_torch.diagnose.locate import window_errors
 from greybox_torch.diagnose.probability import confidence
 from greybox_torch.diagnose.restore import attachment_json
@@ -133,7 +133,7 @@ def diagnose(
         gains = _without_weakest(search, gains)
         augmented = finish(search.current, substeps, device=device) if search.current.effects else plain
         judged = _Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
-    effects = describe(search, augmented, substeps, judged.sums) if search.current.effects else ()
+    effects = describe(search, augmented, substeps, judged.sums, gains) if search.current.effects else ()
     traces = judged.traces(bool(effects))
     detected = detect(judged.problem, traces)
     clock.stage("validation and report data", at)
@@ -171,7 +171,10 @@ def _confirmed(dataset: DataSet, search: Search, progress: Callable[[str], None]
     while search.current.effects:
         on_others = partial(held_out_fits, problem=problem, substeps=search.substeps)
         full, *without = side_by_side(partial(on_others, h) for h in (search.current, *search.without.values()))
-        gains = {p: gain(fits, full) for p, fits in zip(search.without, without, strict=True)}
+        gains = {
+            p: replace(gain(fits, full), timelines=timelines(fits, full))
+            for p, fits in zip(search.without, without, strict=True)
+        }
         weakest = min(gains, key=lambda p: gains[p].errors_away)
         found = gains[weakest]
         if found.errors_away > LEAST_HELD_OUT or abs(found.share) + found.error < UNEXERCISED:

@@ -33,6 +33,20 @@ class Profile:
 
 
 @dataclass(frozen=True)
+class Timeline:
+    """Where an effect's gain lies along one experiment: window edges (n + 1,) in s, each window's share of all experiments' gain (n,)."""
+
+    experiment: str
+    edges: np.ndarray
+    share: np.ndarray
+
+    @property
+    def intensity(self) -> float:
+        """Share per second."""
+        return float(self.share.sum() / (self.edges[-1] - self.edges[0]))
+
+
+@dataclass(frozen=True)
 class Curve:
     """The effect's own law: ``force`` (n,) over ``signal`` (n,); ``force_unit`` as at the port. ``spread`` (n,) one standard deviation."""
 
@@ -46,7 +60,10 @@ class Curve:
 
 @dataclass(frozen=True)
 class Effect:
-    """One finding. ``explained`` is the share of the repeatable validation error that it removes."""
+    """One finding. ``explained`` is the share of the repeatable validation error that it removes.
+
+    ``ceiling`` is the share of the best free curve's gain that a named effect reaches; None where no curve was fitted beside it.
+    """
 
     port: str
     mechanism: str
@@ -61,6 +78,8 @@ class Effect:
     explanation: str = ""
     source: str = ""
     separating_experiment: str = ""
+    ceiling: float | None = None
+    timelines: tuple[Timeline, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -170,6 +189,8 @@ def _effect(effect: Effect) -> dict[str, Any]:
             {"port": a.port, "mechanism": a.mechanism, "probability": a.probability} for a in effect.alternatives
         ],
     }
+    if effect.ceiling is not None:
+        result["ceiling"] = effect.ceiling
     if effect.curve is not None and effect.mechanism == "unknown":
         curve = effect.curve
         result["curve"] = {

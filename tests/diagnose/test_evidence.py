@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
+
 from greybox_torch.diagnose.detect import Detection, Largest, Remains
-from greybox_torch.diagnose.evidence import detection_sentences
+from greybox_torch.diagnose.effects import ceiling_share
+from greybox_torch.diagnose.evidence import ceiling_sentence, detection_sentences
 
 WHITE = Remains(Largest(0.01, 0.03), Largest(0.02, 0.05))
 WRONG = Remains(Largest(0.93, 0.03), Largest(0.31, 0.05))
@@ -43,3 +46,24 @@ def test_the_clearest_of_several_and_feedback() -> None:
 
 def test_no_estimation_experiment_that_could_be_followed() -> None:
     assert detection_sentences([], True) == []
+
+
+@pytest.mark.parametrize(
+    ("named", "curves", "share"), [(0.9, (1.0, 0.5), 0.9), (1.2, (1.0,), 1.0), (1.2, (-0.1,), 1.0), (0.9, (), None)]
+)
+def test_share_of_the_ceiling(stub, named, curves, share) -> None:
+    """The best free curve of the round is what any law of one signal could reach."""
+    taken = stub(gain=named, unknown=False)
+    others = [stub(gain=gain, unknown=True) for gain in curves]
+    assert ceiling_share(stub(taken=taken, ranked=(taken, stub(gain=2.0, unknown=False), *others))) == share
+
+
+def test_a_curve_is_its_own_ceiling(stub) -> None:
+    curve = stub(gain=1.0, unknown=True)
+    assert ceiling_share(stub(taken=curve, ranked=(curve,))) is None
+    assert ceiling_share(stub(taken=None, ranked=(curve,))) is None
+
+
+def test_ceiling_in_words(stub) -> None:
+    told = ceiling_sentence(stub(mechanism="coulomb_friction", port="motor", ceiling=0.883))
+    assert told.startswith("coulomb friction at motor reaches 88 % of the ceiling: the gain")

@@ -31,6 +31,9 @@ def test_dead_zone_is_found_named_and_measured(found) -> None:
     assert effect.explained > 0.95
     assert effect.signals == ("voltage",)
     assert effect.curve is not None and effect.profiles
+    (along,) = effect.timelines
+    assert along.experiment == "run 2" and along.share.sum() == pytest.approx(1.0)
+    assert effect.ceiling is not None and 0.5 < effect.ceiling <= 1.0
 
 
 def test_fit_before_and_after(found) -> None:

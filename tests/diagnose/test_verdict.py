@@ -73,6 +73,11 @@ def test_keys_are_those_of_the_contract() -> None:
     }
 
 
+def test_share_of_the_ceiling_where_it_is_known() -> None:
+    first, second = verdict(BACKLASH, replace(BACKLASH, ceiling=0.9)).as_json()["effects"]
+    assert "ceiling" not in first and second["ceiling"] == 0.9
+
+
 def test_nothing_missing() -> None:
     found = verdict().as_json()
     assert (found["mismatch"], found["effects"]) == (False, [])

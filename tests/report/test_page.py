@@ -8,7 +8,7 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from greybox_torch.diagnose.verdict import Verdict
+from greybox_torch.diagnose.verdict import Timeline, Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.about import About
 from greybox_torch.report.page import render_page
@@ -125,6 +125,21 @@ def test_how_it_was_made(of_kind: Callable[[str], Verdict], about: About) -> Non
         assert told in text
     assert "greybox compare dataset.toml results/arm/model" in text
     assert "half gap gear spring: backlash 0.031000 rad" in text
+
+
+def test_share_of_the_ceiling(of_kind: Callable[[str], Verdict], about: About) -> None:
+    verdict = of_kind("found")
+    assert "Ceiling" not in Page(render_page(verdict, about)).text
+    near = replace(verdict, effects=(replace(verdict.effects[0], ceiling=0.88),))
+    assert "Ceiling 88 % of the gain of the best free curve" in Page(render_page(near, about)).text
+
+
+def test_where_along_the_experiments(of_kind: Callable[[str], Verdict], about: About) -> None:
+    verdict = of_kind("found")
+    line = Timeline("Sweep <1>", np.array([0.0, 1.5, 3.0]), np.array([0.25, 0.75]))
+    page = Page(render_page(replace(verdict, effects=(replace(verdict.effects[0], timelines=(line,)),)), about))
+    assert len(page.all("figure")) == len(Page(render_page(verdict, about)).all("figure")) + 1
+    assert "When: how the error energy that the effect explains spreads" in page.text
 
 
 def test_a_simulation_that_overflowed(of_kind: Callable[[str], Verdict], about: About) -> None:

@@ -8,11 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup
 
-from greybox_torch.diagnose.verdict import Curve, Effect, Profile, Verdict
+from greybox_torch.diagnose.verdict import Curve, Effect, Profile, Timeline, Verdict
 from greybox_torch.report import text
 from greybox_torch.report.chart.marks import band, bars, line
 from greybox_torch.report.chart.panel import Chart, Panel, side_by_side
-from greybox_torch.report.chart.scale import linear
+from greybox_torch.report.chart.scale import Scale, linear
+
+MOST_EXPERIMENTS = 4
+"""Experiments of which is drawn where along them an effect acts; with more, those in which it is strongest."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,7 @@ class Card:
     where: str
     signals: tuple[str, ...]
     explained: str
+    ceiling: str
     parameters: tuple[ParameterRow, ...]
     shares: tuple[Share, ...]
     experiment: str
@@ -52,6 +56,7 @@ class Card:
     unknown: bool
     curve: Chart | None
     profiles: Chart | None
+    timelines: Chart | None
 
 
 @dataclass(frozen=True)
@@ -76,6 +81,7 @@ def _card(effect: Effect) -> Card:
         where=effect.where,
         signals=effect.signals,
         explained=text.percent(effect.explained),
+        ceiling="" if effect.ceiling is None else text.percent(effect.ceiling),
         parameters=() if unknown else _parameters(effect),
         shares=_shares(effect),
         experiment=effect.separating_experiment,
@@ -83,6 +89,7 @@ def _card(effect: Effect) -> Card:
         unknown=unknown,
         curve=None if effect.curve is None else _curve(effect, effect.curve),
         profiles=_profiles(effect),
+        timelines=_timelines(effect),
     )
 
 
@@ -169,3 +176,24 @@ def _profile(profile: Profile) -> Panel:
     return Panel(
         x, y, text.axis(profile.signal, profile.unit), "share of explained error [%]", marks, alt, "low", zero=True
     )
+
+
+def _timelines(effect: Effect) -> Chart | None:
+    strongest = sorted(effect.timelines, key=lambda t: -t.intensity)[:MOST_EXPERIMENTS]
+    if not strongest:
+        return None
+    caption = "When: how the error energy that the effect explains spreads over the experiments that had no part in choosing it"
+    some = len(effect.timelines) - len(strongest)
+    y = linear(*(100.0 * t.share for t in strongest), zero=True)
+    shown = [_timeline(t, y) for t in effect.timelines if any(t is s for s in strongest)]
+    return side_by_side(shown, caption + (f" (it is weaker in {some} more)." if some else "."))
+
+
+def _timeline(along: Timeline, y: Scale) -> Panel:
+    x, peak = linear(along.edges, room=0.0), int(np.argmax(along.share))
+    alt = (
+        f"Share of the explained error energy along {along.experiment}: {100 * along.share.sum():.0f} % in all, most of it between "
+        f"{text.number(float(along.edges[peak]))} and {text.number(float(along.edges[peak + 1]))} s."
+    )
+    marks = (bars(x, y, along.edges, 100.0 * along.share, "effect"),)
+    return Panel(x, y, "time [s]", "share of explained error [%]", marks, alt, "low", along.experiment, zero=True)

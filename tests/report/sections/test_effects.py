@@ -1,8 +1,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
-from greybox_torch.diagnose.verdict import Verdict
+import numpy as np
+
+from greybox_torch.diagnose.verdict import Timeline, Verdict
 from greybox_torch.report.sections.effects import Effects
 
 
@@ -22,6 +25,32 @@ def test_a_named_effect(of_kind: Callable[[str], Verdict]) -> None:
     ((panel,),) = card.curve.columns
     assert (panel.x_label, panel.y_label) == ("gear twist [rad]", "effect [N·m]")
     assert [mark.kind for mark in panel.marks] == ["area", "line"]
+
+
+def test_share_of_the_ceiling(of_kind: Callable[[str], Verdict]) -> None:
+    (effect,) = of_kind("found").effects
+    verdict = replace(of_kind("found"), effects=(effect, replace(effect, ceiling=0.88)))
+    effects = Effects.of(verdict)
+    assert effects is not None
+    assert [card.ceiling for card in effects.cards] == ["", "88 %"]
+
+
+def test_where_along_the_experiments(of_kind: Callable[[str], Verdict]) -> None:
+    """With many experiments, those in which the effect is strongest, on one vertical axis."""
+    (effect,) = of_kind("found").effects
+    edges = np.array([0.0, 1.0, 2.0, 3.0])
+    lines = tuple(Timeline(f"Run {k}", edges, np.array([0.0, 0.01 * k, 0.02])) for k in range(6))
+    effects = Effects.of(replace(of_kind("found"), effects=(effect, replace(effect, timelines=lines))))
+    assert effects is not None
+    bare, card = effects.cards
+    assert bare.timelines is None and card.timelines is not None
+    panels = [panel for (panel,) in card.timelines.columns]
+    assert [panel.title for panel in panels] == ["Run 2", "Run 3", "Run 4", "Run 5"]
+    assert len({panel.y for panel in panels}) == 1
+    assert panels[-1].alt == (
+        "Share of the explained error energy along Run 5: 7 % in all, most of it between 1.00 and 2.00 s."
+    )
+    assert "(it is weaker in 2 more)" in card.timelines.caption
 
 
 def test_an_unknown_effect_shows_its_curve_not_its_weights(of_kind: Callable[[str], Verdict]) -> None:
