@@ -130,7 +130,7 @@ def _parameters(model: AugmentedModel, attachment: Attachment, final: Final) -> 
 def _profiles(
     search: Search, hypothesis: Hypothesis, model: AugmentedModel, attachment: Attachment, site: Port, substeps: int
 ) -> tuple[Profile, ...]:
-    energy = explained_energy(search.plain, hypothesis, substeps)
+    energy = explained_energy(search.without.get(attachment.prefix, search.plain), hypothesis, substeps)
     local = local_signals(model, attachment, hypothesis.fits[0], hypothesis.stepper, substeps)
     units = search.surroundings[attachment.port].units
     wanted = attachment.mechanism.signals() or tuple(site.signals)[:1]
