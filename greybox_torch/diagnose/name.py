@@ -10,16 +10,27 @@ import numpy as np
 
 from greybox_torch.diagnose.curve import laws_on_curve
 from greybox_torch.diagnose.leaders import Leader
-from greybox_torch.diagnose.refit import POLISH_SETTINGS, Hypothesis, augmented, hypothesis, lengths, without_free
+from greybox_torch.diagnose.refit import (
+    POLISH_SETTINGS,
+    Hypothesis,
+    augmented,
+    hypothesis,
+    lengths,
+    score_of,
+    without_free,
+)
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulate.side_by_side import side_by_side
-from greybox_torch.simulate.stepper import Stepper, make_stepper
+from greybox_torch.simulate.stepper import Stepper, cut, make_stepper
 
 FINALISTS = 3
 """Hypotheses that are fitted at all window lengths, after a first round at the middle one."""
+
+HOPELESS = 0.05
+"""How much worse than without it a hypothesis may be after its trial, in the score, to be refitted in full."""
 
 TIE, MOST_TIED = 0.03, 6
 """Difference of the scores within which named hypotheses tie after the first round, and how many of those go on."""
@@ -95,7 +106,9 @@ def rank(
     pairs = list(zip(found, steppers, strict=True))
     trials = zip(side_by_side(partial(tried, *pair) for pair in pairs), pairs, strict=True)
     first = [(trial.score, leader, trial, stepper) for trial, (leader, stepper) in trials if trial is not None]
-    first.sort(key=lambda entry: entry[0])
+    at_middle = [f for f in current.fits if f.windows.steps == cut(base.tape, middle[0]).steps]
+    hopeless = score_of(at_middle, current.floor) + HOPELESS
+    first = sorted((entry for entry in first if entry[0] < hopeless), key=lambda entry: entry[0])
     final = [r for r in side_by_side(partial(in_full, *entry[1:]) for entry in _finalists(first)) if r is not None]
     return sorted([*final, *_distilled(refit, current, final, surroundings, progress)], key=lambda r: r.cost)
 

@@ -48,7 +48,7 @@ class Hypothesis:
     @property
     def score(self) -> float:
         """Mean of the logarithms of the mean squared errors over the window lengths; lower is better."""
-        return float(np.mean([np.log(f.mean_square + self.floor) for f in self.fits]))
+        return score_of(self.fits, self.floor)
 
     def values(self) -> dict[str, float]:
         """Parameter values by name, from the longest windows."""
@@ -58,6 +58,11 @@ class Hypothesis:
     def problem(self) -> Problem:
         """The problem with the parameters of the longest windows."""
         return self.fits[-1].problem
+
+
+def score_of(fits: Sequence[WindowFit], floor: float) -> float:
+    """Mean of the logarithms of the mean squared errors of ``fits``."""
+    return float(np.mean([np.log(f.mean_square + floor) for f in fits]))
 
 
 def lengths(problem: Problem) -> list[int]:

@@ -25,8 +25,8 @@ from greybox_torch.simulate.side_by_side import side_by_side
 FINE_KNOTS = 40
 """Knots of the curves that are tried when nothing else pays."""
 
-MOST_PARAMETERS = 60
-"""Free parameters of a hypothesis from which its curve is not drawn any finer."""
+MOST_PARAMETERS = 70
+"""Free parameters of a hypothesis, beyond which its curve is not drawn any finer."""
 
 MOST_EFFECTS = 4
 MOST_REVISIONS = 2
@@ -282,7 +282,7 @@ class Search:
     def _detailed(self, taken: Ranked) -> Hypothesis:
         """The hypothesis with its new curve drawn more and more finely, as long as that pays."""
         drawn = taken.fitted
-        while len(drawn.problem.free_names) < MOST_PARAMETERS:
+        while len(drawn.problem.free_names) + _knots(drawn.effects[-1]) < MOST_PARAMETERS:
             self.progress("drawing the curve more finely")
             attachment, values = finer(drawn, drawn.effects[-1], self.surroundings)
             fitted = hypothesis(
@@ -421,6 +421,11 @@ def _simplest(ranked: Sequence[Ranked]) -> Ranked | None:
         if r.leader.attachment.mechanism.name in contained and r.leader.attachment.port == best.leader.attachment.port
     )
     return next((r for r in simpler if sureness(r.fitted, best.fitted) < LEAST_SURENESS), best)
+
+
+def _knots(curve: Attachment) -> int:
+    assert isinstance(curve.mechanism, Unknown)
+    return curve.mechanism.knots
 
 
 def _is_curve(leader: Leader) -> bool:

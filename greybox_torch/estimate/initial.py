@@ -18,7 +18,7 @@ SHORT = 6
 """Into how many windows the beginning of a record is cut for a first guess of its start states."""
 
 
-MOST_TRIALS = 5
+MOST_TRIALS = 2
 """How many of the possible start values are followed to their optimum."""
 
 
