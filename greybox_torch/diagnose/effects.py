@@ -12,7 +12,8 @@ from greybox_torch.diagnose.held_out import Gain
 from greybox_torch.diagnose.locate import explained_energy, law_curve, local_signals, most_of, profile
 from greybox_torch.diagnose.probability import round_of, shared
 from greybox_torch.diagnose.refit import Hypothesis
-from greybox_torch.diagnose.select import Round, Search
+from greybox_torch.diagnose.rounds import Round
+from greybox_torch.diagnose.select import Search
 from greybox_torch.diagnose.verdict import Effect, Profile, Timeline
 from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
 from greybox_torch.model import GreyBoxModel

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from greybox_torch.data import DataSet
+from greybox_torch.diagnose.choice import LEAST_GAIN
 from greybox_torch.diagnose.noise import ABOVE_NOISE, floor_known, times_noise
-from greybox_torch.diagnose.select import LEAST_GAIN, Search
+from greybox_torch.diagnose.select import Search
 from greybox_torch.mechanisms.attachment import Attachment
 
 if TYPE_CHECKING:

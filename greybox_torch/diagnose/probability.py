@@ -12,7 +12,8 @@ from greybox_torch.diagnose.noise import ABOVE_NOISE, times_noise
 from greybox_torch.diagnose.verdict import Alternative
 
 if TYPE_CHECKING:
-    from greybox_torch.diagnose.select import Round, Search
+    from greybox_torch.diagnose.rounds import Round
+    from greybox_torch.diagnose.select import Search
     from greybox_torch.diagnose.verdict import Effect
 
 TEMPERATURE = 2.0

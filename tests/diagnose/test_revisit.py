@@ -12,8 +12,8 @@ from greybox_torch.diagnose.leaders import MOST_TIED, NAMED_PER_LENGTH, _with_ti
 from greybox_torch.diagnose.name import polished
 from greybox_torch.diagnose.noise import only_noise
 from greybox_torch.diagnose.refit import hypothesis
+from greybox_torch.diagnose.rounds import Round
 from greybox_torch.diagnose.screen import Look
-from greybox_torch.diagnose.select import Round
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.friction import QuadraticDrag
 from greybox_torch.mechanisms.mechanism import Probe

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnose.candidates import attach, candidates
+from greybox_torch.diagnose.choice import chosen, simplest
 from greybox_torch.diagnose.leaders import CAUTIOUS, Leader, leaders
 from greybox_torch.diagnose.name import Ranked
 from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.screen import Look, _sound
-from greybox_torch.diagnose.select import _chosen, _simplest
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
 from greybox_torch.mechanisms.unknown import Unknown
@@ -41,19 +41,19 @@ def test_the_simpler_law_is_meant_where_the_richer_one_is_not_better_by_more_tha
     energies = rng.uniform(0.9, 1.1, WINDOWS)
     scattered = energies * rng.uniform(0.9, 1.1, WINDOWS)
     simple, rich = ranked(CoulombFriction(), energies), ranked(StribeckFriction(), scattered * 0.99)
-    assert _simplest([rich, simple]) is simple
+    assert simplest([rich, simple]) is simple
     clearly = ranked(StribeckFriction(), 0.5 * scattered)
-    assert _simplest([clearly, simple]) is clearly
-    assert _simplest([simple, rich]) is simple
-    assert _simplest([]) is None
+    assert simplest([clearly, simple]) is clearly
+    assert simplest([simple, rich]) is simple
+    assert simplest([]) is None
 
 
 def test_a_curve_is_taken_only_where_it_goes_much_farther(ranked) -> None:
     named = ranked(CoulombFriction(), np.full(WINDOWS, 1e-3))
     little, much = (ranked(Unknown("speed"), np.full(WINDOWS, e)) for e in (0.95e-3, 1e-9))
-    assert _chosen([little, named]) is named
-    assert _chosen([much, named]) is much
-    assert _chosen([much]) is much
+    assert chosen([little, named]) is named
+    assert chosen([much, named]) is much
+    assert chosen([much]) is much
 
 
 def test_a_curve_is_also_refitted_from_a_part_of_it(dead_zone_search) -> None:

@@ -1,0 +1,39 @@
+"""Which of the refitted hypotheses is taken."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from greybox_torch.diagnose.name import Ranked, sureness
+
+LEAST_GAIN = 0.01
+"""Improvement of the mean squared error (as a share, averaged over window lengths) below which nothing is claimed."""
+
+LEAST_SURENESS = 3.0
+"""Standard errors (over windows) by which an effect must improve the prediction."""
+
+CURVE_MARGIN = 0.1
+"""How much better, in the logarithm of the mean squared error, a free curve must be than every named mechanism to be preferred."""
+
+
+def chosen(ranked: Sequence[Ranked]) -> Ranked | None:
+    """The best of the hypotheses that pay: a named mechanism, unless a free curve is better by a margin and takes half again as much."""
+    named = simplest([r for r in ranked if not r.unknown])
+    curve = next((r for r in ranked if r.unknown), None)
+    if named is None or curve is None:
+        return named or curve
+    return curve if curve.gain > named.gain + CURVE_MARGIN and curve.gain > 1.5 * named.gain else named
+
+
+def simplest(ranked: Sequence[Ranked]) -> Ranked | None:
+    """The best, or what it generalises where it is not better than that by more than chance."""
+    best = next(iter(ranked), None)
+    if best is None:
+        return None
+    contained = best.leader.attachment.mechanism.generalises
+    simpler = (
+        r
+        for r in ranked
+        if r.leader.attachment.mechanism.name in contained and r.leader.attachment.port == best.leader.attachment.port
+    )
+    return next((r for r in simpler if sureness(r.fitted, best.fitted) < LEAST_SURENESS), best)
