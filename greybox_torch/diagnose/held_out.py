@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
+from greybox_torch.diagnose.placed import placed
 from greybox_torch.diagnose.refit import WINDOW_SETTINGS, Hypothesis, lengths
 from greybox_torch.diagnose.verdict import Timeline
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
-
-WHOLE = 1.0
-"""Of a held-out record, the part that start positions are found on: all of it, as an effect may act at one place alone."""
 
 
 @dataclass(frozen=True)
@@ -50,13 +49,13 @@ def held_out_fits(hypothesis: Hypothesis, problem: Problem, substeps: int) -> tu
         else problem.with_values(hypothesis.problem.values)
     )
     fixed = replace(restated, free=np.zeros_like(restated.free))
-    started = estimate_initial(fixed, hypothesis.stepper, fraction=WHOLE, substeps=substeps)
-    found = []
-    for length in lengths(problem)[1:] or lengths(problem):
-        fit = fit_windows(started, hypothesis.stepper, length, substeps=substeps, settings=WINDOW_SETTINGS)
-        if fit is not None:
-            found.append(fit)
-    return tuple(found)
+    started = estimate_initial(fixed, hypothesis.stepper, substeps=substeps)
+    shortest, *longer = lengths(problem)
+    short = placed(started, hypothesis.stepper, shortest, substeps)
+    if short is None or not longer:
+        return () if short is None else (short,)
+    fit = partial(fit_windows, short.problem, hypothesis.stepper, shorter=short, substeps=substeps)
+    return tuple(f for length in longer if (f := fit(length, settings=WINDOW_SETTINGS)) is not None)
 
 
 def gain(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> Gain:

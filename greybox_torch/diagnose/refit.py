@@ -139,7 +139,7 @@ def _best_fit(
     found = sorted((fit for fit in begun if fit is not None), key=lambda f: f.mean_square)
     if not found:
         return None
-    ended = side_by_side(partial(_continued, fit, stepper, length, substeps, settings) for fit in _apart(found))
+    ended = side_by_side(partial(continued, fit, stepper, length, substeps, settings) for fit in _apart(found))
     return min(ended, key=lambda f: f.mean_square)
 
 
@@ -155,7 +155,7 @@ def _apart(found: Sequence[WindowFit]) -> list[WindowFit]:
     return [best, *rivals[:1]]
 
 
-def _continued(fit: WindowFit, stepper: Stepper, length: int, substeps: int, settings: Settings) -> WindowFit:
+def continued(fit: WindowFit, stepper: Stepper, length: int, substeps: int, settings: Settings) -> WindowFit:
     """The fit carried on to the end; where states are carried, in turns with bringing those along anew, while that gains anything."""
     for _ in range(MOST_TURNS):
         starts = carried_starts(fit.problem, stepper, fit.windows, fit.starts, substeps)

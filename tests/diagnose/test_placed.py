@@ -1,0 +1,52 @@
+"""Where a position begins that nothing measures."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnose.candidates import attach
+from greybox_torch.diagnose.placed import placed
+from greybox_torch.diagnose.refit import augmented
+from greybox_torch.estimate.problem import problem_for
+from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.simulate.stepper import make_stepper
+
+BEGINS = 0.4
+"""Position at which the simulated motor begins, rad."""
+
+
+def restated(search, effect, **values):
+    model = augmented(search.problem, (effect,), search.surroundings)
+    known = {
+        **search.problem.model.values(),
+        "J": 0.02,
+        "b": 0.05,
+        **{f"{effect.prefix}.{n}": v for n, v in values.items()},
+    }
+    problem = problem_for(search.problem, model, known)
+    return replace(problem, free=np.zeros_like(problem.free)), make_stepper(model, (), device="cpu")
+
+
+def test_position_is_found_along_a_period(motor_data, motor, begun) -> None:
+    order, phase = 5.0, 0.7
+    search = begun(motor_data(torque=lambda q, v: 0.03 * np.cos(order * q + phase)), motor)
+    ripple = attach(motor, "rotor", TorqueRipple(order))
+    size = {"a": 0.03 * np.cos(phase), "b": -0.03 * np.sin(phase), "order": order}
+    problem, stepper = restated(search, ripple, **size)
+    fit = placed(problem, stepper, 31, 1)
+    assert fit is not None
+    found = fit.problem.initial[0, 1]
+    period = 2 * np.pi / order
+    assert (found - BEGINS + period / 2) % period - period / 2 == pytest.approx(0.0, abs=0.03)
+    assert np.sqrt(fit.mean_square) == pytest.approx(0.02, rel=0.1), "what is left is noise"
+
+
+def test_without_a_position_it_is_a_fit_of_the_windows(motor_data, motor, begun) -> None:
+    search = begun(motor_data(torque=lambda q, v: 0.05), motor)
+    problem, stepper = restated(search, attach(motor, "rotor", ConstantBias()), bias=0.05)
+    fit = placed(problem, stepper, 31, 1)
+    assert fit is not None and fit.problem.initial.shape == (1, 1)
+    assert np.sqrt(fit.mean_square) == pytest.approx(0.02, rel=0.1)
