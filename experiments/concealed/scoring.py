@@ -1,5 +1,7 @@
 """What a verdict is worth against the key of its case.
 
+    python -m experiments.concealed.scoring CASES VERDICTS           # a table of all cases, and the totals by kind
+
 A key lists, for every concealed effect, the answers (port, mechanism) that are right (``accept``), those that are nearly right
 (``near``), and the ports where a finding counts as located (``ports``).
 """
@@ -7,10 +9,15 @@ A key lists, for every concealed effect, the answers (port, mechanism) that are 
 from __future__ import annotations
 
 import json
+import statistics
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+
+KINDS = ("without effect", "one effect", "two effects")
 
 
 @dataclass(frozen=True)
@@ -39,6 +46,12 @@ class Scored:
     findings: tuple[Finding, ...]
     closed: float | None
     seconds: float
+    outside: bool = False
+    """Whether the effect is none of the library's: the right answer is ``unknown``, at the right place."""
+
+    @property
+    def kind(self) -> str:
+        return "outside the library" if self.outside else KINDS[len(self.effects)]
 
     @property
     def named(self) -> int:
@@ -63,6 +76,7 @@ def score(name: str, verdict: Mapping[str, Any], key: Mapping[str, Any]) -> Scor
         _findings(verdict["effects"], key if effects else {"accept": [], "near": [], "ports": []}),
         _closed(verdict, key) if effects else None,
         float(verdict.get("seconds", float("nan"))),
+        any(key.get("outside", ())),
     )
 
 
@@ -113,3 +127,44 @@ def _closed(verdict: Mapping[str, Any], key: Mapping[str, Any]) -> float:
             for stage in left:
                 left[stage] += max(float(row[stage]["rmse"]) ** 2 - floor, 0.0)
     return 1.0 - (left["augmented"] / left["refit"]) ** 0.5 if left["refit"] > 0 else 0.0
+
+
+def table(scored: Sequence[Scored]) -> str:
+    """The cases as a Markdown table, misses beside hits, and the totals by kind of case."""
+    lines = ["| case | concealed | said | named | closed |", "|---|---|---|---|---|"]
+    for s in scored:
+        said = ", ".join(f"{f.mechanism} at {f.port} ({f.probability:.2f})" for f in s.findings) or "nothing missing"
+        closed = "" if s.closed is None else f"{s.closed:.2f}"
+        right = ("yes" if s.detected else "no") if not s.effects else f"{s.named}/{len(s.effects)}"
+        lines.append(f"| {s.name} | {', '.join(s.effects) or 'nothing'} | {said} | {right} | {closed} |")
+    lines += [
+        "",
+        "| kind | cases | detected | located | named | spurious | median closed |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for kind in (*KINDS, "outside the library"):
+        own = [s for s in scored if s.kind == kind]
+        if own:
+            lines.append(_totals(kind, own))
+    return "\n".join([*lines, _totals("all", scored)])
+
+
+def _totals(kind: str, scored: Sequence[Scored]) -> str:
+    effects = sum(len(s.effects) for s in scored)
+    closed = [s.closed for s in scored if s.closed is not None]
+    cells = (
+        kind,
+        len(scored),
+        f"{sum(s.detected for s in scored)}/{len(scored)}",
+        f"{sum(s.located for s in scored)}/{effects}",
+        f"{sum(s.named for s in scored)}/{effects}",
+        sum(s.spurious for s in scored),
+        f"{statistics.median(closed):.2f}" if closed else "",
+    )
+    return "| " + " | ".join(map(str, cells)) + " |"
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    print(table(score_all(Path(sys.argv[1]), Path(sys.argv[2]))))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from experiments.concealed.calibrate import brier, fitted_map, main, mapped, reliability
-from experiments.concealed.scoring import score, score_all
+from experiments.concealed.scoring import score, score_all, table
 
 KEY = {
     "effects": ["bias", "friction"],
@@ -97,3 +97,22 @@ def test_the_whole_script(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert printed == json.loads((tmp_path / "out" / "calibration.json").read_text())
     assert printed["fitted on"]["findings"] == printed["tested on"]["findings"] == 6
     assert (tmp_path / "out" / "reliability.png").stat().st_size > 5000
+
+
+def test_the_table_counts_by_kind_and_shows_misses() -> None:
+    none = {"effects": ["none"], "sigma": 0.1, "outside": []}
+    outside = {**KEY, "effects": ["bias"], "outside": [True]}
+    cases = [
+        score("hit", verdict(("actuator", "input_bias", 0.8)), outside),
+        score("miss", verdict(), KEY),
+        score("clean", verdict(), none),
+        score("alarm", verdict(("motor", "gravity", 0.4)), none),
+    ]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table(cases).splitlines()]
+    by_name = {row[0]: row[1:] for row in rows}
+    assert by_name["miss"][1:3] == ["nothing missing", "0/2"]
+    assert by_name["alarm"][2] == "no" and by_name["clean"][2] == "yes"
+    assert by_name["without effect"][:2] == ["2", "1/2"] and by_name["without effect"][4] == "1"
+    assert by_name["outside the library"][:4] == ["1", "1/1", "1/1", "1/1"]
+    assert by_name["two effects"][:4] == ["1", "0/1", "0/2", "0/2"]
+    assert by_name["all"][:3] == ["4", "2/4", "1/3"]
