@@ -77,13 +77,17 @@ def draw(rows: Sequence[tuple[str, list[dict[str, float]]]], file: Path) -> None
 
     figure, axes = pyplot.subplots(figsize=(5.2, 5.0), layout="constrained")
     axes.plot([0, 1], [0, 1], color="0.7", lw=1)
-    for (label, bins), colour in zip(rows, ("tab:blue", "tab:orange", "tab:green"), strict=False):
+    looks = (
+        ("tab:blue", (6, -12)),
+        ("tab:orange", (-18, -12)),
+    )  # labels on either side, as points of both series fall together
+    for (label, bins), (colour, beside) in zip(rows, looks, strict=True):
         claimed, right = [b["claimed"] for b in bins], [b["right"] for b in bins]
         axes.plot(claimed, right, color=colour, lw=1, label=label)
         axes.scatter(claimed, right, s=[12 + 6 * b["findings"] for b in bins], color=colour, alpha=0.7)
         for b in bins:
             axes.annotate(
-                f"{b['findings']:.0f}", (b["claimed"], b["right"]), (6, -10), textcoords="offset points", color=colour
+                f"{b['findings']:.0f}", (b["claimed"], b["right"]), beside, textcoords="offset points", color=colour
             )
     axes.set(
         xlim=(0, 1.03), ylim=(-0.03, 1.06), xlabel="probability claimed", ylabel="share of findings that are right"

@@ -34,8 +34,8 @@ CLOSE = 0.7
 FRONT_RUNNERS = 3
 MOST_SHAPES = 3
 
-LEAST_PART, LEAST_PART_OF_CURVE = 0.005, 0.02
-"""Share of the plain model's mean squared error that a named effect, and a free curve, has to remove at some window length."""
+LEAST_PART = 0.02
+"""Share of the plain model's mean squared error that a free curve has to remove at some window length."""
 
 LEAST_BESIDE_CURVE = 0.1
 """Share of what a free curve leaves from which a further effect is worth refits, which are slow beside it."""
@@ -108,17 +108,16 @@ class Rounds:
         )
         ranked = self._fairly(ranked)
         paying = (r for r in ranked if r.gain > LEAST_GAIN and r.surely > LEAST_SURENESS)
-        taken = chosen([r for r in paying if self._substantial(r)])
+        taken = chosen([r for r in paying if not r.unknown or self._substantial(r)])
         self.rounds.append(Round(tuple(tuple(at) for at in looks), tuple(ranked), taken))
         if taken is not None:
             self.current = self._detailed(taken) if taken.unknown else taken.fitted
         return taken is not None
 
-    def _substantial(self, found: Ranked) -> bool:
-        """Whether an effect explains a part of the whole mismatch that counts, and not what another law lacks to be the machine's."""
-        fits = zip(self.plain.fits, self.current.fits, found.fitted.fits, strict=True)
-        least = LEAST_PART_OF_CURVE if found.unknown else LEAST_PART
-        return any(b.mean_square - a.mean_square > least * p.mean_square for p, b, a in fits)
+    def _substantial(self, curve: Ranked) -> bool:
+        """Whether a free curve explains a part of the whole mismatch that counts, and not what a named law lacks to be the machine's."""
+        fits = zip(self.plain.fits, self.current.fits, curve.fitted.fits, strict=True)
+        return any(b.mean_square - a.mean_square > LEAST_PART * p.mean_square for p, b, a in fits)
 
     def _detailed(self, taken: Ranked) -> Hypothesis:
         """The hypothesis with its new curve drawn more and more finely, as long as that pays."""
