@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnose.candidates import attach
+from greybox_torch.diagnose.held_out import _window_by_window
 from greybox_torch.diagnose.placed import placed
 from greybox_torch.diagnose.refit import augmented
 from greybox_torch.estimate.problem import problem_for
@@ -50,3 +51,20 @@ def test_without_a_position_it_is_a_fit_of_the_windows(motor_data, motor, begun)
     fit = placed(problem, stepper, 31, 1)
     assert fit is not None and fit.problem.initial.shape == (1, 1)
     assert np.sqrt(fit.mean_square) == pytest.approx(0.02, rel=0.1)
+
+
+def test_a_window_in_a_local_minimum_does_not_outweigh_the_others(motor_data, motor, begun) -> None:
+    search = begun(motor_data(), motor)
+    good = search.plain.fits[0]
+    energies, starts = good.energies.copy(), good.starts.copy()
+    energies[3], starts[3] = 1e3, 99.0
+    stuck = replace(
+        good, energies=energies, starts=starts, mean_square=good.mean_square * energies.sum() / good.energies.sum()
+    )
+    for pair in ((stuck, good), (good, stuck)):
+        best = _window_by_window(*pair)
+        assert best is not None
+        assert np.array_equal(best.energies, good.energies) and np.array_equal(best.starts, good.starts)
+        assert best.mean_square == pytest.approx(good.mean_square)
+    assert _window_by_window(None, good) is good and _window_by_window(good, None) is good
+    assert _window_by_window(None, None) is None
