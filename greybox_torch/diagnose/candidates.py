@@ -7,7 +7,6 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 import torch
 
-from greybox_torch.diagnose.surroundings import driving_body
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import Gravity, TorqueRipple
@@ -17,6 +16,7 @@ from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.mechanisms.transmission import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Port, Signals
+from greybox_torch.model.ports import driving_body
 
 LEAST_RIPPLE_ORDER = 1.2
 """Below this order a force periodic in an angle is gravity's, not ripple."""
@@ -83,7 +83,7 @@ def periodic_candidates(
                 found.append(attach(model, port.name, PositionDependentFriction(order)))
                 if order > LEAST_RIPPLE_ORDER or not _is_angle(surroundings[port.name]):
                     found.append(attach(model, port.name, TorqueRipple(order)))
-            elif isinstance(port, Coupling) and driving_body(model) is not None:
+            elif isinstance(port, Coupling) and driving_body(model.ports) is not None:
                 shifted = shifts.get(port.name, "")
                 if shifted:
                     found.append(attach(model, port.name, TransmissionError(order), shifted))
@@ -95,7 +95,7 @@ def attach(model: GreyBoxModel, port: str, mechanism: Mechanism, shifted: str = 
     site = next(q for q in model.all_ports if q.name == port)
     position = ""
     if "position" in mechanism.signals() or "position" in mechanism.needs:
-        body = site if isinstance(site, Body) else driving_body(model)
+        body = site if isinstance(site, Body) else driving_body(model.ports)
         position = body.name if body is not None else ""
     return Attachment(port, mechanism, position=position, shifted_state=shifted)
 

@@ -18,7 +18,8 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.friction import PositionDependentFriction
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
-from greybox_torch.model import Body, GreyBoxModel
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.ports import driving_body
 from greybox_torch.simulate.side_by_side import side_by_side
 
 LEAST_PERIODS = 5.0
@@ -46,7 +47,7 @@ def scan_orders(
 
     Of every fit (they differ in window length), the two that explain most, best first.
     """
-    body = next((p for p in base.ports if isinstance(p, Body)), None)
+    body = driving_body(base.ports)
     if body is None:
         return []
 

@@ -95,7 +95,7 @@ class Rounds:
         """
         looks = self._screened(fine=fine)
         found = leaders(looks, self.current.fits, self.surroundings, self._card())
-        if any(isinstance(e.mechanism, Unknown) for e in self.current.effects):
+        if self._has_curve():
             found = [k for k in found if k.explained > LEAST_BESIDE_CURVE]
         ranked = rank(
             self.problem,
@@ -144,7 +144,10 @@ class Rounds:
 
     def _may_be_a_curve(self) -> bool:
         """Whether free curves are offered: one says that something is unknown, and where; a second one would only fit what is left."""
-        return self.curves and not any(isinstance(e.mechanism, Unknown) for e in self.current.effects)
+        return self.curves and not self._has_curve()
+
+    def _has_curve(self) -> bool:
+        return any(isinstance(e.mechanism, Unknown) for e in self.current.effects)
 
     def _screened(self, *, fine: bool) -> list[list[Look]]:
         self.progress("screening fine curves" if fine else "screening every port and mechanism")

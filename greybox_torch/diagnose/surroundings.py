@@ -9,7 +9,7 @@ from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.attachment import position_unit
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
-from greybox_torch.model.ports import Actuator, Sensor, Signal
+from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
 from greybox_torch.simulate.stepper import Stepper, whole_records
 
 
@@ -46,7 +46,7 @@ def _around(
     if isinstance(port, Body) and "position" not in values:
         values["position"] = _integrated(values["speed"], problem)
     if isinstance(port, Coupling):
-        body = driving_body(model)
+        body = driving_body(model.ports)
         if body is not None:
             if body.position is not None:
                 values["position"] = _evaluated(body.position, x, u, p, times)
@@ -54,7 +54,7 @@ def _around(
                 values["position"] = _integrated(_evaluated(body.speed, x, u, p, times), problem)
             if body.load is not None and _turns_with(port, body, x, u, p):
                 values["load"] = _evaluated(body.load, x, u, p, times)
-    if isinstance(port, Actuator | Coupling) and (body := driving_body(model)) is not None:
+    if isinstance(port, Actuator | Coupling) and (body := driving_body(model.ports)) is not None:
         values["speed"] = _evaluated(body.speed, x, u, p, times)
     if isinstance(port, Sensor):
         row = [o.name for o in model.outputs].index(port.output)
@@ -75,11 +75,6 @@ def _turns_with(coupling: Coupling, body: Body, x: Signals, u: Signals, p: Signa
         return False
     faster = x.replaced(**{body.speed: x[body.speed] + 1.0})
     return bool(torch.as_tensor(coupling.rate(faster, u, p) != coupling.rate(x, u, p)).any())
-
-
-def driving_body(model: GreyBoxModel) -> Body | None:
-    """The body whose position kinematic errors are taken to follow: the first declared one."""
-    return next((port for port in model.ports if isinstance(port, Body)), None)
 
 
 def _evaluated(signal: Signal, x: Signals, u: Signals, p: Signals, times: np.ndarray) -> np.ndarray:
@@ -115,7 +110,7 @@ def _units(model: GreyBoxModel, port: Port) -> dict[str, str]:
             units["deflection"] = units["rate"].removesuffix("/s")
     if isinstance(port, Actuator):
         units["input"] = of[port.input]
-    body = driving_body(model)
+    body = driving_body(model.ports)
     if isinstance(port, Actuator | Coupling) and body is not None and isinstance(body.speed, str):
         units["speed"] = of[body.speed]
     if isinstance(port, Sensor):

@@ -12,7 +12,7 @@ import torch
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Surroundings
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Input, Parameter, Signals, State
-from greybox_torch.model.ports import Actuator, Sensor, Signal
+from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
 
 
 @dataclass(frozen=True)
@@ -210,8 +210,12 @@ class AugmentedModel(GreyBoxModel):
             values["position"] = self._position(a.position, x, u, p)
         if isinstance(site, Coupling) and a.position and "load" in self.surroundings[a.port].ranges:
             values["load"] = _value(self._body(a.position).signals["load"], x, u, p)
-        if isinstance(site, Actuator | Coupling) and getattr(a.mechanism, "signal", "") == "speed":
-            driving = next(port for port in self.base_ports.values() if isinstance(port, Body))
+        driving = driving_body(self.base_ports.values())
+        if (
+            driving is not None
+            and isinstance(site, Actuator | Coupling)
+            and getattr(a.mechanism, "signal", "") == "speed"
+        ):
             values["speed"] = _value(driving.speed, x, u, p)
         if isinstance(site, Sensor):
             values["output"] = self.base.output(x, u, p)[site.output]

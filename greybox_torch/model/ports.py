@@ -6,7 +6,7 @@ coupling's restoring force. Besides the declared ports every input has a port ``
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -100,6 +100,11 @@ class Sensor:
 
 
 Port = Body | Coupling | Balance | Actuator | Sensor
+
+
+def driving_body(ports: Iterable[Port]) -> Body | None:
+    """The body whose position kinematic errors are taken to follow, and whose speed changes gains: the first declared one."""
+    return next((port for port in ports if isinstance(port, Body)), None)
 
 
 def actuators(inputs: tuple[str, ...]) -> tuple[Actuator, ...]:

@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greybox_torch.diagnose.surroundings import driving_body, survey
+from greybox_torch.diagnose.surroundings import survey
 from greybox_torch.estimate.problem import make_problem
+from greybox_torch.model.ports import driving_body
 from greybox_torch.simulate.stepper import make_stepper, whole_records
 from greybox_torch.systems import RobotArm
 from greybox_torch.systems.load import load_model
@@ -98,5 +99,5 @@ def test_position_of_the_model_and_missing_samples(data_set, machines: Path) -> 
 
 
 def test_driving_body_is_the_first() -> None:
-    body = driving_body(RobotArm())
+    body = driving_body(RobotArm().ports)
     assert body is not None and body.name == "motor"
