@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from greybox_torch.estimate.bounded_step import bounded_step
 from greybox_torch.estimate.levenberg_marquardt import ROUGH, Settings
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.rough_starts import rough_starts
@@ -20,6 +21,12 @@ from greybox_torch.simulate.stepper import Stepper, Windows, cut
 
 SHRINKING = 30.0
 """Samples' worth of error that a shrunk parameter costs when it is as large as it began."""
+
+NEGLIGIBLE = 1e-2
+"""Predicted gain, as a share of the tolerance, from which a step is not worth simulating."""
+
+LEAST_GAIN_RATIO = 1e-4
+"""Share of the predicted gain that a step must bring to be accepted."""
 
 CARRY_EVERY = 4
 """Accepted steps after which carried states are brought along anew, with the parameters as they then are."""
@@ -96,15 +103,18 @@ def fit_windows(
     for _ in range(settings.iterations):
         accepted = False
         for _ in range(settings.trials):
-            trial, trial_states = _stepped(problem, here, states, damping)
+            trial, trial_states, predicted = _stepped(problem, here, states, damping)
+            if predicted <= NEGLIGIBLE * settings.tolerance * here.cost:
+                break
             there = None
             if problem.admissible(trial.values):
                 there = _evaluate(trial, stepper, windows, trial_states, hold, substeps)
                 evaluations += 1
-            if there is not None and there.cost < here.cost:
+            gain = -1.0 if there is None else (here.cost - there.cost) / predicted
+            if there is not None and gain > LEAST_GAIN_RATIO:
                 change = (here.cost - there.cost) / here.cost
                 problem, states, here, accepted = trial, trial_states, there, True
-                damping, growth = max(damping / 5.0, 1e-9), 2.0
+                damping, growth = max(damping * max(0.1, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3), 1e-9), 2.0
                 accepted_steps += 1
                 break
             damping, growth = damping * growth, growth * 2.0
@@ -247,8 +257,8 @@ def _weighted_samples(problem: Problem, windows: Windows) -> int:
     return int((known[ends] - known[windows.start]).sum())
 
 
-def _stepped(problem: Problem, here: _Pass, states: np.ndarray, damping: float) -> tuple[Problem, np.ndarray]:
-    """The damped Gauss-Newton step, window starts eliminated."""
+def _stepped(problem: Problem, here: _Pass, states: np.ndarray, damping: float) -> tuple[Problem, np.ndarray, float]:
+    """The damped Gauss-Newton step within bounds, window starts eliminated, and how much it should lower the cost."""
     diagonal = np.einsum("wii->wi", here.hss)
     floor = 1e-12 * diagonal.max()
     damped = here.hss + np.eye(diagonal.shape[1]) * (damping * (diagonal + floor))[:, :, None]
@@ -258,11 +268,20 @@ def _stepped(problem: Problem, here: _Pass, states: np.ndarray, damping: float) 
     right = -(here.gp - np.einsum("wsp,ws->p", here.hsp, own))
     scale = 1.0 / np.sqrt(np.maximum(np.diag(here.hpp), 1e-14 * max(np.diag(here.hpp).max(initial=0.0), 1e-300)))
     scaled = matrix * scale[:, None] * scale[None, :] + damping * np.eye(len(scale))
-    step = scale * np.linalg.lstsq(scaled, right * scale, rcond=1e-14)[0] if len(scale) else np.zeros(0)
+    now = problem.values[problem.free]
+    low, high = ((bound[problem.free] - now) / scale for bound in (problem.lower, problem.upper))
+    taken = scale * bounded_step(scaled, right * scale, low, high)
     values = problem.values.copy()
-    low, high = problem.lower[problem.free], problem.upper[problem.free]
-    values[problem.free] = np.clip(values[problem.free] + step, low, high)
-    taken = values[problem.free] - problem.values[problem.free]
+    values[problem.free] = np.clip(now + taken, problem.lower[problem.free], problem.upper[problem.free])
+    away = -(own + back @ taken)
     moved = states.copy()
-    moved[:, here.open_states] -= own + back @ taken
-    return problem.with_values(values), moved
+    moved[:, here.open_states] += away
+    return problem.with_values(values), moved, _predicted(here, taken, away)
+
+
+def _predicted(here: _Pass, taken: np.ndarray, away: np.ndarray) -> float:
+    """How much the quadratic model falls by a step ``taken`` (n_p,) in the parameters and ``away`` (W, n_s) in the start states."""
+    slope = float(here.gp @ taken + (here.gs * away).sum())
+    bend = float(taken @ here.hpp @ taken + 2.0 * (away * (here.hsp @ taken)).sum())
+    bend += float(np.einsum("ws,wst,wt->", away, here.hss, away))
+    return -(slope + 0.5 * bend)
