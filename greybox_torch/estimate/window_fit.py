@@ -9,14 +9,14 @@ Source: H. G. Bock, "Recent advances in parameter identification techniques for 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from greybox_torch.estimate.bounded_step import bounded_step
 from greybox_torch.estimate.levenberg_marquardt import ROUGH, Settings
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.rough_starts import rough_starts
+from greybox_torch.estimate.window_step import Hold, WindowModel, held, stepped
 from greybox_torch.simulate.stepper import Stepper, Windows, cut
 
 SHRINKING = 30.0
@@ -46,31 +46,6 @@ class WindowFit:
     evaluations: int
 
 
-@dataclass(frozen=True)
-class _Hold:
-    """How weakly the unknowns are held where they began: weights of squared distances, of start states (n_x,) and parameters (n_p,)."""
-
-    starts: np.ndarray
-    weights: np.ndarray
-    values: np.ndarray
-    value_weights: np.ndarray
-
-
-@dataclass(frozen=True)
-class _Pass:
-    cost: float
-    hpp: np.ndarray
-    gp: np.ndarray
-    hss: np.ndarray
-    hsp: np.ndarray
-    gs: np.ndarray
-    mean_square: float
-    energies: np.ndarray
-    open_states: np.ndarray
-    away: np.ndarray
-    moved: np.ndarray
-
-
 def fit_windows(
     problem: Problem,
     stepper: Stepper,
@@ -98,12 +73,12 @@ def fit_windows(
     if here is None:
         return None
     hold = _weak_hold(problem, states, here.mean_square, windows.steps)
-    here = _held(here, hold)
+    here = held(here, hold)
     evaluations, accepted_steps, damping, growth = 1, 0, 1e-2, 2.0
     for _ in range(settings.iterations):
         accepted = False
         for _ in range(settings.trials):
-            trial, trial_states, predicted = _stepped(problem, here, states, damping)
+            trial, trial_states, predicted = stepped(problem, here, states, damping)
             if predicted <= NEGLIGIBLE * settings.tolerance * here.cost:
                 break
             there = None
@@ -171,7 +146,7 @@ def carried_starts(
     return starts
 
 
-def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: int) -> _Hold:
+def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: int) -> Hold:
     """Holds that matter only where the data say nothing: start states within several times their spread, parameters within several
     times their start value (without which a friction law's shape can wander off where no speed is visited).
     """
@@ -189,7 +164,7 @@ def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: 
         size = max(float(np.abs(values[shrunk]).max()), 1e-12)
         value_weights = np.where(shrunk, SHRINKING * mean_square / size**2, value_weights)
         values = np.where(shrunk, 0.0, values)
-    return _Hold(states, 1e-4 * mean_square * steps / spread**2, values, value_weights)
+    return Hold(states, 1e-4 * mean_square * steps / spread**2, values, value_weights)
 
 
 def _evaluate(
@@ -197,9 +172,9 @@ def _evaluate(
     stepper: Stepper,
     windows: Windows,
     states: np.ndarray,
-    hold: _Hold | None,
+    hold: Hold | None,
     substeps: int,
-) -> _Pass | None:
+) -> WindowModel | None:
     count, n_x = states.shape
     n_p = int(problem.free.sum())
     open_states = np.flatnonzero(~problem.carried)
@@ -219,7 +194,7 @@ def _evaluate(
         return None
     h, g = run.normal[:, :-1, :-1], -run.normal[:, :-1, -1]
     energies = run.normal[:, -1, -1]
-    found = _Pass(
+    found = WindowModel(
         cost=0.5 * float(energies.sum()),
         hpp=h[:, :n_p, :n_p].sum(0),
         gp=g[:, :n_p].sum(0),
@@ -232,22 +207,7 @@ def _evaluate(
         away=states[:, open_states],
         moved=problem.values[problem.free],
     )
-    return found if hold is None else _held(found, hold)
-
-
-def _held(found: _Pass, hold: _Hold) -> _Pass:
-    """The pass with the weak holds added to cost, gradient and Hessian."""
-    weights = hold.weights[found.open_states]
-    away, moved = found.away - hold.starts[:, found.open_states], found.moved - hold.values
-    held = float((weights * away**2).sum() + (hold.value_weights * moved**2).sum())
-    return replace(
-        found,
-        cost=found.cost + 0.5 * held,
-        hpp=found.hpp + np.diag(hold.value_weights),
-        gp=found.gp + hold.value_weights * moved,
-        hss=found.hss + np.diag(weights),
-        gs=found.gs + weights * away,
-    )
+    return found if hold is None else held(found, hold)
 
 
 def _weighted_samples(problem: Problem, windows: Windows) -> int:
@@ -255,33 +215,3 @@ def _weighted_samples(problem: Problem, windows: Windows) -> int:
     known = np.concatenate([[0], np.cumsum((~np.isnan(problem.tape.y)).sum(axis=0))])
     ends = np.minimum(windows.start + windows.steps, windows.last + 1)
     return int((known[ends] - known[windows.start]).sum())
-
-
-def _stepped(problem: Problem, here: _Pass, states: np.ndarray, damping: float) -> tuple[Problem, np.ndarray, float]:
-    """The damped Gauss-Newton step within bounds, window starts eliminated, and how much it should lower the cost."""
-    diagonal = np.einsum("wii->wi", here.hss)
-    floor = 1e-12 * diagonal.max()
-    damped = here.hss + np.eye(diagonal.shape[1]) * (damping * (diagonal + floor))[:, :, None]
-    solved = np.linalg.solve(damped, np.concatenate([here.hsp, here.gs[..., None]], axis=2))
-    back, own = solved[..., :-1], solved[..., -1]
-    matrix = here.hpp - np.einsum("wsp,wsq->pq", here.hsp, back)
-    right = -(here.gp - np.einsum("wsp,ws->p", here.hsp, own))
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(here.hpp), 1e-14 * max(np.diag(here.hpp).max(initial=0.0), 1e-300)))
-    scaled = matrix * scale[:, None] * scale[None, :] + damping * np.eye(len(scale))
-    now = problem.values[problem.free]
-    low, high = ((bound[problem.free] - now) / scale for bound in (problem.lower, problem.upper))
-    taken = scale * bounded_step(scaled, right * scale, low, high)
-    values = problem.values.copy()
-    values[problem.free] = np.clip(now + taken, problem.lower[problem.free], problem.upper[problem.free])
-    away = -(own + back @ taken)
-    moved = states.copy()
-    moved[:, here.open_states] += away
-    return problem.with_values(values), moved, _predicted(here, taken, away)
-
-
-def _predicted(here: _Pass, taken: np.ndarray, away: np.ndarray) -> float:
-    """How much the quadratic model falls by a step ``taken`` (n_p,) in the parameters and ``away`` (W, n_s) in the start states."""
-    slope = float(here.gp @ taken + (here.gs * away).sum())
-    bend = float(taken @ here.hpp @ taken + 2.0 * (away * (here.hsp @ taken)).sum())
-    bend += float(np.einsum("ws,wst,wt->", away, here.hss, away))
-    return -(slope + 0.5 * bend)
