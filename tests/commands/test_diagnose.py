@@ -218,7 +218,7 @@ def test_seeds_change_no_verdict(motor_folder: Make) -> None:
     folder = motor_folder(dead_zone=0.4)
     verdicts = [json.loads(diagnose(folder, "--json", "--seed", str(seed)).stdout) for seed in (0, 1, 2)]
     assert [v["seed"] for v in verdicts] == [0, 1, 2]
-    for key in ("effects", "fit", "confidence", "ranking"):
+    for key in ("mismatch", "effects", "fit", "confidence"):
         assert verdicts[0][key] == verdicts[1][key] == verdicts[2][key]
 
 
