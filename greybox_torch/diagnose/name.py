@@ -198,19 +198,17 @@ def _standard_errors(values: np.ndarray) -> float:
 def _finalists(
     first: list[tuple[float, Leader, Hypothesis, Stepper]],
 ) -> list[tuple[float, Leader, Hypothesis, Stepper]]:
-    """The best few, with at least one named hypothesis and one curve among them where there are any; what ties with the best named one,
-    and what they generalise.
-    """
-    chosen = first[:FINALISTS]
+    """The best few, the best few named ones and what ties with the best of those, what they generalise, and the best curve."""
     named = [e for e in first if not isinstance(e[1].attachment.mechanism, Unknown)]
-    chosen += [e for e in named[:MOST_TIED] if e[0] < named[0][0] + TIE and e not in chosen]
+    chosen = first[:FINALISTS]
+    tied = [e for e in named[:MOST_TIED] if e[0] < named[0][0] + TIE]
+    chosen += [e for e in named[: max(FINALISTS, len(tied))] if e not in chosen]
     contained = {(e[1].attachment.port, name) for e in chosen for name in e[1].attachment.mechanism.generalises}
     chosen += [
         e for e in first if (e[1].attachment.port, e[1].attachment.mechanism.name) in contained and e not in chosen
     ]
-    for unknown in (True, False):
-        if not any(isinstance(e[1].attachment.mechanism, Unknown) == unknown for e in chosen):
-            chosen += [e for e in first if isinstance(e[1].attachment.mechanism, Unknown) == unknown][:1]
+    if not any(isinstance(e[1].attachment.mechanism, Unknown) for e in chosen):
+        chosen += [e for e in first if isinstance(e[1].attachment.mechanism, Unknown)][:1]
     return chosen
 
 

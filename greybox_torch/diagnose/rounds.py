@@ -43,9 +43,12 @@ LEAST_BESIDE_CURVE = 0.1
 
 @dataclass(frozen=True)
 class Round:
-    """One round of the search: what the screen saw, what the refits said, and which of them was taken (None: nothing)."""
+    """One round of the search: what the screen saw, the hypothesis that was built on, what the refits said, and which of them was taken
+    (None: nothing).
+    """
 
     looks: tuple[tuple[Look, ...], ...]
+    parent: Hypothesis
     ranked: tuple[Ranked, ...]
     taken: Ranked | None
 
@@ -106,10 +109,14 @@ class Rounds:
             device=self.device,
             progress=self.progress,
         )
+        return self._take(looks, ranked)
+
+    def _take(self, looks: Sequence[Sequence[Look]], ranked: Sequence[Ranked]) -> bool:
+        """End a round: compare what was refitted fairly, and take the best if it pays. Whether one was taken."""
         ranked = self._fairly(ranked)
         paying = (r for r in ranked if r.gain > LEAST_GAIN and r.surely > LEAST_SURENESS)
         taken = chosen([r for r in paying if not r.unknown or self._substantial(r)])
-        self.rounds.append(Round(tuple(tuple(at) for at in looks), tuple(ranked), taken))
+        self.rounds.append(Round(tuple(tuple(at) for at in looks), self.current, tuple(ranked), taken))
         if taken is not None:
             self.current = self._detailed(taken) if taken.unknown else taken.fitted
         return taken is not None

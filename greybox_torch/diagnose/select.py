@@ -114,28 +114,32 @@ class Search(Rounds):
         return best if taken < 0.5 * shares[best.attachment.prefix] else None
 
     def _advance(self) -> None:
+        """Take effects while it pays."""
         while len(self.current.effects) < MOST_EFFECTS and not only_noise(self.problem, self.current):
-            before, rounds = self.current, list(self.rounds)
+            rounds = list(self.rounds)
             if not (self.step() or self._step_with_fine_curves()):
                 break
-            taken = self.rounds[-1].taken
-            if taken is not None and taken.unknown:
-                self._named_instead(before, rounds)
+            done = self.rounds[-1]
+            if done.taken is not None and done.taken.unknown:
+                self._named_instead(done, rounds)
+                if len(self.current.effects) == len(done.parent.effects):
+                    break  # what is there already comes as far as the curve, and no name goes farther
 
     def _step_with_fine_curves(self) -> bool:
         """Where nothing pays and yet more than noise is left: one round with curves fine enough for a narrow law."""
         more = times_noise(self.problem, self.current) > ABOVE_NOISE
         return self._may_be_a_curve() and more and self.step(fine=True)
 
-    def _named_instead(self, before: Hypothesis, rounds: list[Round]) -> None:
-        """Where a free curve was taken: the search from ``before`` without curves, kept if named effects come as far.
+    def _named_instead(self, done: Round, rounds: list[Round]) -> None:
+        """Where a free curve was taken: the search without curves from where that round began, kept if named effects come as far.
 
         One curve can stand for several laws of the same signal, none of which would come near it alone.
         """
-        with_curve, its_rounds = self.current, self.rounds
+        with_curve, its_rounds, before = self.current, self.rounds, done.parent
         self.current, self.rounds, self.curves = before, rounds, False
         try:
-            self._advance()
+            if self._take(done.looks, [r for r in done.ranked if not r.unknown]):
+                self._advance()
         except BaseException:  # interrupted: the curve is the best so far
             self.current, self.rounds = with_curve, its_rounds
             raise
