@@ -159,11 +159,11 @@ class Search(Rounds):
         self.prune()
 
     def _revised(self) -> bool:
-        """Choose every one of several effects once more, beside the others: an early choice was made while they were still missing.
+        """Choose every effect but the newest once more, beside the others: an early choice was made while those were still missing.
 
         Whether one was replaced; the rest is then left as it is.
         """
-        for effect in self.current.effects if len(self.current.effects) > 1 else ():
+        for effect in self.current.effects[:-1]:
             whole, rounds = self.current, list(self.rounds)
             self.progress(f"choosing {effect.prefix} once more")
             self.current = self.without[effect.prefix]
