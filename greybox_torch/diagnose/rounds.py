@@ -9,7 +9,7 @@ from functools import partial
 from greybox_torch.diagnose.candidates import candidates, periodic_candidates, shifted_states
 from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS, chosen
 from greybox_torch.diagnose.curve import finer
-from greybox_torch.diagnose.leaders import leaders
+from greybox_torch.diagnose.leaders import Leader, leaders
 from greybox_torch.diagnose.name import Ranked, judged, polished, rank
 from greybox_torch.diagnose.orders import scan_orders
 from greybox_torch.diagnose.refit import POLISH_SETTINGS, WINDOW_SETTINGS, Hypothesis, hypothesis
@@ -36,6 +36,9 @@ MOST_SHAPES = 3
 
 LEAST_PART = 0.02
 """Share of the plain model's mean squared error that a free curve has to remove at some window length."""
+
+HOPE = 0.5
+"""Share of that which a curve must promise in the screen to be refitted at all."""
 
 LEAST_BESIDE_CURVE = 0.1
 """Share of what a free curve leaves from which a further effect is worth refits, which are slow beside it."""
@@ -100,6 +103,7 @@ class Rounds:
         found = leaders(looks, self.current.fits, self.surroundings, self._card())
         if self._has_curve():
             found = [k for k in found if k.explained > LEAST_BESIDE_CURVE]
+        found = [k for k in found if not k.unknown or self._promising(k)]
         ranked = rank(
             self.problem,
             self.current,
@@ -120,6 +124,11 @@ class Rounds:
         if taken is not None:
             self.current = self._detailed(taken) if taken.unknown else taken.fitted
         return taken is not None
+
+    def _promising(self, curve: Leader) -> bool:
+        """Whether the screen leaves hope that a free curve is substantial: its refits are the slowest of all."""
+        left = (c.mean_square / p.mean_square for p, c in zip(self.plain.fits, self.current.fits, strict=True))
+        return curve.explained * max(left) > HOPE * LEAST_PART
 
     def _substantial(self, curve: Ranked) -> bool:
         """Whether a free curve explains a part of the whole mismatch that counts, and not what a named law lacks to be the machine's."""

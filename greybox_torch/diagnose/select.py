@@ -14,7 +14,6 @@ from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.rounds import Round, Rounds
 from greybox_torch.diagnose.screen import Look
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulate.side_by_side import side_by_side
 
 MOST_EFFECTS = 4
@@ -98,7 +97,7 @@ class Search(Rounds):
         if done.taken is None or done.taken.unknown:
             return None
         shortest = done.looks[0]
-        found = [k for k in leaders(done.looks, before.fits, self.surroundings, self._card()) if not _is_curve(k)]
+        found = [k for k in leaders(done.looks, before.fits, self.surroundings, self._card()) if not k.unknown]
         shares = {k.attachment.prefix: _explained(shortest, k.attachment) for k in found}
         best = max(found, key=lambda k: shares[k.attachment.prefix], default=None)
         if best is None or shares[best.attachment.prefix] < LEAST_SHARE_PASSED_OVER:
@@ -207,10 +206,6 @@ class Search(Rounds):
             return self.plain
         self.progress(f"trying without {effect.prefix}")
         return self._refitted(rest, self.current) or self.plain
-
-
-def _is_curve(leader: Leader) -> bool:
-    return isinstance(leader.attachment.mechanism, Unknown)
 
 
 def _explained(looks: Sequence[Look], attachment: Attachment) -> float:
