@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
+import numpy as np
+
 from greybox_torch.diagnose.candidates import candidates, periodic_candidates, shifted_states
 from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS, chosen
 from greybox_torch.diagnose.curve import finer
@@ -33,6 +35,9 @@ CLOSE = 0.7
 
 FRONT_RUNNERS = 3
 MOST_SHAPES = 3
+
+ORDER_SHIFTS = (-2, -1, 1, 2)
+"""Quarter periods over the travel by which orders are tried anew."""
 
 LEAST_PART = 0.02
 """Share of the plain model's mean squared error that a free curve has to remove at some window length."""
@@ -221,7 +226,19 @@ class Rounds:
             tuple(sorted((f"{effect.prefix}.{n}", v) for n, v in probe.values.items() if n != "order"))
             for probe in probes
         }
-        return [{**values, **card, **dict(shape)} for shape in sorted(shapes)[:MOST_SHAPES]]
+        restarts = [{**values, **card, **dict(shape)} for shape in sorted(shapes)[:MOST_SHAPES]]
+        return restarts + self._neighbouring_orders(effect, values)
+
+    def _neighbouring_orders(self, effect: Attachment, values: dict[str, float]) -> list[dict[str, float]]:
+        """For a periodic effect, orders by which its phase shifts by a quarter period or more over the travel.
+
+        Along short windows positions are less exact than over long ones, where the order they suggest may lie in the next valley.
+        """
+        name = f"{effect.prefix}.order"
+        if name not in values:
+            return []
+        step = 0.5 * np.pi / self.surroundings[effect.port].ranges["position"].span
+        return [{**values, name: values[name] + shift * step} for shift in ORDER_SHIFTS]
 
     def _card(self) -> dict[str, float]:
         """The parameter values that the problem began with."""
