@@ -8,8 +8,10 @@ from functools import partial
 
 from greybox_torch.data import DataSet
 from greybox_torch.diagnose.held_out import Gain, gain, held_out_fits, timelines
+from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.select import Search
 from greybox_torch.estimate.problem import all_starts_free, make_problem
+from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.simulate.side_by_side import side_by_side
 
 LEAST_HELD_OUT = 1.0
@@ -33,8 +35,9 @@ def confirmed(dataset: DataSet, search: Search, progress: Callable[[str], None])
         named, curve = (held_out_fits(h, problem, search.substeps) for h in (search.named[0], search.current))
         if gain(named, curve).errors_away < BEYOND_CHANCE:
             search.settle_for_named()
+    on_others = partial(held_out_fits, problem=problem, substeps=search.substeps)
+    _simplified(search, on_others)
     while search.current.effects:
-        on_others = partial(held_out_fits, problem=problem, substeps=search.substeps)
         full, *without = side_by_side(partial(on_others, h) for h in (search.current, *search.without.values()))
         gains = {
             p: replace(gain(fits, full), timelines=timelines(fits, full))
@@ -46,6 +49,16 @@ def confirmed(dataset: DataSet, search: Search, progress: Callable[[str], None])
             return gains
         search.drop(weakest)
     return {}
+
+
+def _simplified(search: Search, on_others: Callable[[Hypothesis], tuple[WindowFit, ...]]) -> None:
+    """Take the law that an effect's law contains instead, where the larger one predicts other experiments no better."""
+    for effect in search.current.effects:
+        for rival, simpler in search.contained(effect):
+            before, after = side_by_side(partial(on_others, h) for h in (simpler, search.current))
+            if gain(before, after).errors_away < LEAST_HELD_OUT:
+                search.settle_for(rival, simpler, effect)
+                break
 
 
 def without_weakest(search: Search, gains: Mapping[str, Gain]) -> dict[str, Gain]:

@@ -49,8 +49,7 @@ def held_out_fits(hypothesis: Hypothesis, problem: Problem, substeps: int) -> tu
         else problem.with_values(hypothesis.problem.values)
     )
     fixed = replace(restated, free=np.zeros_like(restated.free))
-    tried = bool(restated.model.start_trials(restated.values))  # positions: found over short windows, further on
-    started = fixed if tried else estimate_initial(fixed, hypothesis.stepper, substeps=substeps)
+    started = estimate_initial(fixed, hypothesis.stepper, substeps=substeps)
     shortest, *longer = lengths(problem)
     short = placed(started, hypothesis.stepper, shortest, substeps)
     if short is None or not longer:

@@ -98,6 +98,13 @@ class Rounds:
             self.problem.model, plain.problem, plain.stepper, self.substeps
         )
 
+    def round_of(self, prefix: str) -> Round | None:
+        """The round in which an effect was taken, the last one where it was chosen anew beside the others."""
+        return next(
+            (r for r in reversed(self.rounds) if r.taken is not None and r.taken.leader.attachment.prefix == prefix),
+            None,
+        )
+
     def step(self, *, fine: bool = False) -> bool:
         """One round: screen, refit the leaders, take the best if it pays. Whether one was taken.
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS
 from greybox_torch.diagnose.leaders import Leader, leaders
-from greybox_torch.diagnose.name import PARSIMONY, sureness
+from greybox_torch.diagnose.name import PARSIMONY, Ranked, sureness
 from greybox_torch.diagnose.noise import ABOVE_NOISE, only_noise, times_noise
 from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.rounds import Round, Rounds
@@ -155,6 +155,25 @@ class Search(Rounds):
         assert self.named is not None
         (self.current, self.rounds), self.named = self.named, None
         self.without = {}
+        self.prune()
+
+    def contained(self, effect: Attachment) -> list[tuple[Ranked, Hypothesis]]:
+        """Laws that the law of ``effect`` contains, of those that were refitted beside it, and each in its place beside the others."""
+        done, found = self.round_of(effect.prefix), []
+        for rival in done.ranked if done is not None else ():
+            other = rival.leader.attachment
+            if other.port == effect.port and other.mechanism.name in effect.mechanism.generalises:
+                self.progress(f"refitting {other.prefix} in the place of {effect.prefix}")
+                effects = tuple(other if e is effect else e for e in self.current.effects)
+                fitted = self._refitted(effects, self.current, [rival.fitted.values()])
+                found += [] if fitted is None else [(rival, fitted)]
+        return found
+
+    def settle_for(self, rival: Ranked, fitted: Hypothesis, effect: Attachment) -> None:
+        """Take ``fitted``, with the law of ``rival`` in the place of ``effect``, as if the round had found that."""
+        done = self.round_of(effect.prefix)
+        self.rounds = [replace(r, taken=rival) if r is done else r for r in self.rounds]
+        self.current = fitted
         self.prune()
 
     def _revised(self) -> bool:
