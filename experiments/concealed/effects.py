@@ -31,10 +31,12 @@ STRENGTHS = {"weak": 0.35, "moderate": 1.0, "dominant": 2.5}
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What a draw may depend on: the true parameters, and the positions (samples, 4) that the arm passes without effect."""
+    """What a draw may depend on: the true parameters, and the positions (samples, 4) and the largest torque that the machine passes
+    without effect."""
 
     truth: Mapping[str, float]
     position: NDArray[np.float64]
+    peak: float = np.nan
 
 
 Draw = Callable[[Generator, float, Surroundings], Switches]
@@ -250,8 +252,12 @@ def _drive_effects() -> list[Effect]:
 
 def _outside_effects() -> list[Effect]:
     def bump(g: Generator, s: float, c: Surroundings) -> Switches:
-        return {"height": s * g.uniform(0.4, 0.7), "center": g.uniform(12.0, 22.0), "width": g.uniform(1.8, 3.0),
-                "v_0": 1.0}
+        return {
+            "height": s * g.uniform(0.4, 0.7),
+            "center": g.uniform(12.0, 22.0),
+            "width": g.uniform(1.8, 3.0),
+            "v_0": 1.0,
+        }
 
     def notch(g: Generator, s: float, c: Surroundings) -> Switches:
         center = _between(c.position[:, 0], g.uniform(0.35, 0.75))

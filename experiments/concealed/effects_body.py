@@ -85,10 +85,11 @@ def forces(u: Usual) -> list[Effect]:
         return {"bias": s * _sign(g) * u.force * g.uniform(0.02, 0.06)}
 
     def end_stop(g: Generator, s: float, c: Surroundings) -> Switches:
-        reached = float(np.abs(c.position[:, 0]).max())
-        side = 1.0 if float(c.position[:, 0].max()) >= reached else -1.0
-        depth = min(s * u.travel * g.uniform(0.05, 0.1), 0.5 * reached)
-        return {"limit": reached - depth, "side": side, "stiffness": 40.0 * u.force / u.travel, "damping": 0.5 * u.force / u.speed}
+        depth = min(s * g.uniform(0.05, 0.1), 0.5) * u.travel
+        return {
+            "limit": float(c.position.max()) - depth, "side": 1.0, "stiffness": 40.0 * u.force / u.travel,
+            "damping": 0.5 * u.force / u.speed,
+        }  # fmt: skip
 
     def mode(g: Generator, s: float, c: Surroundings) -> Switches:
         return {
@@ -122,7 +123,7 @@ def drives(u: Usual) -> list[Effect]:
     """Static maps from the recorded force to the one that acts, that nothing else looks like."""
 
     def saturation(g: Generator, s: float, c: Surroundings) -> Switches:
-        return {"limit": u.force * g.uniform(1.6, 2.2) / (0.6 + 0.4 * s)}
+        return {"limit": c.peak * float(np.exp(-s * g.uniform(0.1, 0.2)))}
 
     return [
         Effect("saturation", drive.TorqueSaturation, "actuator", "actuator", saturation,
@@ -134,15 +135,18 @@ def drives(u: Usual) -> list[Effect]:
 
 
 def timings(
-    sensor: str, delays: tuple[tuple[Pair, ...], tuple[Pair, ...]], lags: tuple[tuple[Pair, ...], tuple[Pair, ...]]
+    sensor: str,
+    longest: float,
+    delays: tuple[tuple[Pair, ...], tuple[Pair, ...]],
+    lags: tuple[tuple[Pair, ...], tuple[Pair, ...]],
 ) -> list[Effect]:
-    """Delay and lag of the input and of one sensor; `delays` and `lags`: the answers that are right for either."""
+    """Delay and lag of the input and of one sensor, `longest` at most [s]; `delays` and `lags`: the answers that are right for either."""
 
     def delay(g: Generator, s: float, c: Surroundings) -> Switches:
-        return {"delay": s * g.uniform(0.002, 0.004)}
+        return {"delay": min(s * g.uniform(0.002, 0.004), longest)}
 
     def lag(g: Generator, s: float, c: Surroundings) -> Switches:
-        return {"T": s * g.uniform(0.002, 0.004)}
+        return {"T": min(s * g.uniform(0.002, 0.004), longest)}
 
     every = (("actuator", "input_delay"), ("actuator", "input_lag"), (sensor, "output_delay"), (sensor, "sensor_lag"))
 
@@ -162,7 +166,7 @@ def gains(sensor: str, accepted: tuple[tuple[Pair, ...], tuple[Pair, ...]]) -> l
     """A gain of the input and of one sensor that is not what the data sheet says."""
 
     def gain(g: Generator, s: float, c: Surroundings) -> Switches:
-        return {"gain": float(np.exp(s * _sign(g) * g.uniform(0.04, 0.08)))}
+        return {"gain": float(np.exp(min(s * g.uniform(0.04, 0.08), 0.4) * _sign(g)))}
 
     def entry(name: str, law: type, port: str, accept: tuple[Pair, ...]) -> Effect:
         return Effect(name, law, port, "gain", gain, accept, (), tuple(dict.fromkeys(p for p, _ in accept)))

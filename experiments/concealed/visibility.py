@@ -1,4 +1,4 @@
-"""How visible an effect is to whoever refits the plain model, and effects drawn to be just so visible.
+"""How visible an effect is to whoever refits the plain model, and effects drawn to be just so visible, as far as they can be.
 
 The recorded command is replayed on the plain machine at its true parameters, from the true state where the recording begins. What is
 left is projected off everything that a refit could take up, to first order: the free parameters, shared by the four experiments,
@@ -9,7 +9,7 @@ noise, read-out, jitter, and what torque noise and drift add up to in a free run
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +26,7 @@ EVERY = 4
 """Samples from one to the next that the projection looks at."""
 RELATIVE_STEP = 1e-4
 ROUNDS = 4
-LEAST_SCALE, LARGEST_SCALE = 1e-4, 30.0
+LEAST_SCALE = 1e-4
 
 
 def word(visibility: float) -> str:
@@ -79,9 +79,7 @@ def unexplained(residual: Array, columns: Array, parameters: int, weights: Array
     for j in range(LANES):
         own = scaled[parameters:, :, :, j].reshape(len(columns) - parameters, -1).T
         basis, _ = np.linalg.qr(own / np.linalg.norm(own, axis=0))
-        target = np.concatenate(
-            [thin[:, :, j].reshape(1, -1), scaled[:parameters, :, :, j].reshape(parameters, -1)]
-        ).T
+        target = np.concatenate([thin[:, :, j].reshape(1, -1), scaled[:parameters, :, :, j].reshape(parameters, -1)]).T
         target = target - basis @ (basis.T @ target)
         rests.append(target[:, 0])
         shared.append(target[:, 1:])
@@ -92,6 +90,34 @@ def unexplained(residual: Array, columns: Array, parameters: int, weights: Array
     return np.moveaxis(left.reshape(LANES, outputs, samples), 0, 2) / weights[:, None, None]
 
 
+@dataclass
+class _Search:
+    """The scale of one effect of one trial. Visibility grows about as the scale does, but not where a pendulum goes over the top."""
+
+    trial: int
+    effect: int
+    solo: Trial
+    best: float = 1.0
+    miss: float = np.inf
+    below: float = 0.0
+    above: float = np.inf
+
+    def tell(self, seen: float) -> None:
+        """Note how visible the effect is at the present scale, and choose the next."""
+        scale, target = self.solo.scales[0], self.solo.targets[0]
+        miss = abs(float(np.log(max(seen, 1e-3) / target)))
+        if miss < self.miss:
+            self.best, self.miss = scale, miss
+        if seen < target:
+            self.below = max(self.below, scale)
+        else:
+            self.above = min(self.above, scale)
+        proposed = scale * float(np.clip(target / max(seen, 0.05), 0.02, 10.0))
+        if not self.below < proposed < self.above and self.below < self.above < np.inf:
+            proposed = float(np.sqrt(max(self.below, 0.1 * self.above) * self.above))
+        self.solo.scales[0] = float(np.clip(proposed, LEAST_SCALE, self.solo.machine.largest_scale))
+
+
 def calibrate(machine: Machine, trials: Sequence[Trial]) -> list[Run]:
     """Scale every trial's effects to the visibility aimed at; set scales, switches, floor and visibility; the final runs.
 
@@ -99,33 +125,43 @@ def calibrate(machine: Machine, trials: Sequence[Trial]) -> list[Run]:
     """
     plain = machine.run(trials, effects=False)
     columns = sensitivities(machine, trials, plain)
-    positions = [run.position[machine.before :] for run in plain]
     for trial, left, own in zip(trials, residuals(machine, trials, plain), columns, strict=True):
         beside = unexplained(left, own, len(machine.free), 1.0 / _scatter(left))
         trial.floor = tuple(float(x) for x in _scatter(beside))
-    solos = [
-        (i, k, replace(trial, plan=(name,), scales=[trial.scales[k]], targets=(trial.targets[k],)))
+    searches = [
+        _Search(i, k, replace(trial, plan=(name,), scales=[trial.scales[k]], targets=(trial.targets[k],)))
         for i, trial in enumerate(trials)
         if trial.targets
         for k, name in enumerate(trial.plan)
     ]
-    for _ in range(ROUNDS):
-        _improve(machine, [solo for _, _, solo in solos], [columns[i] for i, _, _ in solos], [positions[i] for i, _, _ in solos])
-    for i, k, solo in solos:
-        trials[i].scales[k] = solo.scales[0]
-    for trial, position in zip(trials, positions, strict=True):
-        trial.draw_switches(position)
+    for _ in range(ROUNDS if searches else 0):
+        solos = [search.solo for search in searches]
+        for search in searches:
+            search.solo.draw_switches(plain[search.trial])
+        seen = visibilities(
+            machine, solos, machine.run(solos, fine=False), [columns[search.trial] for search in searches]
+        )
+        for search, value in zip(searches, seen, strict=True):
+            search.tell(value)
+    for search in searches:
+        trials[search.trial].scales[search.effect] = search.best
+    for trial, run in zip(trials, plain, strict=True):
+        trial.draw_switches(run)
     runs = machine.run(trials)
     lost = [trial.name for trial, run in zip(trials, runs, strict=True) if not np.isfinite(run.outputs).all()]
     if lost:
-        raise FloatingPointError(f"the simulation of {', '.join(lost)} ({machine.name}) overflowed; expected finite recordings")
+        raise FloatingPointError(
+            f"the simulation of {', '.join(lost)} ({machine.name}) overflowed; expected finite recordings"
+        )
     own = sensitivities(machine, trials, runs)
     for trial, value in zip(trials, visibilities(machine, trials, runs, own), strict=True):
         trial.visibility = value
     return runs
 
 
-def visibilities(machine: Machine, trials: Sequence[Trial], runs: Sequence[Run], columns: Sequence[Array]) -> list[float]:
+def visibilities(
+    machine: Machine, trials: Sequence[Trial], runs: Sequence[Run], columns: Sequence[Array]
+) -> list[float]:
     """RMS of what stays over all experiments, beyond the floor and in its units; the most visible of the outputs."""
     found = []
     for trial, left, own in zip(trials, residuals(machine, trials, runs), columns, strict=True):
@@ -136,18 +172,6 @@ def visibilities(machine: Machine, trials: Sequence[Trial], runs: Sequence[Run],
         ratio = _scatter(unexplained(left, own, len(machine.free), 1.0 / floor)) / floor
         found.append(float(np.sqrt(np.maximum(ratio**2 - 1.0, 0.0).max())))
     return found
-
-
-def _improve(machine: Machine, solos: Sequence[Trial], columns: Sequence[Array], positions: Sequence[Array]) -> None:
-    """One step of the search for the scale: an effect's visibility grows about as its strength does."""
-    if not solos:
-        return
-    for solo, position in zip(solos, positions, strict=True):
-        solo.draw_switches(position)
-    runs = machine.run(solos, fine=False)
-    for solo, seen in zip(solos, visibilities(machine, solos, runs, columns), strict=True):
-        ratio = np.clip(solo.targets[0] / max(seen, 0.05), 0.02, 10.0)
-        solo.scales[0] = float(np.clip(solo.scales[0] * ratio, LEAST_SCALE, LARGEST_SCALE))
 
 
 def _together(machine: Machine, runs: Sequence[Run]) -> tuple[Array, Array, Array]:

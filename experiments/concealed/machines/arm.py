@@ -12,12 +12,12 @@ from numpy.random import Generator
 from experiments.concealed.case import (
     SMALLEST_LOADED_ARM,
     Case,
-    stays_within_estimation,
     assemble,
     draw_card,
     draw_truth,
+    stays_within_estimation,
 )
-from experiments.concealed.effects import CATALOGUE
+from experiments.concealed.effects import CATALOGUE, Surroundings, Switches
 from experiments.concealed.excitation import PRE_ROLL, Excitation, draw_excitation
 from experiments.concealed.machines.base import LANES, Array, Channel, Machine, Run, Trial
 from experiments.concealed.nuisances import Nuisances, draw_nuisances, nuisance_laws
@@ -27,6 +27,11 @@ RESOLUTION = 0.01  # rad/s of the speed that the encoder gives
 TORQUE_NOISE = 0.01  # N m
 DRIFT = 0.003  # N m
 STEPS, ROUGH_STEPS, REPLAY_STEPS = 8, 4, 4
+
+
+def _saturation(g: Generator, s: float, c: Surroundings) -> Switches:
+    """Below the largest torque of this very trial: short recordings have lower peaks than the standard set's."""
+    return {"limit": c.peak * float(np.exp(-s * g.uniform(0.1, 0.2)))}
 
 
 class Arm(Machine):
@@ -41,7 +46,8 @@ class Arm(Machine):
     parameters = PARAMETERS
     known = ("J",)
     state_steps = (1e-3, 1e-3, 0.05, 0.05, 0.05)
-    catalogue = CATALOGUE
+    largest_scale = 4.0
+    catalogue = {**CATALOGUE, "saturation": replace(CATALOGUE["saturation"], draw=_saturation)}
 
     @property
     def free(self) -> tuple[str, ...]:

@@ -58,13 +58,18 @@ class Trial:
     def effects(self) -> list[Effect]:
         return [self.machine.catalogue[name] for name in self.plan]
 
-    def draw_switches(self, position: Array) -> None:
-        """Set the effects' switches at the present `scales`. What is drawn beside the strength does not depend on it."""
+    def draw_switches(self, plain: Run) -> None:
+        """Set the effects' switches at the present `scales`. What is drawn beside the strength does not depend on it.
+
+        `plain` is the run without effect, of which some draws depend.
+        """
+        before = self.machine.before
+        around = Surroundings(self.truth, plain.position[before:], float(np.abs(plain.command[before:]).max()))
         self.switches = []
         for effect, scale in zip(self.effects, self.scales, strict=True):
             word = sum(ord(letter) * (i + 1) for i, letter in enumerate(effect.name))
             rng = np.random.default_rng(SeedSequence([self.seed, 3, self.number, word]))
-            drawn = effect.draw(rng, scale, Surroundings(self.truth, position))
+            drawn = effect.draw(rng, scale, around)
             self.switches.append({name: float(value) for name, value in drawn.items()})
 
 
@@ -102,6 +107,8 @@ class Machine(ABC):
     state_steps: ClassVar[tuple[float, ...]]
     """Of the plain model's states, for sensitivities by differences."""
     catalogue: ClassVar[Mapping[str, Effect]]
+    largest_scale: ClassVar[float] = 12.0
+    """Times the catalogue's strength that is still a machine: some effects cannot be made to dominate."""
 
     @property
     def before(self) -> int:

@@ -16,7 +16,7 @@ from experiments.concealed.machines.base import LANES, Array, Machine, Run, Tria
 from experiments.concealed.nuisances import Nuisances, draw_nuisances, nuisance_laws
 from experiments.concealed.plant_body import BodyDrive, BodyPlant
 
-STEPS, ROUGH_STEPS, REPLAY_STEPS = 10, 5, 4
+STEPS, ROUGH_STEPS, REPLAY_STEPS = 10, 4, 3
 
 
 @dataclass(frozen=True)
@@ -60,6 +60,14 @@ class OneBody(Machine):
 
     def draw_excitation(self, rng: Generator, plan: Sequence[str], noise: float) -> Shaking:
         """Moves to and fro, twice; shaking around rest; a slow sweep over the whole travel. As for the arm, with positions."""
+        drawn = self._drawn(rng, noise)
+        while "end_stop" in plan and drawn.reference.max(axis=0).argmax() != 0:
+            drawn = self._drawn(
+                rng, noise
+            )  # where the estimation experiment never gets to the stop, nothing can be said of it
+        return drawn
+
+    def _drawn(self, rng: Generator, noise: float) -> Shaking:
         total = self.before + self.samples
         level = self.shaking * rng.uniform(0.8, 1.2)
         shaken = [level * multisine(rng, total, self.sample_time, *self.band) for _ in range(3)]

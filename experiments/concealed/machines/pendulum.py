@@ -31,7 +31,7 @@ def _catalogue() -> dict[str, Effect]:
         *body_effects.forces(u),
         body_effects.ripple(u, 3.0, 20.0),
         *body_effects.drives(u),
-        *body_effects.timings(SPEED, right[:2], right[2:]),
+        *body_effects.timings(SPEED, 0.03, right[:2], right[2:]),
         *body_effects.gains(SPEED, ((("actuator", "input_gain"),), ((SPEED, "sensor_gain"),))),
         *_of_the_pendulum(),
         *body_effects.outside(u),
@@ -49,7 +49,7 @@ def _of_the_pendulum() -> list[Effect]:
         return {"moment": s * g.uniform(0.1, 0.2), "angle": angle}
 
     def bias(g: Generator, s: float, c: Surroundings) -> Switches:
-        return {"bias": s * float(g.choice([-1.0, 1.0])) * g.uniform(0.1, 0.3)}
+        return {"bias": min(s * g.uniform(0.1, 0.3), 1.0) * float(g.choice([-1.0, 1.0]))}
 
     return [
         Effect("load_friction", body.LoadDependentFriction, "pivot", "friction", load, (("pivot", "load_dependent_friction"),),
@@ -82,13 +82,11 @@ class Pendulum(OneBody):
     sensor_noise = (1e-3, 0.02)
     resolution = (2.0 * np.pi / 2**16, 5e-3)
     shaking, band = 0.8, (0.5, 10.0)
-    move, sweep = 1.2, 1.8
+    move, sweep = 1.2, 1.2
     torque_noise, drift = 0.004, 0.0005
 
     def draw_truth(self, rng: Generator, plan: Sequence[str]) -> dict[str, float]:
-        inertia, weight, damping = (
-            value * float(np.exp(rng.uniform(-0.22, 0.22))) for value in (0.15, 2.7, 0.05)
-        )
+        inertia, weight, damping = (value * float(np.exp(rng.uniform(-0.22, 0.22))) for value in (0.15, 2.7, 0.05))
         return {"I": inertia, "mgl": float(f"{weight:.5g}"), "b": damping, "inertia": inertia}
 
     def physics(self, parameters: Mapping[str, Array]) -> tuple[Array, Array, Array]:

@@ -26,7 +26,7 @@ def _catalogue() -> dict[str, Effect]:
         *body_effects.forces(u),
         body_effects.ripple(u, 2.0 * np.pi / 0.03, 2.0 * np.pi / 0.01),
         *body_effects.drives(u),
-        *body_effects.timings("sensor", (DELAY, DELAY), (LAG, LAG)),
+        *body_effects.timings("sensor", 0.015, (DELAY, DELAY), (LAG, LAG)),
         *body_effects.gains("sensor", (GAIN, GAIN)),
         *body_effects.outside(u),
     ]
@@ -54,7 +54,7 @@ class Stage(OneBody):
     sensor_noise = (2e-5,)
     resolution = (5e-6,)
     shaking, band = 25.0, (1.0, 15.0)
-    move, sweep = 0.1, 0.12
+    move, sweep = 0.1, 0.08
     torque_noise, drift = 0.1, 0.01
 
     def draw_truth(self, rng: Generator, plan: Sequence[str]) -> dict[str, float]:

@@ -8,7 +8,10 @@ from greybox_torch import Body, GreyBoxModel, Input, Output, Parameter, State
 
 
 class Pendulum(GreyBoxModel):
-    """I d²θ/dt² = τ − b dθ/dt − m g l sin θ, with θ = 0 hanging. The pivot carries the rod's pull, m g l cos θ + I (dθ/dt)² by its length."""
+    """I d²θ/dt² = τ − b dθ/dt − m g l sin θ, with θ = 0 hanging.
+
+    The pivot carries the rod's pull: m g l cos θ + I (dθ/dt)², by the rod's length.
+    """
 
     name = "pendulum"
     states = [State("angle", "rad", initial="measured"), State("speed", "rad/s", initial="measured")]
