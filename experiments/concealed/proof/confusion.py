@@ -22,7 +22,9 @@ def kind(port: str) -> str:
 
 
 def matrix(found: Sequence[Row]) -> tuple[list[str], list[str], NDArray[np.int64]]:
-    """Labels of the rows (concealed) and columns (said), and counts.
+    """Labels of the rows (concealed) and columns (said), and counts (rows, columns).
+
+    The columns are all labels there are; the rows are those of them that were concealed, in the same order.
 
     A right answer counts as what is concealed, whichever of its twins it names. A miss is matched with a finding that is not right,
     if the case has one, else with nothing; findings beyond are matched with nothing concealed.
@@ -32,11 +34,10 @@ def matrix(found: Sequence[Row]) -> tuple[list[str], list[str], NDArray[np.int64
         pairs += _pairs(row)
     order = _order({a for a, _ in pairs} | {b for _, b in pairs})
     rows = [label for label in order if any(a == label for a, _ in pairs)]
-    columns = [label for label in order if any(b == label for _, b in pairs)]
-    counts = np.zeros((len(rows), len(columns)), np.int64)
+    counts = np.zeros((len(rows), len(order)), np.int64)
     for a, b in pairs:
-        counts[rows.index(a), columns.index(b)] += 1
-    return rows, columns, counts
+        counts[rows.index(a), order.index(b)] += 1
+    return rows, order, counts
 
 
 def _pairs(row: Row) -> list[tuple[str, str]]:

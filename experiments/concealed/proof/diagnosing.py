@@ -38,9 +38,12 @@ def diagnose_all(
             record.add("verdict", case=name, **entry)
             progress(f"{len(record.verdicts)}/{total} {name} {entry['seconds']:.0f} s: {entry['said']}")
 
-    with ThreadPoolExecutor(workers) as pool:
+    pool = ThreadPoolExecutor(workers)
+    try:
         for done in [pool.submit(one, name) for name in left]:
             done.result()
+    finally:  # where one fails, or the user interrupts, what has not begun is left for the next time
+        pool.shutdown(cancel_futures=True)
 
 
 def _diagnose(case: Path, out: Path, time_limit: float) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from experiments.concealed.visibility import DOMINANT, MODERATE
 
 EDGES = (0.0, 2.0, 4.0, MODERATE, 12.0, DOMINANT, np.inf)
 COLOURS = {"weak": "#9aa5b1", "moderate": "#3b7dd8", "dominant": "#123a6d"}
-LEAST_SHOWN = 0.5
+LEAST_SHOWN, MOST_SHOWN = 0.5, 300.0
 
 
 def draw_all(found: Sequence[Row], folder: Path) -> list[str]:
@@ -60,7 +60,7 @@ def _confusion(found: Sequence[Row], file: Path) -> bool:
     figure, axes = pyplot.subplots(figsize=(2.6 + 0.27 * len(columns), 2.4 + 0.24 * len(labels)), layout="constrained")
     shares = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
     shown = np.where(counts > 0, 0.15 + 0.85 * shares, 0.0)
-    axes.imshow(shown, cmap="Blues", vmin=0.0, vmax=1.2, aspect="auto")
+    axes.imshow(shown, cmap="Blues", vmin=0.0, vmax=2.0, aspect="auto")  # light, so that the counts can be read
     for i, j in zip(*np.nonzero(counts), strict=True):
         wrong = labels[i] != columns[j]
         axes.text(j, i, counts[i, j], ha="center", va="center", fontsize=7, color="#b00020" if wrong else "black")
@@ -81,7 +81,7 @@ def _strength(found: Sequence[Row], file: Path) -> bool:
         return False
     pyplot = _pyplot()
     figure, axes = pyplot.subplots(figsize=(6.4, 4.0), layout="constrained")
-    seen = np.array([min(max(r.key["visibility"], LEAST_SHOWN), 1e4) for r in cases])
+    seen = np.array([_shown(r) for r in cases])
     for offset, colour, label in ((-1, "#123a6d", "detected"), (0, "#3b7dd8", "located"), (1, "#d9822b", "named")):
         x, y, low, high = [], [], [], []
         for start, end in pairwise(EDGES):
@@ -89,9 +89,7 @@ def _strength(found: Sequence[Row], file: Path) -> bool:
             if not own:
                 continue
             rate = _rate(own, label)
-            x.append(
-                np.exp(np.mean(np.log([min(max(r.key["visibility"], LEAST_SHOWN), 1e4) for r in own]))) * 1.04**offset
-            )
+            x.append(np.exp(np.mean(np.log([_shown(r) for r in own]))) * 1.04**offset)
             y.append(rate.share)
             low.append(rate.share - rate.interval[0])
             high.append(rate.interval[1] - rate.share)
@@ -101,10 +99,17 @@ def _strength(found: Sequence[Row], file: Path) -> bool:
         axes.axvline(edge, color="0.85", lw=1, zorder=0)
     for word, at in (("weak", 1.7), ("moderate", 9.0), ("dominant", 60.0)):
         axes.text(at, 1.06, word, color="0.45", fontsize=8, ha="center")
-    axes.set(xscale="log", ylim=(-0.1, 1.12), xlabel="visibility: error of the refitted plain model, in units of the floor",
-             ylabel="share (95 % interval)")  # fmt: skip
-    axes.legend(frameon=False, loc="lower right")
+    axes.set(xscale="log", xlim=(LEAST_SHOWN, MOST_SHOWN), ylim=(-0.1, 1.12), ylabel="share (95 % interval)")
+    axes.set_xlabel("visibility: error of the refitted plain model, in units of the floor")
+    ticks = (0.5, 1, 2, 5, 10, 20, 50, 100, 200)
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.minorticks_off()
+    axes.legend(frameon=False, loc="lower right", bbox_to_anchor=(1.0, 0.06))
     return _save(figure, file)
+
+
+def _shown(row: Row) -> float:
+    return float(np.clip(row.key["visibility"], 1.05 * LEAST_SHOWN, MOST_SHOWN / 1.1))
 
 
 def _rate(cases: Sequence[Row], what: str) -> Rate:

@@ -12,7 +12,7 @@ from typing import Any
 from experiments.concealed.proof.figures import draw_all
 from experiments.concealed.proof.files import write_bytes, write_json
 from experiments.concealed.proof.plan import EXCITATION, NOISE, SECTIONS
-from experiments.concealed.proof.protocol import Proof
+from experiments.concealed.proof.protocol import ROOT, Proof
 from experiments.concealed.proof.rates import Rate
 from experiments.concealed.proof.reasons import reasons
 from experiments.concealed.proof.scores import Promise, Row, promises, rows
@@ -33,7 +33,7 @@ BESIDE = (
 PROTOCOL = """\
 1. Cases are drawn from the seed: machine, true parameters, start values up to 15 % off, excitation, feedback, noise, read-out, torque
    noise, slow drift and jitter of the samples, all anew for each. The plants
-   ([`experiments/concealed`](../experiments/concealed/README.md)) are NumPy and share no code
+   ([`experiments/concealed`]({root}/experiments/concealed/README.md)) are NumPy and share no code
    with the tool; they integrate more finely than it does, their dry friction truly sticks.
    Effects are scaled until the plain model, refitted in linearisation, leaves an error of 2.5 to 4 (weak), 8 to 20 (moderate) or 40 to
    100 times (dominant) the floor, or as far as the machine lets them; the key holds the visibility that came out.
@@ -42,7 +42,7 @@ PROTOCOL = """\
 3. The tool is run on each case by its command line. It sees the card, the recordings and the nominal model. The hash of each verdict goes
    on record as it comes; a verdict that comes later, or is changed, is refused.
 4. The seal is opened, the commitment checked, and every verdict scored by the rules in
-   [`proof/scores.py`](../experiments/concealed/proof/scores.py). A case without a verdict counts as missed.
+   [`proof/scores.py`]({root}/experiments/concealed/proof/scores.py). A case without a verdict counts as missed.
 
 The seed is public and the generator deterministic, so whoever runs the proof could look up the answers: what is blind is the tool, not the
 person. The record keeps anybody from choosing among verdicts afterwards without leaving a trace in it."""
@@ -59,12 +59,13 @@ def publish(proof: Proof, answers: Mapping[str, Mapping[str, Any]], page: Path) 
     write_json(proof.folder / "results.json", results)
     if folder != proof.folder:
         write_json(folder / "results.json", results)
-    write_bytes(page, _page(proof, found, kept, figures, folder.name).encode())
+    root = os.path.relpath(ROOT, page.parent).replace(os.sep, "/")
+    write_bytes(page, _page(proof, found, kept, figures, folder.name, root).encode())
     return "\n".join([*(f"{_mark(p):12s} {p.what}: {p.measured} (wanted {p.wanted})" for p in kept), f"page: {page}"])
 
 
 def _mark(promise: Promise) -> str:
-    return {True: "kept", False: "NOT KEPT", None: "not measured"}[promise.kept]
+    return {True: "kept", False: "NOT KEPT", None: "too few cases"}[promise.kept]
 
 
 def _results(proof: Proof, found: Sequence[Row], kept: Sequence[Promise]) -> dict[str, Any]:
@@ -97,14 +98,16 @@ def _results(proof: Proof, found: Sequence[Row], kept: Sequence[Promise]) -> dic
     }
 
 
-def _page(proof: Proof, found: Sequence[Row], kept: Sequence[Promise], figures: Sequence[str], folder: str) -> str:
+def _page(
+    proof: Proof, found: Sequence[Row], kept: Sequence[Promise], figures: Sequence[str], folder: str, root: str
+) -> str:
     parts = [
         "# The proof: concealed effects, scored blind",
         _about(proof, found),
         "## What was promised, and what came out",
         _promises(kept),
         "## Protocol",
-        PROTOCOL,
+        PROTOCOL.format(root=root),
         "## By kind of case",
         _table(found, "section", SECTIONS, lambda r: str(r.key["section"])),
         "## By strength",

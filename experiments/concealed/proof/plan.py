@@ -17,7 +17,7 @@ from experiments.concealed.visibility import WORDS
 LIBRARY, NONE, PAIR, OUTSIDE = "library", "none", "two effects", "outside"
 EXCITATION, NOISE = "excitation", "noise"
 SECTIONS = (LIBRARY, NONE, PAIR, OUTSIDE, EXCITATION, NOISE)
-NOISES = (0.3, 3.0, 10.0)
+NOISES = (0.3, 1.0, 3.0, 10.0)
 """Of the sweep, times the usual noise."""
 
 

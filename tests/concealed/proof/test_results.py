@@ -70,9 +70,25 @@ def test_promises_count_moderate_effects_by_the_visibility_of_the_key(found: lis
     assert kept["moderate and dominant effects named"].kept is False
     assert kept["spurious among all findings"].measured.startswith("1/5")
     assert kept["outside the library: `unknown` at the right port"].kept is True
-    assert kept["false alarms without an effect"].kept is False  # none in one case is not none in thirty
+    assert kept["false alarms without an effect"].kept is None  # none in one case is not none in thirty
     brier = np.mean([(0.9 - 1) ** 2, 0.7**2, (0.9 - 1) ** 2, (0.95 - 1) ** 2, 0.4**2])
-    assert kept["Brier score of the probabilities"].measured == f"{brier:.3f}"
+    assert kept["Brier score of the probabilities"].measured.startswith(f"{brier:.3f} (")
+
+
+def test_brier_score_beside_adds_the_shares_of_twins_of_right_findings():
+    said = verdict("stage", ("carriage", "constant_bias", 0.5))
+    said["effects"][0]["alternatives"] = [
+        {"port": "actuator", "mechanism": "input_bias", "probability": 0.4},
+        {"port": "carriage", "mechanism": "gravity", "probability": 0.1},
+    ]
+    row = rows({"c": ANSWERS["c004"]}, {"c": said}, {"c": ENTRIES["c004"]})
+    kept = {p.what: p for p in promises(row)}
+    assert kept["Brier score of the probabilities"].measured == "0.250 (0.010 with the shares of twins added)"
+
+
+def test_one_false_alarm_breaks_the_promise():
+    alarmed = rows({"c": ANSWERS["c000"]}, {"c": verdict("arm", ("motor", "gravity", 0.6))}, {"c": ENTRIES["c000"]})
+    assert promises(alarmed)[0].kept is False
 
 
 def test_no_verdict_is_a_miss_and_no_case_is_not_measured():
