@@ -5,17 +5,17 @@ from __future__ import annotations
 import os
 import platform
 import statistics
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from experiments.concealed.proof.figures import draw_all
 from experiments.concealed.proof.files import write_bytes, write_json
-from experiments.concealed.proof.plan import EXCITATION, NOISE, SECTIONS
+from experiments.concealed.proof.plan import SECTIONS
 from experiments.concealed.proof.protocol import ROOT, Proof
-from experiments.concealed.proof.rates import Rate
-from experiments.concealed.proof.reasons import reasons
+from experiments.concealed.proof.results import results
 from experiments.concealed.proof.scores import Promise, Row, promises, rows
+from experiments.concealed.proof.tables import case_table, group_table, mark, misses, promise_table, sweeps
 
 CAPTIONS = {
     "confusion.png": "What was concealed (rows) against what was said (columns), by kind of port and mechanism. A right answer lies on the "
@@ -55,47 +55,13 @@ def publish(proof: Proof, answers: Mapping[str, Mapping[str, Any]], page: Path) 
     kept = promises(found)
     folder = page.parent / page.stem
     figures = draw_all(found, folder)
-    results = _results(proof, found, kept)
-    write_json(proof.folder / "results.json", results)
+    everything = results(proof, found, kept)
+    write_json(proof.folder / "results.json", everything)
     if folder != proof.folder:
-        write_json(folder / "results.json", results)
+        write_json(folder / "results.json", everything)
     root = os.path.relpath(ROOT, page.parent).replace(os.sep, "/")
     write_bytes(page, _page(proof, found, kept, figures, folder.name, root).encode())
-    return "\n".join([*(f"{_mark(p):12s} {p.what}: {p.measured} (wanted {p.wanted})" for p in kept), f"page: {page}"])
-
-
-def _mark(promise: Promise) -> str:
-    return {True: "kept", False: "NOT KEPT", None: "too few cases"}[promise.kept]
-
-
-def _results(proof: Proof, found: Sequence[Row], kept: Sequence[Promise]) -> dict[str, Any]:
-    """Everything that the page says, for scripts."""
-    sealed = proof.record.sealed or {}
-    about = {name: sealed[name] for name in ("set", "seed", "commitment", "rules", "tool", "time")}
-    return {
-        "schema": "greybox-proof/1",
-        **about,
-        "promises": [{"what": p.what, "wanted": p.wanted, "measured": p.measured, "kept": p.kept} for p in kept],
-        "cases": [
-            {
-                "case": r.name,
-                "machine": r.key["machine"],
-                "section": r.key["section"],
-                "effects": list(r.effects),
-                "strength": r.strength,
-                "visibility": r.key["visibility"],
-                "said": r.entry["said"],
-                "detected": r.detected,
-                "located": r.located,
-                "named": r.named,
-                "spurious": r.spurious,
-                "closed": r.closed,
-                "seconds": r.entry["seconds"],
-                "reasons": reasons(r),
-            }
-            for r in found
-        ],
-    }
+    return "\n".join([*(f"{mark(p):12s} {p.what}: {p.measured} (wanted {p.wanted})" for p in kept), f"page: {page}"])
 
 
 def _page(
@@ -105,23 +71,25 @@ def _page(
         "# The proof: concealed effects, scored blind",
         _about(proof, found),
         "## What was promised, and what came out",
-        _promises(kept),
+        promise_table(kept),
         "## Protocol",
         PROTOCOL.format(root=root),
         "## By kind of case",
-        _table(found, "section", SECTIONS, lambda r: str(r.key["section"])),
+        group_table(found, "section", SECTIONS, lambda r: str(r.key["section"])),
         "## By strength",
-        _table([r for r in found if r.effects], "strength", ("weak", "moderate", "dominant"), lambda r: r.strength),
+        group_table(
+            [r for r in found if r.effects], "strength", ("weak", "moderate", "dominant"), lambda r: r.strength
+        ),
         "## By machine",
-        _table(found, "machine", sorted({r.key["machine"] for r in found}), lambda r: str(r.key["machine"])),
+        group_table(found, "machine", sorted({r.key["machine"] for r in found}), lambda r: str(r.key["machine"])),
         "## Figures",
         "\n\n".join(f"![{CAPTIONS[name]}]({folder}/{name})\n\n{CAPTIONS[name]}" for name in figures),
-        *_sweeps(found),
+        *sweeps(found),
         "## What failed, and why",
-        _misses(found),
+        misses(found),
         *_beside(proof.folder),
         "## All cases",
-        _cases(found),
+        case_table(found),
     ]
     return "\n\n".join(parts) + "\n"
 
@@ -139,78 +107,6 @@ def _about(proof: Proof, found: Sequence[Row]) -> str:
     )
 
 
-def _promises(kept: Sequence[Promise]) -> str:
-    lines = ["| | wanted | measured (95 % interval) | |", "|---|---|---|---|"]
-    return "\n".join([*lines, *(f"| {p.what} | {p.wanted} | {p.measured} | {_mark(p)} |" for p in kept)])
-
-
-def _table(found: Sequence[Row], what: str, groups: Sequence[str], of: Callable[[Row], str]) -> str:
-    lines = [
-        f"| {what} | cases | detected rightly | located | named | spurious | median closed |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    for group in groups:
-        own = [r for r in found if of(r) == group]
-        if own:
-            lines.append(_totals(group, own))
-    return "\n".join([*lines, _totals("all", found)])
-
-
-def _totals(label: str, own: Sequence[Row]) -> str:
-    effects = sum(len(r.effects) for r in own)
-    closed = [r.closed for r in own if r.closed is not None]
-    cells = (
-        label,
-        len(own),
-        Rate(sum(r.detected for r in own), len(own)),
-        f"{sum(r.located for r in own)}/{effects}" if effects else "",
-        f"{sum(r.named for r in own)}/{effects}" if effects else "",
-        sum(r.spurious for r in own),
-        f"{statistics.median(closed):.2f}" if closed else "",
-    )
-    return "| " + " | ".join(map(str, cells)) + " |"
-
-
-def _sweeps(found: Sequence[Row]) -> list[str]:
-    """The same effect under each of the four excitations, and under rising noise."""
-    parts = []
-    for section, heading, what, varied in (
-        (
-            EXCITATION,
-            "## The same effect, chosen with each of the four experiments in turn",
-            "estimation experiment",
-            "estimation",
-        ),
-        (NOISE, "## The same effect under rising noise", "noise, times the usual", "noise"),
-    ):
-        own = sorted((r for r in found if r.key["section"] == section), key=lambda r: (r.key["number"], r.key[varied]))
-        if own:
-            lines = [f"| machine | concealed | {what} | visibility | said | right |", "|---|---|---|---|---|---|"]
-            for r in own:
-                cells = (
-                    r.key["machine"],
-                    _concealed(r),
-                    r.key[varied],
-                    f"{r.key['visibility']:.1f}",
-                    r.entry["said"],
-                    _yes(r.right),
-                )
-                lines.append("| " + " | ".join(map(str, cells)) + " |")
-            parts += [heading, "\n".join(lines)]
-    return parts
-
-
-def _misses(found: Sequence[Row]) -> str:
-    missed = [r for r in found if not r.right]
-    if not missed:
-        return "Nothing did."
-    lines = ["| case | machine | concealed | visibility | said | why |", "|---|---|---|---|---|---|"]
-    for r in missed:
-        cells = (r.name, r.key["machine"], _concealed(r), _visibility(r), r.entry["said"], "; ".join(reasons(r)))
-        lines.append("| " + " | ".join(map(str, cells)) + " |")
-    return "\n".join(lines)
-
-
 def _beside(folder: Path) -> list[str]:
     parts = []
     for heading, file, command in BESIDE:
@@ -218,37 +114,3 @@ def _beside(folder: Path) -> list[str]:
         text = table.read_text(encoding="utf-8").strip() if table.is_file() else f"Not part of this run (`{command}`)."
         parts += [f"## {heading}", text]
     return parts
-
-
-def _cases(found: Sequence[Row]) -> str:
-    lines = [
-        "| case | machine | concealed | strength | visibility | said | right | closed | s |",
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
-    for r in found:
-        closed = "" if r.closed is None else f"{r.closed:.2f}"
-        cells = (
-            r.name,
-            r.key["machine"],
-            _concealed(r),
-            r.strength,
-            _visibility(r),
-            r.entry["said"],
-            _yes(r.right),
-            closed,
-            r.entry["seconds"],
-        )
-        lines.append("| " + " | ".join(map(str, cells)) + " |")
-    return "\n".join(lines)
-
-
-def _concealed(row: Row) -> str:
-    return ", ".join(row.effects) or "nothing"
-
-
-def _visibility(row: Row) -> str:
-    return f"{row.key['visibility']:.1f}" if row.effects else ""
-
-
-def _yes(right: bool) -> str:
-    return "yes" if right else "no"
