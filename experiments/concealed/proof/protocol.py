@@ -65,6 +65,7 @@ class Proof:
         """Let the tool speak on every case that it has not spoken on. Refused once the seal is open."""
         self._unchanged_cases()
         if self.record.opened is None:
+            self._unchanged_tool()
             diagnose_all(self.folder, self.record, workers=workers, time_limit=time_limit, progress=self.progress)
 
     def open(self) -> dict[str, Any]:
@@ -75,6 +76,8 @@ class Proof:
         self.check_verdicts()
         self._unchanged_cases()
         sealed = self._sealed()
+        if self.record.opened is None:
+            self._unchanged_tool()
         if sealed["rules"] != rules_hash():
             raise ProofError(
                 "the rules of scoring have changed since the answers were sealed; expected those of the sealing"
@@ -136,6 +139,14 @@ class Proof:
             seed = secrets.randbelow(10**8)
         write_json(file, {"seed": seed})
         return seed
+
+    def _unchanged_tool(self) -> None:
+        """Verdicts of two versions are not one proof."""
+        sealed, now = self._sealed()["tool"]["sources"], tool_version()["sources"]
+        if now != sealed:
+            raise ProofError(
+                f"greybox_torch: its sources have the hash {now}, at the sealing {sealed}; expected the tool that was sealed"
+            )
 
     def _unchanged_cases(self) -> None:
         for name, sealed in self._sealed()["cases"].items():

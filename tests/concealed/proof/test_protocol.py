@@ -120,6 +120,26 @@ def test_changed_cases_and_changed_rules_are_refused(tmp_path: Path, by_hand, mo
         proof.open()
 
 
+def test_another_version_of_the_tool_is_refused_until_the_seal_is_open(
+    tmp_path: Path, by_hand, monkeypatch: pytest.MonkeyPatch
+):
+    proof = Proof(tmp_path, quiet)
+    proof.prepare("quick", 7)
+    other = {"commit": "", "sources": "0"}
+    with monkeypatch.context() as patch:
+        patch.setattr(protocol, "tool_version", lambda: other)
+        with pytest.raises(ProofError, match="expected the tool that was sealed"):
+            proof.diagnose(workers=1, time_limit=10)
+    proof.diagnose(workers=1, time_limit=10)
+    with monkeypatch.context() as patch:
+        patch.setattr(protocol, "tool_version", lambda: other)
+        with pytest.raises(ProofError, match="expected the tool that was sealed"):
+            proof.open()
+    proof.open()
+    monkeypatch.setattr(protocol, "tool_version", lambda: other)
+    assert Proof(tmp_path, quiet).open()  # scored again, years later
+
+
 def test_an_interrupted_proof_goes_on_where_it_was(tmp_path: Path, by_hand, monkeypatch: pytest.MonkeyPatch):
     asked = diagnosing._diagnose
     left = 3
