@@ -94,7 +94,9 @@ class ArmPlant:
         self._motor_inertia = p["J"] * p["a_m"]
         self._gearbox_inertia = p["J"] * p["a_g"]
         self._arm_inertia = p["J"] * (1.0 - p["a_m"] - p["a_g"])
-        self._inertias = dict(zip(BODIES, (self._motor_inertia, self._gearbox_inertia, self._arm_inertia), strict=True))
+        self._inertias: dict[str, Array] = dict(
+            zip(BODIES, (self._motor_inertia, self._gearbox_inertia, self._arm_inertia), strict=True)
+        )
         self._by_place: dict[str, list[Law]] = {}
         for law in self.laws:
             for place in law.places:

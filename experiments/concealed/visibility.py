@@ -26,6 +26,7 @@ EVERY = 4
 """Samples from one to the next that the projection looks at."""
 RELATIVE_STEP = 1e-4
 ROUNDS = 4
+HALVINGS = 5
 LEAST_SCALE = 1e-4
 
 
@@ -145,18 +146,28 @@ def calibrate(machine: Machine, trials: Sequence[Trial]) -> list[Run]:
             search.tell(value)
     for search in searches:
         trials[search.trial].scales[search.effect] = search.best
-    for trial, run in zip(trials, plain, strict=True):
-        trial.draw_switches(run)
-    runs = machine.run(trials)
-    lost = [trial.name for trial, run in zip(trials, runs, strict=True) if not np.isfinite(run.outputs).all()]
-    if lost:
-        raise FloatingPointError(
-            f"the simulation of {', '.join(lost)} ({machine.name}) overflowed; expected finite recordings"
-        )
+    runs = _finite_runs(machine, trials, plain)
     own = sensitivities(machine, trials, runs)
     for trial, value in zip(trials, visibilities(machine, trials, runs, own), strict=True):
         trial.visibility = value
     return runs
+
+
+def _finite_runs(machine: Machine, trials: Sequence[Trial], plain: Sequence[Run]) -> list[Run]:
+    """The runs with effects, those that overflow (a pair may, where each alone does not) at half the strength, until none does."""
+    for _ in range(HALVINGS):
+        for trial, run in zip(trials, plain, strict=True):
+            trial.draw_switches(run)
+        runs = machine.run(trials)
+        lost = [trial for trial, run in zip(trials, runs, strict=True) if not np.isfinite(run.outputs).all()]
+        if not lost:
+            return runs
+        for trial in lost:
+            trial.scales = [0.5 * scale for scale in trial.scales]
+    names = ", ".join(f"{'+'.join(trial.plan) or 'no effect'} (number {trial.number})" for trial in lost)
+    raise FloatingPointError(
+        f"the simulation of the {machine.name} with {names} overflowed; expected finite recordings"
+    )
 
 
 def visibilities(

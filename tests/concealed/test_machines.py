@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ast
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from experiments.concealed import visibility
 from experiments.concealed.machines import MACHINES
 from experiments.concealed.machines.arm import Arm
 from experiments.concealed.machines.pendulum import Pendulum
@@ -159,3 +161,24 @@ def test_folder_of_a_trial_holds_what_the_tool_may_know_and_no_key(tmp_path: Pat
     answer = key(trial)
     assert answer["sigma"] == {"angle": 0.001, "speed": 0.02}
     assert (answer["strength"], answer["effects"]) == ("moderate", ["coulomb"])
+
+
+def test_effects_that_overflow_are_halved_until_they_do_not(monkeypatch: pytest.MonkeyPatch):
+    machine = ShortStage()
+    trial = machine.draw(4, 0, ("constant_bias",))
+    plain = machine.run([trial], effects=False)
+    ran = machine.run
+
+    def overflowing(trials, **options):
+        runs = ran(trials, **options)
+        if trials[0].scales[0] > 0.3:
+            runs[0].outputs[:] = np.nan
+        return runs
+
+    monkeypatch.setattr(machine, "run", overflowing)
+    runs = visibility._finite_runs(machine, [trial], plain)
+    assert trial.scales == [0.25]
+    assert np.isfinite(runs[0].outputs).all()
+    monkeypatch.setattr(machine, "run", lambda trials, **_: [replace(plain[0], outputs=np.full((1, 3, 4), np.nan))])
+    with pytest.raises(FloatingPointError, match="stage with constant_bias"):
+        visibility._finite_runs(machine, [trial], plain)
