@@ -54,9 +54,9 @@ def write(folder: Path, trial: Trial, run: Run) -> None:
 
 
 def key(trial: Trial) -> dict[str, Any]:
-    """The answer key. `sigma` is the floor: a number, or one by output where a machine has several."""
+    """The answer key. `sigma`, what even the true model leaves, is a number, or one by output where a machine has several."""
     effects, names = trial.effects, [c.name for c in trial.machine.outputs]
-    floor = dict(zip(names, trial.floor, strict=True))
+    sigma = dict(zip(names, trial.sigma, strict=True))
     return {
         "effects": list(trial.plan) or ["none"],
         "switches": {
@@ -68,7 +68,7 @@ def key(trial: Trial) -> dict[str, Any]:
         "near": [[list(pair) for pair in effect.near] for effect in effects] or [[]],
         "ports": [list(effect.ports) for effect in effects] or [[]],
         "outside": [effect.outside for effect in effects],
-        "sigma": floor if len(floor) > 1 else trial.floor[0],
+        "sigma": sigma if len(sigma) > 1 else trial.sigma[0],
         "machine": trial.machine.name,
         "section": trial.section,
         "estimation": trial.estimation,

@@ -3,7 +3,10 @@
 The recorded command is replayed on the plain machine at its true parameters, from the true state where the recording begins. What is
 left is projected off everything that a refit could take up, to first order: the free parameters, shared by the four experiments,
 and the start states of each. Its RMS, in units of the floor, is the visibility. The floor is the same for the run without effect: sensor
-noise, read-out, jitter, and what torque noise and drift add up to in a free run.
+noise, read-out, jitter, and what is left of torque noise and drift.
+
+The `sigma` of a key, above which error is to be closed, is what the true model itself leaves when it is judged as a verdict is:
+true parameters, start states estimated on the first tenth of each experiment, free run over the whole of it.
 """
 
 from __future__ import annotations
@@ -91,6 +94,22 @@ def unexplained(residual: Array, columns: Array, parameters: int, weights: Array
     return np.moveaxis(left.reshape(LANES, outputs, samples), 0, 2) / weights[:, None, None]
 
 
+def free_run(residual: Array, states: Array, weights: Array) -> Array:
+    """Residual (outputs, samples, 4), every `EVERY`-th sample of it, once the start states are fitted on its first tenth.
+
+    `states`: sensitivities to the start states (states, outputs, samples, 4); `weights` (outputs,) make the outputs comparable.
+    """
+    left = residual[:, ::EVERY].copy()
+    first = max(left.shape[1] // 10, len(states))
+    for j in range(LANES):
+        design = (states[:, :, :first, j] * weights[None, :, None]).reshape(len(states), -1).T
+        target = (left[:, :first, j] * weights[:, None]).ravel()
+        size = np.linalg.norm(design, axis=0)
+        solution = np.linalg.lstsq(design / size, target, rcond=1e-10)[0] / size
+        left[:, :, j] -= np.tensordot(solution, states[:, :, :, j], axes=1)
+    return left
+
+
 @dataclass
 class _Search:
     """The scale of one effect of one trial. Visibility grows about as the scale does, but not where a pendulum goes over the top."""
@@ -129,6 +148,7 @@ def calibrate(machine: Machine, trials: Sequence[Trial]) -> list[Run]:
     for trial, left, own in zip(trials, residuals(machine, trials, plain), columns, strict=True):
         beside = unexplained(left, own, len(machine.free), 1.0 / _scatter(left))
         trial.floor = tuple(float(x) for x in _scatter(beside))
+        trial.sigma = tuple(float(x) for x in _scatter(free_run(left, own[len(machine.free) :], 1.0 / _scatter(left))))
     searches = [
         _Search(i, k, replace(trial, plan=(name,), scales=[trial.scales[k]], targets=(trial.targets[k],)))
         for i, trial in enumerate(trials)

@@ -92,8 +92,9 @@ def test_without_effect_the_true_model_leaves_the_floor_and_a_weak_one_is_as_vis
     noise = {"stage": (2e-5,), "pendulum": (1e-3, 0.02), "arm": (0.05,)}[machine.name]
     assert trials[0].visibility < 0.5
     for trial in trials:
-        for floor, sensor in zip(trial.floor, noise, strict=True):
-            assert 0.8 * sensor < floor < 8.0 * sensor
+        for floor, sigma, sensor in zip(trial.floor, trial.sigma, noise, strict=True):
+            assert 0.8 * sensor < floor < 4.0 * sensor
+            assert sigma > 0.9 * floor  # a tenth of so short a recording says little of the start: no upper bound here
     assert trials[1].visibility == pytest.approx(3.0, rel=0.3)
     assert trials[2].visibility == pytest.approx(8.0, rel=0.3)
     assert (word(trials[1].visibility), word(trials[2].visibility)) == ("weak", "moderate")
@@ -111,6 +112,16 @@ def test_projection_takes_up_what_parameters_and_start_states_explain():
     np.testing.assert_allclose(
         unexplained(wide + odd, columns, 1, np.ones(1)), unexplained(odd, columns, 1, np.ones(1)), atol=1e-9
     )
+
+
+def test_start_states_are_fitted_on_the_first_tenth_alone():
+    rng = np.random.default_rng(1)
+    states = rng.normal(size=(2, 1, 100, 4))
+    exact = 0.3 * states[0] - 2.0 * states[1]
+    later = np.zeros((1, 100, 4))
+    later[:, 10:] = 1.0
+    left = visibility.free_run(np.repeat(exact + later, 4, axis=1), states, np.ones(1))
+    np.testing.assert_allclose(left, later, atol=1e-9)
 
 
 def test_replay_on_true_parameters_leaves_no_more_than_noise():
@@ -140,7 +151,7 @@ def test_folder_of_a_trial_holds_what_the_tool_may_know_and_no_key(tmp_path: Pat
     trial = machine.draw(2, 0, ("coulomb",), estimation="validation2")
     plain = machine.run([trial], effects=False)[0]
     trial.draw_switches(plain)
-    trial.floor, trial.visibility = (0.001, 0.02), 7.0
+    trial.sigma, trial.visibility = (0.001, 0.02), 7.0
     write(tmp_path / "c000", trial, machine.run([trial])[0])
     assert {f.name for f in (tmp_path / "c000").iterdir()} == {
         "dataset.toml",

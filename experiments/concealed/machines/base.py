@@ -32,8 +32,8 @@ class Channel:
 class Trial:
     """One machine with what was drawn for it. Lanes are its four experiments, in the order of `EXPERIMENTS`.
 
-    `visibility`: RMS error, in units of the floor, that stays when the plain model is refitted (see `visibility.py`); `floor`: per
-    output, what is left on the true plain model, of the noise and the nuisances.
+    `visibility`: RMS error, in units of the floor, that stays when the plain model is refitted (see `visibility.py`); `floor`: by
+    output, what the refit leaves of the noise and the nuisances alone; `sigma`: what the true model leaves of them in free runs.
     """
 
     name: str
@@ -53,6 +53,7 @@ class Trial:
     switches: list[dict[str, float]] = field(default_factory=list)
     visibility: float = 0.0
     floor: tuple[float, ...] = ()
+    sigma: tuple[float, ...] = ()
 
     @property
     def effects(self) -> list[Effect]:

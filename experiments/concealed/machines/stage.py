@@ -55,7 +55,7 @@ class Stage(OneBody):
     resolution = (5e-6,)
     shaking, band = 25.0, (1.0, 15.0)
     move, sweep = 0.1, 0.08
-    torque_noise, drift = 0.1, 0.01
+    torque_noise, drift = 0.03, 0.003
 
     def draw_truth(self, rng: Generator, plan: Sequence[str]) -> dict[str, float]:
         mass, damping = 20.0 * np.exp(rng.uniform(-0.22, 0.22)), 60.0 * np.exp(rng.uniform(-0.22, 0.22))
