@@ -1,4 +1,4 @@
-"""How visible an effect is to whoever refits the plain model, and effects drawn to be just so visible, as far as they can be.
+"""How visible an effect is to whoever refits the plain model.
 
 The recorded command is replayed on the plain machine at its true parameters, from the true state where the recording begins. What is
 left is projected off everything that a refit could take up, to first order: the free parameters, shared by the four experiments,
@@ -12,7 +12,6 @@ true parameters, start states estimated on the first tenth of each experiment, f
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,16 +20,13 @@ from experiments.concealed.machines.base import LANES, Machine, Run, Trial
 
 Array = NDArray[np.float64]
 
-WORDS = {"weak": (2.5, 4.0), "moderate": (8.0, 20.0), "dominant": (40.0, 100.0)}
-"""Visibilities that are drawn, by word."""
 MODERATE, DOMINANT = 6.0, 30.0
 """Visibilities from which on an effect counts as moderate, as dominant, whatever was aimed at."""
 EVERY = 4
 """Samples from one to the next that the projection looks at."""
 RELATIVE_STEP = 1e-4
-ROUNDS = 4
-HALVINGS = 5
-LEAST_SCALE = 1e-4
+MOST = 1e6
+"""What a visibility is called at most, where the plain model is lost altogether."""
 
 
 def word(visibility: float) -> str:
@@ -110,86 +106,6 @@ def free_run(residual: Array, states: Array, weights: Array) -> Array:
     return left
 
 
-@dataclass
-class _Search:
-    """The scale of one effect of one trial. Visibility grows about as the scale does, but not where a pendulum goes over the top."""
-
-    trial: int
-    effect: int
-    solo: Trial
-    best: float = 1.0
-    miss: float = np.inf
-    below: float = 0.0
-    above: float = np.inf
-
-    def tell(self, seen: float) -> None:
-        """Note how visible the effect is at the present scale, and choose the next."""
-        scale, target = self.solo.scales[0], self.solo.targets[0]
-        miss = abs(float(np.log(max(seen, 1e-3) / target)))
-        if miss < self.miss:
-            self.best, self.miss = scale, miss
-        if seen < target:
-            self.below = max(self.below, scale)
-        else:
-            self.above = min(self.above, scale)
-        proposed = scale * float(np.clip(target / max(seen, 0.05), 0.02, 10.0))
-        if not self.below < proposed < self.above and self.below < self.above < np.inf:
-            proposed = float(np.sqrt(max(self.below, 0.1 * self.above) * self.above))
-        self.solo.scales[0] = float(np.clip(proposed, LEAST_SCALE, self.solo.machine.largest_scale))
-
-
-def calibrate(machine: Machine, trials: Sequence[Trial]) -> list[Run]:
-    """Scale every trial's effects to the visibility aimed at; set scales, switches, floor and visibility; the final runs.
-
-    Effects of a pair are scaled each on its own. A trial without targets keeps the scales that it has.
-    """
-    plain = machine.run(trials, effects=False)
-    columns = sensitivities(machine, trials, plain)
-    for trial, left, own in zip(trials, residuals(machine, trials, plain), columns, strict=True):
-        beside = unexplained(left, own, len(machine.free), 1.0 / _scatter(left))
-        trial.floor = tuple(float(x) for x in _scatter(beside))
-        trial.sigma = tuple(float(x) for x in _scatter(free_run(left, own[len(machine.free) :], 1.0 / _scatter(left))))
-    searches = [
-        _Search(i, k, replace(trial, plan=(name,), scales=[trial.scales[k]], targets=(trial.targets[k],)))
-        for i, trial in enumerate(trials)
-        if trial.targets
-        for k, name in enumerate(trial.plan)
-    ]
-    for _ in range(ROUNDS if searches else 0):
-        solos = [search.solo for search in searches]
-        for search in searches:
-            search.solo.draw_switches(plain[search.trial])
-        seen = visibilities(
-            machine, solos, machine.run(solos, fine=False), [columns[search.trial] for search in searches]
-        )
-        for search, value in zip(searches, seen, strict=True):
-            search.tell(value)
-    for search in searches:
-        trials[search.trial].scales[search.effect] = search.best
-    runs = _finite_runs(machine, trials, plain)
-    own = sensitivities(machine, trials, runs)
-    for trial, value in zip(trials, visibilities(machine, trials, runs, own), strict=True):
-        trial.visibility = value
-    return runs
-
-
-def _finite_runs(machine: Machine, trials: Sequence[Trial], plain: Sequence[Run]) -> list[Run]:
-    """The runs with effects, those that overflow (a pair may, where each alone does not) at half the strength, until none does."""
-    for _ in range(HALVINGS):
-        for trial, run in zip(trials, plain, strict=True):
-            trial.draw_switches(run)
-        runs = machine.run(trials)
-        lost = [trial for trial, run in zip(trials, runs, strict=True) if not np.isfinite(run.outputs).all()]
-        if not lost:
-            return runs
-        for trial in lost:
-            trial.scales = [0.5 * scale for scale in trial.scales]
-    names = ", ".join(f"{'+'.join(trial.plan) or 'no effect'} (number {trial.number})" for trial in lost)
-    raise FloatingPointError(
-        f"the simulation of the {machine.name} with {names} overflowed; expected finite recordings"
-    )
-
-
 def visibilities(
     machine: Machine, trials: Sequence[Trial], runs: Sequence[Run], columns: Sequence[Array]
 ) -> list[float]:
@@ -197,11 +113,11 @@ def visibilities(
     found = []
     for trial, left, own in zip(trials, residuals(machine, trials, runs), columns, strict=True):
         floor = np.array(trial.floor)
-        if not np.isfinite(left).all():
-            found.append(np.inf)
+        if not (np.isfinite(left).all() and np.isfinite(own).all()):
+            found.append(MOST)
             continue
-        ratio = _scatter(unexplained(left, own, len(machine.free), 1.0 / floor)) / floor
-        found.append(float(np.sqrt(np.maximum(ratio**2 - 1.0, 0.0).max())))
+        ratio = scatter(unexplained(left, own, len(machine.free), 1.0 / floor)) / floor
+        found.append(min(float(np.sqrt(np.maximum(ratio**2 - 1.0, 0.0).max())), MOST))
     return found
 
 
@@ -213,6 +129,6 @@ def _together(machine: Machine, runs: Sequence[Run]) -> tuple[Array, Array, Arra
     return command, start, np.concatenate([run.outputs[:, b:] for run in runs], axis=2)
 
 
-def _scatter(values: Array) -> Array:
+def scatter(values: Array) -> Array:
     """RMS by output."""
     return np.sqrt(np.mean(values**2, axis=(1, 2)))

@@ -10,13 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from experiments.concealed import visibility
+from experiments.concealed import scaling, visibility
 from experiments.concealed.machines import MACHINES
 from experiments.concealed.machines.arm import Arm
 from experiments.concealed.machines.pendulum import Pendulum
 from experiments.concealed.machines.stage import Stage
+from experiments.concealed.scaling import calibrate
 from experiments.concealed.trial_files import card_text, digest, key, write
-from experiments.concealed.visibility import calibrate, residuals, unexplained, word
+from experiments.concealed.visibility import residuals, unexplained, word
 from tests.concealed.test_effects import ACTUATOR, BODY, COUPLING, SENSOR
 
 ROOT = Path(__file__).parents[2]
@@ -187,9 +188,9 @@ def test_effects_that_overflow_are_halved_until_they_do_not(monkeypatch: pytest.
         return runs
 
     monkeypatch.setattr(machine, "run", overflowing)
-    runs = visibility._finite_runs(machine, [trial], plain)
+    runs = scaling._finite_runs(machine, [trial], plain)
     assert trial.scales == [0.25]
     assert np.isfinite(runs[0].outputs).all()
     monkeypatch.setattr(machine, "run", lambda trials, **_: [replace(plain[0], outputs=np.full((1, 3, 4), np.nan))])
     with pytest.raises(FloatingPointError, match="stage with constant_bias"):
-        visibility._finite_runs(machine, [trial], plain)
+        scaling._finite_runs(machine, [trial], plain)

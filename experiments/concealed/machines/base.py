@@ -146,7 +146,7 @@ class Machine(ABC):
         }
 
     def draw(self, seed: int, number: int, plan: tuple[str, ...], *, noise: float = 1.0, **fields: Any) -> Trial:
-        """Draw one trial; the strength of its effects is set by `visibility.calibrate`."""
+        """Draw one trial; the strength of its effects is set by `scaling.calibrate`."""
         rng = np.random.default_rng(SeedSequence([seed, 2, number]))
         truth = self.draw_truth(rng, plan)
         return Trial(

@@ -15,8 +15,8 @@ from numpy.random import SeedSequence
 from experiments.concealed.machines import MACHINES
 from experiments.concealed.machines.base import Run, Trial
 from experiments.concealed.proof.plan import Planned
+from experiments.concealed.scaling import WORDS, calibrate
 from experiments.concealed.trial_files import key, write
-from experiments.concealed.visibility import WORDS, calibrate
 
 
 def draw_cases(

@@ -12,7 +12,7 @@ from experiments.concealed.effects import Effect
 from experiments.concealed.excitation import EXPERIMENTS
 from experiments.concealed.machines import MACHINES
 from experiments.concealed.proof.errors import ProofError
-from experiments.concealed.visibility import WORDS
+from experiments.concealed.scaling import WORDS
 
 LIBRARY, NONE, PAIR, OUTSIDE = "library", "none", "two effects", "outside"
 EXCITATION, NOISE = "excitation", "noise"
