@@ -25,8 +25,16 @@ CAPTIONS = {
     "reliability.png": "Claimed probability of a finding against the share of such findings that is right.",
 }
 BESIDE = (
-    ("Against other tools, on the same cases", "against.md", "python -m experiments.concealed.against"),
-    ("On real recordings, known physics concealed", "recordings.md", "python -m experiments.concealed.recordings"),
+    (
+        "Against other tools, on the same cases",
+        "against/against.md",
+        "python -m experiments.concealed.against PROOF/cases PROOF/against --verdicts PROOF/verdicts",
+    ),
+    (
+        "On real recordings, known physics concealed",
+        "recordings/results.md",
+        "python -m experiments.recordings PROOF/recordings",
+    ),
 )
 """Tables that other commands write into the folder of the proof, and that the page takes in: heading, file, command."""
 

@@ -203,7 +203,8 @@ def test_the_command_writes_results_figures_and_page_and_goes_on_without_the_too
         assert f"proof/{name}.png" in text
         assert (page.parent / "proof" / f"{name}.png").stat().st_size > 5000
     first = len(by_hand())
-    (tmp_path / "run" / "against.md").write_text("| tool | closed |\n")
+    (tmp_path / "run" / "against").mkdir()
+    (tmp_path / "run" / "against" / "against.md").write_text("| tool | closed |\n")
     assert command.main(arguments) == 0
     assert len(by_hand()) == first
     assert "| tool | closed |" in page.read_text()
