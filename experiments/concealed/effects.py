@@ -31,8 +31,8 @@ STRENGTHS = {"weak": 0.35, "moderate": 1.0, "dominant": 2.5}
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What a draw may depend on: the true parameters, and the positions (samples, 4) and the largest torque that the machine passes
-    without effect."""
+    """What a draw may depend on: the true parameters, and the positions (samples, 4) and the largest torque of the first experiment,
+    as the machine passes them without effect."""
 
     truth: Mapping[str, float]
     position: NDArray[np.float64]

@@ -65,7 +65,8 @@ class Trial:
         `plain` is the run without effect, of which some draws depend.
         """
         before = self.machine.before
-        around = Surroundings(self.truth, plain.position[before:], float(np.abs(plain.command[before:]).max()))
+        peak = float(np.abs(plain.command[before:, 0]).max())
+        around = Surroundings(self.truth, plain.position[before:], peak)
         self.switches = []
         for effect, scale in zip(self.effects, self.scales, strict=True):
             word = sum(ord(letter) * (i + 1) for i, letter in enumerate(effect.name))
