@@ -55,6 +55,8 @@ class Effect:
     near: tuple[Pair, ...] = ()
     ports: tuple[str, ...] = ()
     outside: bool = False
+    alone: tuple[Pair, ...] = ()
+    """Further answers that are right as long as nothing else is concealed, and near otherwise."""
     sharp: bool = False
     """Physics with an edge (standstill, impacts) in place of the smooth law that the standard set has; for the proof alone."""
 

@@ -4,8 +4,9 @@ The columns `accept`, `near`, `ports` as in `effects.py`. Twins that hold for ev
 
 - A constant force on the body is the same as one at the actuator, and so is a ripple: nothing lies between the two.
 - A machine with no law that depends on time, position or speed (the stage: linear but for what is concealed) cannot tell a delay, a
-  lag or a gain of the input from one of its only output: they commute. The pendulum can: gravity depends on the true angle, and
-  with two sensors a delay of one is not a delay of the other.
+  lag or a gain of the input from one of its only output: they commute. Delays and gains still do beside another effect (its own
+  parameters take up the gain), a lag beside something that is not linear does not: `alone`. The pendulum can tell them apart: gravity
+  depends on the true angle, and with two sensors a delay of one is not a delay of the other.
 
 Left out: Coulomb asymmetry, friction that varies with position, and viscous friction, as they add to a friction that these plain models
 do not have, or that is a parameter of theirs; they are concealed in the arm. A bias of a position sensor: it shifts the origin of the
@@ -19,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.random import Generator
 
-from experiments.concealed.effects import Effect, Pair, Surroundings, Switches
+from experiments.concealed.effects import Draw, Effect, Pair, Surroundings, Switches
 from experiments.concealed.laws import body, drive, dry
 
 
@@ -150,15 +151,19 @@ def timings(
 
     every = (("actuator", "input_delay"), ("actuator", "input_lag"), (sensor, "output_delay"), (sensor, "sensor_lag"))
 
-    def entry(name: str, law: type, port: str, draw, accept: tuple[Pair, ...]) -> Effect:
-        near = tuple(pair for pair in every if pair not in accept)
-        return Effect(name, law, port, "timing", draw, accept, near, tuple(dict.fromkeys(p for p, _ in accept)))
+    def entry(name: str, law: type, port: str, draw: Draw, right: tuple[Pair, ...], alone: bool) -> Effect:
+        """`alone`: twins at another port are right only where nothing else is concealed."""
+        own = tuple(pair for pair in right if pair[0] == port or not alone)
+        twins = tuple(pair for pair in right if pair not in own)
+        near = tuple(pair for pair in every if pair not in right)
+        places = tuple(dict.fromkeys(p for p, _ in right))
+        return Effect(name, law, port, "timing", draw, own, near, places, alone=twins)
 
     return [
-        entry("input_delay", drive.InputDelay, "actuator", delay, delays[0]),
-        entry("output_delay", drive.OutputDelay, sensor, delay, delays[1]),
-        entry("input_lag", drive.InputLag, "actuator", lag, lags[0]),
-        entry("sensor_lag", drive.SensorLag, sensor, lag, lags[1]),
+        entry("input_delay", drive.InputDelay, "actuator", delay, delays[0], False),
+        entry("output_delay", drive.OutputDelay, sensor, delay, delays[1], False),
+        entry("input_lag", drive.InputLag, "actuator", lag, lags[0], True),
+        entry("sensor_lag", drive.SensorLag, sensor, lag, lags[1], True),
     ]
 
 

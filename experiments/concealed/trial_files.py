@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from experiments.concealed.effects import Pair
 from experiments.concealed.excitation import EXPERIMENTS
 from experiments.concealed.machines.base import LANES, Run, Trial
 from experiments.concealed.visibility import word
@@ -64,8 +65,8 @@ def key(trial: Trial) -> dict[str, Any]:
             for effect, switches in zip(effects, trial.switches, strict=True)
             for name, value in switches.items()
         },
-        "accept": [[list(pair) for pair in effect.accept] for effect in effects] or [[]],
-        "near": [[list(pair) for pair in effect.near] for effect in effects] or [[]],
+        "accept": [_pairs(e.accept, e.alone if len(effects) == 1 else ()) for e in effects] or [[]],
+        "near": [_pairs(e.near, e.alone if len(effects) > 1 else ()) for e in effects] or [[]],
         "ports": [list(effect.ports) for effect in effects] or [[]],
         "outside": [effect.outside for effect in effects],
         "sigma": sigma if len(sigma) > 1 else trial.sigma[0],
@@ -79,6 +80,10 @@ def key(trial: Trial) -> dict[str, Any]:
         "number": trial.number,
         "truth": trial.truth,
     }
+
+
+def _pairs(*groups: tuple[Pair, ...]) -> list[list[str]]:
+    return [list(pair) for group in groups for pair in group]
 
 
 def digest(folder: Path) -> str:

@@ -54,7 +54,7 @@ def test_answers_are_in_the_contract_and_at_ports_of_the_model(machine: str):
     ports = {port.name for port in load_model(spec).all_ports}
     for effect in m.catalogue.values():
         assert effect.accept
-        for port, name in (*effect.accept, *effect.near):
+        for port, name in (*effect.accept, *effect.near, *effect.alone):
             assert port in ports, (machine, effect.name)
             assert name == "unknown" or name in mechanisms(machine, port), (machine, effect.name)
         assert not set(effect.accept) & set(effect.near)
@@ -173,6 +173,17 @@ def test_folder_of_a_trial_holds_what_the_tool_may_know_and_no_key(tmp_path: Pat
     answer = key(trial)
     assert answer["sigma"] == {"angle": 0.001, "speed": 0.02}
     assert (answer["strength"], answer["effects"]) == ("moderate", ["coulomb"])
+
+
+def test_twins_that_are_twins_alone_are_near_beside_another_effect():
+    machine = ShortStage()
+    single, pair = machine.draw(1, 0, ("input_lag",)), machine.draw(1, 0, ("input_lag", "coulomb"))
+    for trial in (single, pair):
+        trial.draw_switches(machine.run([trial], effects=False)[0])
+        trial.sigma = (1.0,)
+    assert key(single)["accept"][0] == [["actuator", "input_lag"], ["sensor", "sensor_lag"]]
+    assert key(pair)["accept"][0] == [["actuator", "input_lag"]]
+    assert ["sensor", "sensor_lag"] in key(pair)["near"][0]
 
 
 def test_effects_that_overflow_are_halved_until_they_do_not(monkeypatch: pytest.MonkeyPatch):
