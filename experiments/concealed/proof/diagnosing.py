@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import secrets
 import shutil
 import subprocess
 import sys
@@ -30,6 +31,8 @@ def diagnose_all(
     """Diagnose what has no frozen verdict yet, `workers` cases side by side, each on one thread."""
     sealed = record.sealed or {"cases": {}}
     left = [name for name in sealed["cases"] if name not in record.verdicts]
+    for abandoned in (folder / "verdicts").glob(".c*"):
+        shutil.rmtree(abandoned, ignore_errors=True)
     lock, total = threading.Lock(), len(sealed["cases"])
 
     def one(name: str) -> None:
@@ -48,9 +51,10 @@ def diagnose_all(
 
 def _diagnose(case: Path, out: Path, time_limit: float) -> dict[str, Any]:
     """Run the tool; what goes on the record: the hash of the verdict (None where there is none), and what was said."""
-    shutil.rmtree(out, ignore_errors=True)  # of a run that was killed before its verdict was on the record
+    # Each attempt writes into a folder of its own: a tool that outlived a killed proof cannot touch what is frozen later.
+    attempt = out.with_name(f".{out.name}.{secrets.token_hex(4)}")
     began = time.perf_counter()
-    command = [sys.executable, "-m", "greybox_torch", "diagnose", str(case / "dataset.toml"), "--out", str(out)]
+    command = [sys.executable, "-m", "greybox_torch", "diagnose", str(case / "dataset.toml"), "--out", str(attempt)]
     command += ["--json", "--time-limit", f"{time_limit:g}"]
     allowed = GRACE * time_limit + 60.0
     try:
@@ -66,11 +70,13 @@ def _diagnose(case: Path, out: Path, time_limit: float) -> dict[str, Any]:
     except subprocess.TimeoutExpired:
         failure = f"no verdict after {allowed:.0f} s"
     seconds = round(time.perf_counter() - began, 1)
-    verdict = out / "verdict.json"
+    verdict = attempt / "verdict.json"
+    shutil.rmtree(out, ignore_errors=True)  # of a run that was killed before its verdict was on the record
     if failure or not verdict.is_file():
-        shutil.rmtree(out, ignore_errors=True)
+        shutil.rmtree(attempt, ignore_errors=True)
         return {"sha256": None, "said": failure or "no verdict.json was written", "seconds": seconds}
     content = verdict.read_bytes()
+    attempt.rename(out)
     return {"sha256": sha256(content), "said": _sentence(json.loads(content)), "seconds": seconds}
 
 

@@ -84,6 +84,7 @@ def test_the_tool_is_called_as_a_user_would(drawn, tmp_path: Path):
     assert entry["sha256"] == sha256(verdict.read_bytes())
     assert entry["said"] == diagnosing._sentence(json.loads(verdict.read_text()))
     assert digest(case) == before
+    assert [f.name for f in tmp_path.iterdir()] == ["out"]  # nothing is left of the attempt's own folder
 
 
 def test_failures_and_endless_runs_go_on_record(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
