@@ -81,6 +81,8 @@ def _diagnose(case: Path, out: Path, time_limit: float) -> dict[str, Any]:
 
 
 def _sentence(verdict: dict[str, Any]) -> str:
+    if not verdict["effects"] and verdict.get("complete") is False:
+        return "no answer before the time limit"
     found = [f"{e['mechanism']} at {e['port']} ({e['probability']:.2f})" for e in verdict["effects"]]
     return ", ".join(found) or "nothing missing"
 
