@@ -72,6 +72,11 @@ class Row:
         return str(self.key["strength"])
 
     @property
+    def cut_short(self) -> bool:
+        """Whether the tool says nothing because the time limit stopped it, not because it finds nothing."""
+        return self.verdict is not None and not self.verdict["effects"] and self.verdict.get("complete") is False
+
+    @property
     def right(self) -> bool:
         """Whether nothing at all is wrong."""
         return self.detected and self.named == len(self.effects) and self.spurious == 0
@@ -125,7 +130,7 @@ def promises(found: Sequence[Row]) -> list[Promise]:
         Promise(
             "false alarms without an effect",
             "0 of at least 30",
-            str(alarms),
+            f"{alarms}{_silenced(none)}",
             _alarms_kept(alarms),
         ),
         *(
@@ -157,6 +162,12 @@ def _outside_promise(outside: Sequence[Row]) -> Promise:
         str(rate),
         _known(outside, rate.share >= 0.8),
     )
+
+
+def _silenced(none: Sequence[Row]) -> str:
+    """Silence that the time limit imposed is no merit: it is told."""
+    cut = sum(row.cut_short for row in none)
+    return f", {cut} silent only because the time limit stopped the search" if cut else ""
 
 
 def _alarms_kept(alarms: Rate) -> bool | None:

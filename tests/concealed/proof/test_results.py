@@ -13,6 +13,7 @@ from scipy.stats import binom
 
 from experiments.concealed.proof import __main__ as command
 from experiments.concealed.proof.confusion import kind, matrix
+from experiments.concealed.proof.diagnosing import _sentence
 from experiments.concealed.proof.errors import ProofError
 from experiments.concealed.proof.figures import draw_all
 from experiments.concealed.proof.plan import NOISES, by_mechanism, mechanism, plans
@@ -84,6 +85,15 @@ def test_brier_score_beside_adds_the_shares_of_twins_of_right_findings():
     row = rows({"c": ANSWERS["c004"]}, {"c": said}, {"c": ENTRIES["c004"]})
     kept = {p.what: p for p in promises(row)}
     assert kept["Brier score of the probabilities"].measured == "0.250 (0.010 with the shares of twins added)"
+
+
+def test_silence_by_the_time_limit_is_told():
+    said = verdict("arm") | {"complete": False}
+    row = rows({"c": ANSWERS["c000"]}, {"c": said}, {"c": ENTRIES["c000"]})
+    assert row[0].cut_short
+    assert promises(row)[0].measured.endswith("1 silent only because the time limit stopped the search")
+    assert _sentence(said) == "no answer before the time limit"
+    assert _sentence(verdict("arm")) == "nothing missing"
 
 
 def test_one_false_alarm_breaks_the_promise():
