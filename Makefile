@@ -1,12 +1,14 @@
-# `make demo` shows what the tool does; `make test` checks that it still does it; `make bench` measures it beside other tools.
+# `make demo` shows what the tool does; `make test` checks that it still does it; `make bench` measures it beside other tools;
+# `make proof` conceals effects, seals the answers, lets it speak, and scores it.
 # Everything runs in .venv, which is made once and refreshed when the dependencies change.
 
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 PEERS := .venv/.peers
+PROOF := .venv/.proof
 
-.PHONY: demo test lint bench clean
+.PHONY: demo test lint bench proof proof-quick clean
 
 demo: $(INSTALLED)
 	$(BIN)/greybox demo --out results/demo
@@ -22,6 +24,13 @@ lint: $(INSTALLED)
 bench: $(PEERS)
 	$(BIN)/python -m experiments.speed --out results/bench
 
+# Interrupted, it goes on where it was; a new draw needs another folder, or results/proof removed.
+proof: $(PROOF)
+	$(BIN)/python -m experiments.concealed.proof --page docs/proof.md
+
+proof-quick: $(PROOF)
+	$(BIN)/python -m experiments.concealed.proof --set quick
+
 clean:
 	rm -rf .venv results build dist *.egg-info .pytest_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
@@ -33,4 +42,8 @@ $(INSTALLED): pyproject.toml constraints.txt
 
 $(PEERS): $(INSTALLED)
 	$(BIN)/python -m pip install --quiet -c constraints.txt -e '.[dev,peers]'
+	touch $@
+
+$(PROOF): $(INSTALLED)
+	$(BIN)/python -m pip install --quiet -c constraints.txt -e '.[dev,proof]'
 	touch $@

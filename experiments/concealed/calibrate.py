@@ -81,7 +81,7 @@ def draw(rows: Sequence[tuple[str, list[dict[str, float]]]], file: Path) -> None
         ("tab:blue", (6, -12)),
         ("tab:orange", (-18, -12)),
     )  # labels on either side, as points of both series fall together
-    for (label, bins), (colour, beside) in zip(rows, looks, strict=True):
+    for (label, bins), (colour, beside) in zip(rows, looks[: len(rows)], strict=True):
         claimed, right = [b["claimed"] for b in bins], [b["right"] for b in bins]
         axes.plot(claimed, right, color=colour, lw=1, label=label)
         axes.scatter(claimed, right, s=[12 + 6 * b["findings"] for b in bins], color=colour, alpha=0.7)

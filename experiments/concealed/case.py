@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.random import Generator, SeedSequence
@@ -26,6 +28,15 @@ Array = NDArray[np.float64]
 NEEDS_POSITIONS = ("end_stop", "notch")
 SMALLEST_ARM = 0.03  # of the whole inertia
 SMALLEST_LOADED_ARM = 0.07  # where the effect sits in the spring of the arm, which a light arm hardly winds
+
+
+class Concealing(Protocol):
+    """What has effects with their switches: a case of any machine."""
+
+    @property
+    def effects(self) -> list[Effect]: ...
+
+    switches: list[dict[str, float]]
 
 
 @dataclass
@@ -82,7 +93,7 @@ def draw_case(
         truth = draw_truth(rng)
     card = draw_card(rng, truth)
     excitation = draw_excitation(rng, samples, sample_time)
-    while "end_stop" in plan and not _stays_within_estimation(excitation, sample_time):
+    while "end_stop" in plan and not stays_within_estimation(excitation, sample_time):
         excitation = draw_excitation(rng, samples, sample_time)
     strengths = tuple(str(rng.choice(list(STRENGTHS))) if strength == "drawn" else strength for _ in plan)
     case = Case(f"c{number:03d}", sample_time, seed, number, plan, strengths, truth, card, excitation, [])
@@ -96,7 +107,7 @@ def draw_case(
     return case
 
 
-def _stays_within_estimation(excitation: Excitation, sample_time: float) -> bool:
+def stays_within_estimation(excitation: Excitation, sample_time: float) -> bool:
     """Whether the fast slow-profile experiment never goes past where the estimation experiment turns back."""
     before = round(PRE_ROLL / sample_time)
     position = np.cumsum(excitation.reference, axis=0)[before:] * sample_time
@@ -115,13 +126,22 @@ def simulate_cases(cases: list[Case], *, steps_per_sample: int = STEPS_PER_SAMPL
     return [Recordings(*(a[cut:, count * i : count * (i + 1)] for a in arrays)) for i in range(len(cases))]
 
 
-def assemble(cases: list[Case], *, steps_per_sample: int = STEPS_PER_SAMPLE) -> tuple[ArmPlant, Drive]:
-    """The plant of all cases with their effects, and what drives it; lane 4 i + j is experiment j of case i."""
+def assemble(
+    cases: list[Case],
+    *,
+    steps_per_sample: int = STEPS_PER_SAMPLE,
+    nuisances: Sequence[Law] = (),
+    resolution: float = 0.0,
+) -> tuple[ArmPlant, Drive]:
+    """The plant of all cases with their effects, and what drives it; lane 4 i + j is experiment j of case i.
+
+    `nuisances` are further laws on these lanes, `resolution` the step in which the speed is read out [rad/s].
+    """
     count, sample_time = len(EXPERIMENTS), cases[0].sample_time
     parameters = {name: np.repeat([case.truth[name] for case in cases], count) for name in PARAMETERS}
     plant = ArmPlant(
         parameters,
-        concealed_laws(cases),
+        [*concealed_laws(cases), *nuisances],
         sample_time=sample_time,
         steps_per_sample=steps_per_sample,
         start_time=-PRE_ROLL,
@@ -132,20 +152,23 @@ def assemble(cases: list[Case], *, steps_per_sample: int = STEPS_PER_SAMPLE) -> 
         np.concatenate([case.excitation.noise for case in cases], axis=1),
         np.repeat([case.excitation.gain for case in cases], count),
         np.repeat([case.excitation.integral_gain for case in cases], count),
+        resolution,
     )
     return plant, drive
 
 
-def concealed_laws(cases: list[Case]) -> list[Law]:
+def concealed_laws(cases: Sequence[Concealing]) -> list[Law]:
     """One law for every effect of the catalogue that occurs, on the lanes of the cases that conceal it."""
     occurrences: dict[str, list[tuple[int, dict[str, float]]]] = {}
+    known: dict[str, Effect] = {}
     for i, case in enumerate(cases):
         for effect, switches in zip(case.effects, case.switches, strict=True):
             occurrences.setdefault(effect.name, []).append((i, switches))
+            known[effect.name] = effect
     laws: list[Law] = []
     count = len(EXPERIMENTS)
     for name, found in occurrences.items():
         lanes = np.concatenate([count * i + np.arange(count) for i, _ in found])
         values = {key: np.repeat([float(one[key]) for _, one in found], count) for key in found[0][1]}
-        laws.append(CATALOGUE[name].law(lanes, values, CATALOGUE[name].port))
+        laws.append(known[name].law(lanes, values, known[name].port))
     return laws

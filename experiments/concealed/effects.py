@@ -22,7 +22,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from experiments.concealed.laws import Law, body, coupling, drive
+from experiments.concealed.laws import Law, body, coupling, drive, dry
 
 Pair = tuple[str, str]
 Switches = dict[str, float]
@@ -31,10 +31,12 @@ STRENGTHS = {"weak": 0.35, "moderate": 1.0, "dominant": 2.5}
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What a draw may depend on: the true parameters, and the positions (samples, 4) that the arm passes without effect."""
+    """What a draw may depend on: the true parameters, and the positions (samples, 4) and the largest torque of the first experiment,
+    as the machine passes them without effect."""
 
     truth: Mapping[str, float]
     position: NDArray[np.float64]
+    peak: float = np.nan
 
 
 Draw = Callable[[Generator, float, Surroundings], Switches]
@@ -53,6 +55,10 @@ class Effect:
     near: tuple[Pair, ...] = ()
     ports: tuple[str, ...] = ()
     outside: bool = False
+    alone: tuple[Pair, ...] = ()
+    """Further answers that are right as long as nothing else is concealed, and near otherwise."""
+    sharp: bool = False
+    """Physics with an edge (standstill, impacts) in place of the smooth law that the standard set has; for the proof alone."""
 
 
 def _sign(rng: Generator) -> float:
@@ -248,7 +254,12 @@ def _drive_effects() -> list[Effect]:
 
 def _outside_effects() -> list[Effect]:
     def bump(g: Generator, s: float, c: Surroundings) -> Switches:
-        return {"height": s * g.uniform(0.4, 0.7), "center": g.uniform(12.0, 22.0), "width": g.uniform(1.8, 3.0)}
+        return {
+            "height": s * g.uniform(0.4, 0.7),
+            "center": g.uniform(12.0, 22.0),
+            "width": g.uniform(1.8, 3.0),
+            "v_0": 1.0,
+        }
 
     def notch(g: Generator, s: float, c: Surroundings) -> Switches:
         center = _between(c.position[:, 0], g.uniform(0.35, 0.75))
@@ -266,11 +277,25 @@ def _outside_effects() -> list[Effect]:
                (("arm_spring", "unknown"),), (("arm_spring", "nonlinear_stiffness"),), ("arm_spring",), True),
         Effect("tuned_damping", coupling.SpeedTunedDamping, "gear_spring", "outside", tuned,
                (("gear_spring", "unknown"),), (("gear_spring", "nonlinear_damping"),), ("gear_spring",), True),
-        Effect("torque_fade", drive.TorqueFade, "actuator", "outside", lambda g, s, c: {"loss": s * g.uniform(0.12, 0.25)},
+        Effect("torque_fade", drive.TorqueFade, "actuator", "outside", lambda g, s, c: {"loss": s * g.uniform(0.12, 0.25), "top": 40.0},
                (("actuator", "unknown"), ("motor", "unknown")), (("actuator", "input_gain"),), ("actuator", "motor"), True),
         Effect("speed_waves", body.SpeedWaves, "gearbox", "outside",
-               lambda g, s, c: {"height": s * g.uniform(0.4, 0.7), "spacing": g.uniform(2.0, 3.5)},
+               lambda g, s, c: {"height": s * g.uniform(0.4, 0.7), "spacing": g.uniform(2.0, 3.5), "v_0": 1.0},
                (("gearbox", "unknown"),), (("motor", "unknown"), ("arm", "unknown")), ("gearbox", "motor"), True),
+    ]  # fmt: skip
+
+
+def _sharp_effects() -> list[Effect]:
+    near = (("gearbox", "coulomb_friction"), ("gearbox", "stribeck_friction"), ("arm", "presliding_hysteresis"))
+    gear = "gear_spring"
+    return [
+        Effect("arm_stick", dry.DryCoulomb, "arm", "friction", lambda g, s, c: {"level": s * g.uniform(0.25, 0.45)},
+               (("arm", "coulomb_friction"), ("arm", "stribeck_friction")), near, ("arm", "gearbox"), sharp=True),
+        Effect("arm_stick_slip", dry.DryStribeck, "arm", "friction",
+               lambda g, s, c: {"level": s * g.uniform(0.12, 0.2), "extra": s * g.uniform(0.3, 0.45), "v_s": g.uniform(3.0, 6.0)},
+               (("arm", "stribeck_friction"),), (("arm", "coulomb_friction"), *near), ("arm", "gearbox"), sharp=True),
+        Effect("gear_impacts", coupling.BacklashWithImpacts, gear, "gear", lambda g, s, c: {"half_gap": s * g.uniform(0.03, 0.045)},
+               ((gear, "backlash"),), ((gear, "nonlinear_stiffness"), (gear, "hysteretic_spring")), (gear,), sharp=True),
     ]  # fmt: skip
 
 
@@ -282,7 +307,8 @@ CATALOGUE: dict[str, Effect] = {
         *_coupling_effects(),
         *_drive_effects(),
         *_outside_effects(),
+        *_sharp_effects(),
     )
 }
-LIBRARY = tuple(name for name, effect in CATALOGUE.items() if not effect.outside)
+LIBRARY = tuple(name for name, effect in CATALOGUE.items() if not (effect.outside or effect.sharp))
 OUTSIDE = tuple(name for name, effect in CATALOGUE.items() if effect.outside)

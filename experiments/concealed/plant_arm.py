@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiments.concealed.laws import Law, Motion
+from experiments.concealed.laws.base import BODIES
 
 Array = NDArray[np.float64]
 
@@ -42,7 +43,8 @@ STATE_ROWS = 6  # gear twist, arm twist, motor, gearbox and arm speed, motor pos
 
 @dataclass(frozen=True)
 class Drive:
-    """What the cabinet does on each lane: feed-forward torque, speed reference, speed feedback, noise of the sensor.
+    """What the cabinet does on each lane: feed-forward torque, speed reference, speed feedback, noise of the sensor, and the step in which
+    the speed is read out [rad/s] (0: none).
 
     Arrays have shape (samples, lanes) or (lanes,). The command is
     u_k = feedforward_k + gain (reference_k - y_k) + integral_gain * sum of past (reference - y) * sample time.
@@ -53,6 +55,7 @@ class Drive:
     noise: Array
     gain: Array
     integral_gain: Array
+    resolution: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -85,11 +88,15 @@ class ArmPlant:
         self.rows = STATE_ROWS
         for law in self.laws:
             law.first_row, law.sample_time, law.step = self.rows, sample_time, sample_time / steps_per_sample
+            law.speed_row = 2 + (BODIES.index(law.port) if law.port in BODIES else 0)
             self.rows += law.memory
         p = self.parameters
         self._motor_inertia = p["J"] * p["a_m"]
         self._gearbox_inertia = p["J"] * p["a_g"]
         self._arm_inertia = p["J"] * (1.0 - p["a_m"] - p["a_g"])
+        self._inertias: dict[str, Array] = dict(
+            zip(BODIES, (self._motor_inertia, self._gearbox_inertia, self._arm_inertia), strict=True)
+        )
         self._by_place: dict[str, list[Law]] = {}
         for law in self.laws:
             for place in law.places:
@@ -135,6 +142,10 @@ class ArmPlant:
         rates[5] = m.motor_speed
         return rates
 
+    def _hold(self, time: float, state: Array, width: float) -> None:
+        for law in self._by_place.get("dry", ()):
+            law.hold(time, state, width, self._inertias[law.port])
+
     def energy(self, state: Array) -> Array:
         """Kinetic energy and that of the two springs, without any law's share [J], per lane."""
         p = self.parameters
@@ -171,6 +182,8 @@ class ArmPlant:
                 for law in sensing:
                     law.measure(measured, state)
                 measured += drive.noise[k]
+                if drive.resolution > 0.0:
+                    measured = drive.resolution * np.round(measured / drive.resolution)
                 error = drive.reference[k] - measured
                 torque[k] = drive.feedforward[k] + drive.gain * error + integral
                 speed[k], position[k] = measured, state[5]
@@ -185,7 +198,9 @@ class ArmPlant:
                         for law in timing:
                             law.retime(effective, torque, k, j / self.steps_per_sample, 1.0 / self.steps_per_sample)
                     middle = state + (0.5 * step) * self.rates(time, state, effective)
+                    self._hold(time, middle, 0.5 * step)
                     state = state + step * self.rates(time + 0.5 * step, middle, effective)
+                    self._hold(time, state, step)
                     for law in sensing:
                         law.remember(state)
         if not overflow and not np.isfinite(speed).all():

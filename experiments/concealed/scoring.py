@@ -119,12 +119,14 @@ def _plain(answer: Any) -> Any:
 
 
 def _closed(verdict: Mapping[str, Any], key: Mapping[str, Any]) -> float:
-    floor = float(key["sigma"]) ** 2
+    """With several outputs ``sigma`` gives each its own noise, in units of which their errors are added."""
+    sigma = key["sigma"]
     left = {"refit": 0.0, "augmented": 0.0}
     for row in verdict["fit"]:
         if row["role"] == "validation":
+            floor = float(sigma[row["output"]] if isinstance(sigma, Mapping) else sigma)
             for stage in left:
-                left[stage] += max(float(row[stage]["rmse"]) ** 2 - floor, 0.0)
+                left[stage] += max((float(row[stage]["rmse"]) / floor) ** 2 - 1.0, 0.0)
     return 1.0 - (left["augmented"] / left["refit"]) ** 0.5 if left["refit"] > 0 else 0.0
 
 

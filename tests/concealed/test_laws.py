@@ -43,8 +43,8 @@ FRICTIONS = [
     make(body.PositionDependentFriction, "motor", level=0.2, order=3.0, phase=1.0, v_0=0.5),
     make(body.FrictionWarmup, "motor", change=0.3, T=2.0, grows=0.0, v_0=0.3),
     make(body.FrictionWarmup, "motor", change=0.3, T=2.0, grows=1.0, v_0=0.3),
-    make(body.SpeedBump, "motor", height=0.5, center=15.0, width=3.0),
-    make(body.SpeedWaves, "gearbox", height=0.5, spacing=3.0),
+    make(body.SpeedBump, "motor", height=0.5, center=15.0, width=3.0, v_0=1.0),
+    make(body.SpeedWaves, "gearbox", height=0.5, spacing=3.0, v_0=1.0),
 ]
 
 

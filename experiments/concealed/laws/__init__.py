@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from experiments.concealed.laws.base import Law, Motion
+from experiments.concealed.laws.base import Instant, Law, Motion
 
-__all__ = ["Law", "Motion"]
+__all__ = ["Instant", "Law", "Motion"]

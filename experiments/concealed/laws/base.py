@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,34 @@ Array = NDArray[np.float64]
 BODIES = ("motor", "gearbox", "arm")
 
 
-class Motion:
-    """One instant of all lanes: kinematics to read, forces to add to. Every attribute is an array over lanes."""
+class Instant:
+    """What every machine shows of one instant of all lanes: the time, the states, their rates to add to, the torque (or force) applied."""
+
+    def __init__(self, time: float, state: Array, torque: Array) -> None:
+        self.time = time
+        self.state = state
+        self.rates = np.zeros_like(state)
+        self.torque = torque.copy()
+
+    def speed(self, body: str, lanes: NDArray[np.intp]) -> Array:
+        """Speed of a body on some lanes, rad/s or m/s."""
+        raise NotImplementedError
+
+    def position(self, body: str, lanes: NDArray[np.intp]) -> Array:
+        """Position of a body on some lanes, rad or m."""
+        raise NotImplementedError
+
+    def load(self, lanes: NDArray[np.intp]) -> Array:
+        """What the bearings carry on some lanes: the load that friction may depend on."""
+        raise NotImplementedError
+
+    def push(self, body: str, lanes: NDArray[np.intp], force: Array) -> None:
+        """Add a force to a body on some lanes; positive pushes it forward, N m or N."""
+        raise NotImplementedError
+
+
+class Motion(Instant):
+    """One instant of all lanes of the arm: kinematics to read, forces to add to. Every attribute is an array over lanes."""
 
     motor_force: Array
     gear_spring: Array  # elastic part of the gear torque: the load that the motor feels
@@ -21,11 +47,8 @@ class Motion:
     arm_torque: Array
 
     def __init__(self, time: float, state: Array, torque: Array) -> None:
+        super().__init__(time, state, torque)
         lanes = state.shape[1]
-        self.time = time
-        self.state = state
-        self.rates = np.zeros_like(state)
-        self.torque = torque.copy()
         self.motor_speed, self.gearbox_speed, self.arm_speed = state[2], state[3], state[4]
         self.gear_deflection = state[0].copy()
         self.gear_rate = state[2] - state[3]
@@ -36,7 +59,6 @@ class Motion:
         self.arm_force = np.zeros(lanes)
 
     def speed(self, body: str, lanes: NDArray[np.intp]) -> Array:
-        """Speed of a body on some lanes, rad/s."""
         return self.state[2 + BODIES.index(body), lanes]
 
     def position(self, body: str, lanes: NDArray[np.intp]) -> Array:
@@ -46,8 +68,10 @@ class Motion:
             position = position - self.state[0, lanes]
         return position - self.state[1, lanes] if body == "arm" else position
 
+    def load(self, lanes: NDArray[np.intp]) -> Array:
+        return self.gear_spring[lanes]
+
     def push(self, body: str, lanes: NDArray[np.intp], force: Array) -> None:
-        """Add a force to a body on some lanes; positive pushes it forward, N m."""
         getattr(self, f"{body}_force")[lanes] += force
 
 
@@ -55,7 +79,8 @@ class Law:
     """One law, acting on `lanes` with its `switches`: strength and shape, each an array over those lanes.
 
     `places` says when the law is asked: "input_time" (retime), "input", "deflection", "coupling", "body" (apply, in this
-    order within an instant), "output" (measure at the samples, remember after every step).
+    order within an instant), "dry" (hold, once the other forces have moved the states), "output" (measure at the samples, remember
+    after every step).
     """
 
     places: ClassVar[tuple[str, ...]] = ("body",)
@@ -65,7 +90,9 @@ class Law:
         self.lanes = lanes
         self.switches = dict(switches)
         self.port = port
-        self.first_row = -1  # set by the plant, as are the next two [s]
+        self.speed_row = 2  # of the speed of the port's body, set by the plant, as is all that follows
+        self.sensed_row = 2  # of what the port's sensor shows
+        self.first_row = -1
         self.sample_time = np.nan
         self.step = np.nan
 
@@ -75,8 +102,12 @@ class Law:
     def start(self, state: Array) -> None:
         """Set the law's own states at the beginning of the recordings; zero unless overridden."""
 
-    def apply(self, motion: Motion) -> None:
-        """Read and change one instant."""
+    def apply(self, motion: Any) -> None:
+        """Read and change one instant (an `Instant` of the machine that the law belongs to)."""
+        raise NotImplementedError
+
+    def hold(self, time: float, state: Array, width: float, inertia: Array) -> None:
+        """Slow the body down by what dry friction takes within `width` seconds, to standstill at most."""
         raise NotImplementedError
 
     def retime(self, effective: Array, torque: Array, sample: int, phase: float, width: float) -> None:

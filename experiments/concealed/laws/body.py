@@ -9,38 +9,38 @@ from typing import ClassVar
 
 import numpy as np
 
-from experiments.concealed.laws.base import Array, Law, Motion
+from experiments.concealed.laws.base import Array, Instant, Law
 
 
 class BodyForce(Law):
     """Base of the laws that are one static function of the instant."""
 
-    def force(self, m: Motion, v: Array) -> Array:
+    def force(self, m: Instant, v: Array) -> Array:
         """Force on the body, N m."""
         raise NotImplementedError
 
-    def apply(self, motion: Motion) -> None:
+    def apply(self, motion: Instant) -> None:
         motion.push(self.port, self.lanes, self.force(motion, motion.speed(self.port, self.lanes)))
 
 
 class Viscous(BodyForce):
     """- c v."""
 
-    def force(self, m: Motion, v: Array) -> Array:
+    def force(self, m: Instant, v: Array) -> Array:
         return -self["c"] * v
 
 
 class Coulomb(BodyForce):
     """- level tanh(v / v_0)."""
 
-    def force(self, m: Motion, v: Array) -> Array:
+    def force(self, m: Instant, v: Array) -> Array:
         return -self["level"] * np.tanh(v / self["v_0"])
 
 
 class Stribeck(BodyForce):
     """- (level + extra exp(-(v / v_s)^2)) tanh(v / v_0) - c v."""
 
-    def force(self, m: Motion, v: Array) -> Array:
+    def force(self, m: Instant, v: Array) -> Array:
         level = self["level"] + self["extra"] * np.exp(-((v / self["v_s"]) ** 2))
         return -level * np.tanh(v / self["v_0"]) - self["c"] * v
 
@@ -51,28 +51,28 @@ class CoulombAsymmetry(BodyForce):
     On its own it drives in one direction; with the plant's Coulomb friction, which is larger, the sum opposes motion.
     """
 
-    def force(self, m: Motion, v: Array) -> Array:
+    def force(self, m: Instant, v: Array) -> Array:
         return -self["difference"] * np.abs(np.tanh(v / self["v_0"]))
 
 
 class QuadraticDrag(BodyForce):
     """- c v |v|."""
 
-    def force(self, m: Motion, v: Array) -> Array:
+    def force(self, m: Instant, v: Array) -> Array:
         return -self["c"] * v * np.abs(v)
 
 
 class LoadDependentFriction(BodyForce):
-    """- c |elastic gear torque| tanh(v / v_0)."""
+    """- c |load| tanh(v / v_0)."""
 
-    def force(self, m: Motion, v: Array) -> Array:
-        return -self["c"] * np.abs(m.gear_spring[self.lanes]) * np.tanh(v / self["v_0"])
+    def force(self, m: Instant, v: Array) -> Array:
+        return -self["c"] * np.abs(m.load(self.lanes)) * np.tanh(v / self["v_0"])
 
 
 class PositionDependentFriction(BodyForce):
     """- level (1 + cos(order q + phase)) tanh(v / v_0): never negative, so never driving."""
 
-    def force(self, m: Motion, v: Array) -> Array:
+    def force(self, m: Instant, v: Array) -> Array:
         q = m.position(self.port, self.lanes)
         return -self["level"] * (1.0 + np.cos(self["order"] * q + self["phase"])) * np.tanh(v / self["v_0"])
 
@@ -80,7 +80,7 @@ class PositionDependentFriction(BodyForce):
 class FrictionWarmup(BodyForce):
     """- change (exp(-t / T) or 1 - exp(-t / T)) tanh(v / v_0), from a cold start at every recording."""
 
-    def force(self, m: Motion, v: Array) -> Array:
+    def force(self, m: Instant, v: Array) -> Array:
         cold = np.exp(-max(m.time, 0.0) / self["T"])
         share = np.where(self["grows"] > 0, 1.0 - cold, cold)
         return -self["change"] * share * np.tanh(v / self["v_0"])
@@ -89,21 +89,21 @@ class FrictionWarmup(BodyForce):
 class ConstantBias(BodyForce):
     """+ bias."""
 
-    def force(self, m: Motion, v: Array) -> Array:
+    def force(self, m: Instant, v: Array) -> Array:
         return self["bias"]
 
 
 class Gravity(BodyForce):
     """- moment sin(q + angle)."""
 
-    def force(self, m: Motion, v: Array) -> Array:
+    def force(self, m: Instant, v: Array) -> Array:
         return -self["moment"] * np.sin(m.position(self.port, self.lanes) + self["angle"])
 
 
 class TorqueRipple(BodyForce):
     """amplitude sin(order q + phase)."""
 
-    def force(self, m: Motion, v: Array) -> Array:
+    def force(self, m: Instant, v: Array) -> Array:
         return self["amplitude"] * np.sin(self["order"] * m.position(self.port, self.lanes) + self["phase"])
 
 
@@ -113,31 +113,31 @@ class EndStop(BodyForce):
     With `side` -1 the stop is at negative positions: x = -q - limit.
     """
 
-    def force(self, m: Motion, v: Array) -> Array:
+    def force(self, m: Instant, v: Array) -> Array:
         depth = self["side"] * m.position(self.port, self.lanes) - self["limit"]
         back = np.maximum(self["stiffness"] * depth + self["damping"] * self["side"] * v, 0.0)
         return -self["side"] * np.where(depth > 0.0, back, 0.0)
 
 
 class SpeedBump(BodyForce):
-    """Outside the library: friction that rises around one speed, - height exp(-((|v| - center) / width)^2 / 2) sign(v)."""
+    """Outside the library: friction that rises around one speed, - height exp(-((|v| - center) / width)^2 / 2) tanh(v / v_0)."""
 
-    def force(self, m: Motion, v: Array) -> Array:
+    def force(self, m: Instant, v: Array) -> Array:
         bump = np.exp(-0.5 * ((np.abs(v) - self["center"]) / self["width"]) ** 2)
-        return -self["height"] * bump * np.tanh(v)
+        return -self["height"] * bump * np.tanh(v / self["v_0"])
 
 
 class SpeedWaves(BodyForce):
-    """Outside the library: friction that comes and goes with speed, - height (1 - cos(v / spacing)) / 2 tanh(v)."""
+    """Outside the library: friction that comes and goes with speed, - height (1 - cos(v / spacing)) / 2 tanh(v / v_0)."""
 
-    def force(self, m: Motion, v: Array) -> Array:
-        return -0.5 * self["height"] * (1.0 - np.cos(v / self["spacing"])) * np.tanh(v)
+    def force(self, m: Instant, v: Array) -> Array:
+        return -0.5 * self["height"] * (1.0 - np.cos(v / self["spacing"])) * np.tanh(v / self["v_0"])
 
 
 class Notch(BodyForce):
     """Outside the library: a detent at one position that is passed in every sweep, - gradient of a Gaussian potential."""
 
-    def force(self, m: Motion, v: Array) -> Array:
+    def force(self, m: Instant, v: Array) -> Array:
         x = (m.position(self.port, self.lanes) - self["center"]) / self["width"]
         return -self["height"] * x * np.exp(0.5 - 0.5 * x * x)
 
@@ -152,10 +152,10 @@ class Bristle(Law):
     memory: ClassVar[int] = 1
 
     def start(self, state: Array) -> None:
-        v = state[2 + ("motor", "gearbox", "arm").index(self.port), self.lanes]
+        v = state[self.speed_row, self.lanes]
         state[self.first_row, self.lanes] = self["level"] / self["stiffness"] * np.tanh(v)
 
-    def apply(self, motion: Motion) -> None:
+    def apply(self, motion: Instant) -> None:
         v = motion.speed(self.port, self.lanes)
         z = motion.state[self.first_row, self.lanes]
         slip = v - self["stiffness"] * np.abs(v) * z / self["level"]
@@ -169,10 +169,9 @@ class AdditionalMode(Law):
     memory: ClassVar[int] = 2
 
     def start(self, state: Array) -> None:
-        body = 2 + ("motor", "gearbox", "arm").index(self.port)
-        state[self.first_row + 1, self.lanes] = state[body, self.lanes]
+        state[self.first_row + 1, self.lanes] = state[self.speed_row, self.lanes]
 
-    def apply(self, motion: Motion) -> None:
+    def apply(self, motion: Instant) -> None:
         v = motion.speed(self.port, self.lanes)
         x, w = motion.state[self.first_row, self.lanes], motion.state[self.first_row + 1, self.lanes]
         natural = 2.0 * np.pi * self["frequency"]

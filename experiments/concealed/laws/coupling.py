@@ -42,6 +42,15 @@ class Backlash(Coupling):
         getattr(motion, f"{self.name}_deflection")[self.lanes] = d - np.clip(d, -self["half_gap"], self["half_gap"])
 
 
+class BacklashWithImpacts(Backlash):
+    """The same dead zone with nothing in the gap: the damper, too, works in contact alone, and the flanks hit each other."""
+
+    def apply(self, motion: Motion) -> None:
+        super().apply(motion)
+        contact = np.abs(self.deflection(motion)) > self["half_gap"]
+        getattr(motion, f"{self.name}_rate")[self.lanes] *= contact
+
+
 class TransmissionError(Coupling):
     """Kinematic offset of the gear, d = q_m + E(q_m) - q_g with E = amplitude sin(order q_m + phase).
 

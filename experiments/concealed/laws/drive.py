@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from experiments.concealed.laws.base import Array, Law, Motion
+from experiments.concealed.laws.base import Array, Instant, Law
 
 
 class InputDelay(Law):
@@ -32,10 +32,10 @@ class InputMap(Law):
 
     places: ClassVar[tuple[str, ...]] = ("input",)
 
-    def torque(self, m: Motion, u: Array) -> Array:
+    def torque(self, m: Instant, u: Array) -> Array:
         raise NotImplementedError
 
-    def apply(self, motion: Motion) -> None:
+    def apply(self, motion: Instant) -> None:
         motion.torque[self.lanes] = self.torque(motion, motion.torque[self.lanes])
 
 
@@ -44,7 +44,7 @@ class InputLag(InputMap):
 
     memory: ClassVar[int] = 1
 
-    def torque(self, m: Motion, u: Array) -> Array:
+    def torque(self, m: Instant, u: Array) -> Array:
         x = m.state[self.first_row, self.lanes]
         m.rates[self.first_row, self.lanes] = (u - x) / self["T"]
         return x.copy()
@@ -53,33 +53,41 @@ class InputLag(InputMap):
 class InputBias(InputMap):
     """u + bias."""
 
-    def torque(self, m: Motion, u: Array) -> Array:
+    def torque(self, m: Instant, u: Array) -> Array:
         return u + self["bias"]
+
+
+class InputGain(InputMap):
+    """gain u."""
+
+    def torque(self, m: Instant, u: Array) -> Array:
+        return self["gain"] * u
 
 
 class TorqueSaturation(InputMap):
     """u limited to +- limit."""
 
-    def torque(self, m: Motion, u: Array) -> Array:
+    def torque(self, m: Instant, u: Array) -> Array:
         return np.clip(u, -self["limit"], self["limit"])
 
 
 class ActuatorDeadzone(InputMap):
     """u less a dead zone of +- half_width."""
 
-    def torque(self, m: Motion, u: Array) -> Array:
+    def torque(self, m: Instant, u: Array) -> Array:
         return u - np.clip(u, -self["half_width"], self["half_width"])
 
 
 class TorqueFade(InputMap):
-    """Outside the library: torque that fades with speed (weak field, low bus voltage), u (1 - loss (w_m / 40)^2)."""
+    """Outside the library: torque that fades with speed (weak field, low bus voltage), u (1 - loss (v / top)^2)."""
 
-    def torque(self, m: Motion, u: Array) -> Array:
-        return u * (1.0 - self["loss"] * np.minimum((m.motor_speed[self.lanes] / 40.0) ** 2, 1.0))
+    def torque(self, m: Instant, u: Array) -> Array:
+        v = m.state[self.speed_row, self.lanes]
+        return u * (1.0 - self["loss"] * np.minimum((v / self["top"]) ** 2, 1.0))
 
 
 class OutputDelay(Law):
-    """The sensor shows the speed of `delay` seconds ago, interpolated between integration steps."""
+    """The sensor shows what was `delay` seconds ago, interpolated between integration steps."""
 
     places: ClassVar[tuple[str, ...]] = ("output",)
     _speeds: list[Array]
@@ -88,10 +96,10 @@ class OutputDelay(Law):
     def start(self, state: Array) -> None:
         self._late = self["delay"] / self.step
         depth = int(np.ceil(self._late.max())) + 2
-        self._speeds = [state[2, self.lanes].copy() for _ in range(depth)]  # newest last
+        self._speeds = [state[self.sensed_row, self.lanes].copy() for _ in range(depth)]  # newest last
 
     def remember(self, state: Array) -> None:
-        self._speeds.append(state[2, self.lanes].copy())
+        self._speeds.append(state[self.sensed_row, self.lanes].copy())
         self._speeds.pop(0)
 
     def measure(self, measured: Array, state: Array) -> None:
@@ -105,26 +113,35 @@ class OutputDelay(Law):
 
 
 class SensorLag(Law):
-    """First-order lag of the measured speed: T dx/dt = w_m - x."""
+    """First-order lag of what is measured: T dx/dt = y - x."""
 
     places: ClassVar[tuple[str, ...]] = ("body", "output")
     memory: ClassVar[int] = 1
 
     def start(self, state: Array) -> None:
-        state[self.first_row, self.lanes] = state[2, self.lanes]
+        state[self.first_row, self.lanes] = state[self.sensed_row, self.lanes]
 
-    def apply(self, motion: Motion) -> None:
+    def apply(self, motion: Instant) -> None:
         x = motion.state[self.first_row, self.lanes]
-        motion.rates[self.first_row, self.lanes] = (motion.motor_speed[self.lanes] - x) / self["T"]
+        motion.rates[self.first_row, self.lanes] = (motion.state[self.sensed_row, self.lanes] - x) / self["T"]
 
     def measure(self, measured: Array, state: Array) -> None:
         measured[self.lanes] = state[self.first_row, self.lanes]
 
 
 class SensorBias(Law):
-    """w_m + bias."""
+    """What is measured + bias."""
 
     places: ClassVar[tuple[str, ...]] = ("output",)
 
     def measure(self, measured: Array, state: Array) -> None:
         measured[self.lanes] += self["bias"]
+
+
+class SensorGain(Law):
+    """gain times what is measured."""
+
+    places: ClassVar[tuple[str, ...]] = ("output",)
+
+    def measure(self, measured: Array, state: Array) -> None:
+        measured[self.lanes] *= self["gain"]

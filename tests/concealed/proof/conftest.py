@@ -1,0 +1,37 @@
+"""A proof without a simulation and without the tool."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from experiments.concealed.proof import protocol
+from experiments.concealed.proof.files import sha256
+from tests.concealed.proof.by_hand import ANSWERS, VERDICTS
+
+
+@pytest.fixture
+def by_hand(monkeypatch: pytest.MonkeyPatch) -> Callable[[], list[str]]:
+    """Replace the generator and the tool; returns a function that tells which cases the tool was asked for so far."""
+    asked: list[str] = []
+
+    def draw_cases(planned: Any, seed: int, folder: Path, **_: Any) -> dict[str, dict[str, Any]]:
+        for name in ANSWERS:
+            (folder / name).mkdir(parents=True)
+            (folder / name / "dataset.toml").write_text(f'name = "{name} {seed}"\n')
+        return ANSWERS
+
+    def diagnose(case: Path, out: Path, time_limit: float) -> dict[str, Any]:
+        asked.append(case.name)
+        content = json.dumps(VERDICTS[case.name]).encode()
+        out.mkdir(parents=True, exist_ok=True)
+        (out / "verdict.json").write_bytes(content)
+        return {"sha256": sha256(content), "said": "said", "seconds": 1.0}
+
+    monkeypatch.setattr(protocol, "draw_cases", draw_cases)
+    monkeypatch.setattr("experiments.concealed.proof.diagnosing._diagnose", diagnose)
+    return lambda: sorted(asked)
