@@ -17,6 +17,7 @@ from greybox_torch.diagnose.evidence import sentences
 from greybox_torch.diagnose.final import finish
 from greybox_torch.diagnose.judgement import Judgement
 from greybox_torch.diagnose.locate import window_errors
+from greybox_torch.diagnose.noise import floor_known, times_noise
 from greybox_torch.diagnose.probability import confidence
 from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.diagnose.select import Search
@@ -26,6 +27,9 @@ from greybox_torch.estimate.problem import Problem, all_starts_free, make_proble
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulate.stepper import make_stepper
 from greybox_torch.simulate.substeps import choose_substeps
+
+CLEARLY_ABOVE_NOISE = 3.0
+"""How many times the noise an error must be to say, without a law that explains it, that something is missing."""
 
 
 @dataclass(frozen=True)
@@ -134,6 +138,7 @@ def diagnose(
         ranking=_ranking(search),
         traces=traces,
         complete=not interrupted,
+        unexplained=_unexplained(search) if interrupted and not effects else None,
     )
     final = augmented if effects else plain
     chosen = search.current if effects else search.plain
@@ -156,6 +161,12 @@ def _searched(search: Search) -> bool:
         search.prune()
         return True
     return False
+
+
+def _unexplained(search: Search) -> float | None:
+    """How many times the noise the model's error is, if that is too much to be chance or badly determined friction."""
+    times = times_noise(search.problem, search.plain)
+    return times if times > CLEARLY_ABOVE_NOISE and floor_known(search.problem) else None
 
 
 def _noise_weights(search: Search) -> np.ndarray:

@@ -118,6 +118,8 @@ class Verdict:
     traces: tuple[Trace, ...] = field(repr=False, default=())
     complete: bool = True
     """Whether the search ran to its end, rather than into a time limit or an interruption."""
+    unexplained: float | None = None
+    """How many times the noise the error was where the search was stopped before it found anything, if clearly more than noise."""
 
     @property
     def mismatch(self) -> bool:
@@ -127,6 +129,11 @@ class Verdict:
     @property
     def sentence(self) -> str:
         """The verdict in one sentence."""
+        if not self.effects and self.unexplained is not None:
+            return (
+                f"Something is missing from {self.model}: its error is {self.unexplained:.1f} times the noise. "
+                "The search was stopped before it could say what."
+            )
         if not self.effects and not self.complete:
             return f"Nothing was found to be missing from {self.model} before the search was stopped: no answer yet."
         if not self.effects:
@@ -161,7 +168,7 @@ class Verdict:
             "model": self.model,
             "seed": self.seed,
             "seconds": self.seconds,
-            "mismatch": self.mismatch,
+            "mismatch": self.mismatch or self.unexplained is not None,
             "complete": self.complete,
             "confidence": self.confidence,
             "sentence": self.sentence,

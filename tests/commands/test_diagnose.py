@@ -227,8 +227,15 @@ def test_stopped(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("greybox_torch.diagnose.run._Clock.seconds", property(lambda self: 10.0))
     folder = motor_folder(dead_zone=0.4)
     verdict = json.loads(diagnose(folder, "--json", "--time-limit", "1").stdout)
-    assert verdict["complete"] is False
+    assert verdict["complete"] is False and verdict["effects"] == []
+    assert verdict["mismatch"] is True and "times the noise" in verdict["sentence"]
     assert written(folder) == FILES
+
+
+def test_stopped_where_nothing_is_missing(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("greybox_torch.diagnose.run._Clock.seconds", property(lambda self: 10.0))
+    verdict = json.loads(diagnose(motor_folder(), "--json", "--time-limit", "1").stdout)
+    assert verdict["mismatch"] is False
 
 
 def test_strict_json(motor_folder: Make, finding: Callable[..., dict[str, Any]]) -> None:
