@@ -20,7 +20,7 @@ from typing import Any
 
 from experiments.recordings.cases import CASES, HERE, Case
 from experiments.recordings.table import row, table
-from greybox_torch.errors import UserError
+from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.files import json_text, write_text
 
 
@@ -54,7 +54,9 @@ def chosen(names: str) -> list[Case]:
     wanted = [name.strip() for name in names.split(",") if name.strip()] or list(by_name)
     unknown = [name for name in wanted if name not in by_name]
     if unknown:
-        raise UserError(f"--only: no recording is called {', '.join(unknown)}; expected some of {', '.join(by_name)}")
+        raise UserError(
+            f"--only: no recording is called {unknown[0]}{did_you_mean(unknown[0], by_name)}; expected some of {', '.join(by_name)}"
+        )
     return [by_name[name] for name in wanted]
 
 

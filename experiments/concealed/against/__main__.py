@@ -13,6 +13,7 @@ import argparse
 import sys
 import time
 from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
 
 from experiments.concealed.against.table import compared, table
@@ -62,7 +63,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """0 where every case was run, 1 where some could not be, 2 where the arguments are at fault."""
     options = _parsed(arguments)
     try:
-        failed = run(options.cases, options.out, _listed(options.methods, METHOD_NAMES), _listed(options.only))
+        methods = _listed(options.methods, METHOD_NAMES)
+        if "sindy" in methods and find_spec("pysindy") is None:
+            raise UserError("--methods sindy: pysindy is not installed; expected the extra [proof], or other methods")
+        failed = run(options.cases, options.out, methods, _listed(options.only))
         rows = compared(options.keys or options.cases, options.out, options.verdicts)
     except UserError as error:
         print(error, file=sys.stderr)

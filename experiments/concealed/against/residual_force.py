@@ -10,8 +10,8 @@ thousandth of how far a state moves in a sample, q how far the force may wander 
 measurement says nothing (a constant torque in a spring is the same as a constant twist).
 
 Source: B. M. Bell, "The iterated Kalman smoother as a Gauss-Newton method", SIAM J. Optimization 4(3), 1994; unknown forces as random
-walks: N. R. Kristensen, H. Madsen, S. B. Jørgensen, "A method for systematic improvement of stochastic grey-box models", Computers and Chemical
-Engineering 28, 2004.
+walks: N. R. Kristensen, H. Madsen, S. B. Jørgensen, "A method for systematic improvement of stochastic grey-box models", Computers and
+Chemical Engineering 28, 2004.
 """
 
 from __future__ import annotations
@@ -185,10 +185,10 @@ class Smoother:
         gradient[1:] -= self.joined[:-1, None] * (gap[:-1] @ following)
         diagonal[:, n_x, n_x] += weights.size**2
         gradient[:, n_x] -= weights.size**2 * force
-        return _solved(diagonal, following @ now[:-1], gradient)
+        return solved(diagonal, following @ now[:-1], gradient)
 
 
-def _solved(diagonal: np.ndarray, below: np.ndarray, right: np.ndarray) -> np.ndarray:
+def solved(diagonal: np.ndarray, below: np.ndarray, right: np.ndarray) -> np.ndarray:
     """The solution (N, m) of a symmetric block tridiagonal system with blocks (N, m, m) on and (N − 1, m, m) below the diagonal."""
     count, size = right.shape
     bands = np.zeros((2 * size, count, size))

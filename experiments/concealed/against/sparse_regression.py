@@ -16,7 +16,6 @@ dynamical systems", PNAS 113(15), 2016; A. A. Kaptanoglu et al., "PySINDy", Jour
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -25,8 +24,9 @@ import numpy as np
 from experiments.concealed.against.judge import Answer
 from experiments.concealed.against.plain import CHOSEN_ON, Plain
 from experiments.concealed.against.residual_force import Smoother
+from experiments.concealed.against.sparse_fit import Sparse, named, regress
 from experiments.concealed.against.sparse_terms import SparseTerms, columns, extended
-from experiments.concealed.against.terms import Term, terms
+from experiments.concealed.against.terms import terms
 from greybox_torch.diagnose.candidates import attach
 from greybox_torch.diagnose.final import finish
 from greybox_torch.diagnose.refit import Hypothesis, hypothesis, lengths
@@ -37,12 +37,6 @@ from greybox_torch.mechanisms.attachment import Attachment
 WANDER = (30.0, 1000.0)
 """Samples after which the missing force may have become as large as the forces that are there."""
 
-THRESHOLDS = (0.03, 0.1, 0.2, 0.4)
-"""Least root mean square of a term, as a share of that of the missing force."""
-
-MOST_TERMS = 12
-"""A regression that keeps more terms is not sparse, and is not considered."""
-
 SPARSER = 0.05
 """What share of the missing force's variance fewer terms may cost."""
 
@@ -52,25 +46,8 @@ LEAST = 0.05
 WORTH = 0.9
 """What share of the plain model's held-out error an answer may leave at most."""
 
-SPEAKS = 0.5
-"""A mechanism is named whose terms carry at least this share of what those of the strongest carry."""
-
 TIED = 0.9
 """Of ports that leave nearly the same error, the one with the fewest terms is the answer."""
-
-
-@dataclass(frozen=True)
-class Sparse:
-    """Terms with coefficients (n,) at a port, and what share of the missing force's variance they ``predicted`` on the last part.
-
-    ``gram`` (n, n): mean products of the terms, by which the size of what some of them carry is told.
-    """
-
-    port: str
-    terms: tuple[Term, ...]
-    coefficients: np.ndarray
-    gram: np.ndarray
-    predicted: float
 
 
 @dataclass(frozen=True)
@@ -143,61 +120,6 @@ def _regressed(plain: Plain) -> Iterator[Sparse]:
         best = max((s.predicted for s in found), default=-np.inf)
         if best > LEAST:
             yield min((s for s in found if s.predicted >= best - SPARSER), key=lambda s: (len(s.terms), -s.predicted))
-
-
-def regress(port: str, library: Sequence[Term], table: np.ndarray, force: np.ndarray, stop: int) -> Iterator[Sparse]:
-    """Sparse fits of a missing force (N,) by the columns ``table`` (N, n) over its first ``stop`` samples, one for every threshold.
-
-    Terms that speak for nothing are the plain model's own: they are projected out of everything before, and left to its parameters.
-    Columns that are then zero are left out. Coefficients are in units of the force per unit of the term.
-    """
-    from pysindy import STLSQ  # half a second, and a package that only the proof needs
-
-    own = np.array([not t.positive and not t.negative for t in library])
-    first, last = (
-        _without(table[part][:, own], np.column_stack([table[part], force[part]]))
-        for part in (slice(stop), slice(stop, None))
-    )
-    size, rough = np.sqrt(np.mean(first**2, axis=0)), np.sqrt(np.mean(table[:stop] ** 2, axis=0))
-    if not np.isfinite(size).all() or size[-1] == 0.0:
-        return
-    there = np.flatnonzero(~own & (size[:-1] > 1e-6 * np.maximum(rough, 1e-300)))
-    if not len(there):
-        return
-    for threshold in THRESHOLDS:
-        optimiser = STLSQ(threshold=threshold, alpha=1e-3 * stop)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # it warns where nothing passes the threshold, which is an answer too
-            optimiser.fit(first[:, there] / size[there], first[:, -1:] / size[-1])
-        weights = np.asarray(optimiser.coef_)[0]
-        kept = there[weights != 0.0]
-        if 0 < len(kept) <= MOST_TERMS:
-            coefficients = weights[weights != 0.0] * size[-1] / size[kept]
-            gram = first[:, kept].T @ first[:, kept] / stop
-            predicted = _predicted(last[:, kept] @ coefficients, last[:, -1])
-            yield Sparse(port, tuple(library[i] for i in kept), coefficients, gram, predicted)
-
-
-def _without(nuisance: np.ndarray, table: np.ndarray) -> np.ndarray:
-    """What a regression on ``nuisance`` (N, k) leaves of each column of ``table`` (N, n)."""
-    return table - nuisance @ np.linalg.lstsq(nuisance, table, rcond=None)[0] if nuisance.shape[1] else table
-
-
-def _predicted(prediction: np.ndarray, force: np.ndarray) -> float:
-    """The share of a force's variance that a prediction explains, whatever constant lies between them."""
-    spread = float(np.var(force))
-    return 1.0 - float(np.var(force - prediction)) / spread if spread > 0 else -np.inf
-
-
-def named(chosen: Sequence[Term], coefficients: np.ndarray, gram: np.ndarray) -> tuple[str, ...]:
-    """The mechanisms that terms with ``coefficients`` (n,) and mean products ``gram`` (n, n) speak for, the strongest first."""
-    said = np.array([t.speaks_for(c) for t, c in zip(chosen, coefficients, strict=True)])
-    sizes = {}
-    for mechanism in dict.fromkeys(said.tolist()):
-        part = np.where(said == mechanism, coefficients, 0.0)
-        sizes[mechanism] = float(np.sqrt(max(part @ gram @ part, 0.0)))
-    strongest = max(sizes.values())
-    return tuple(m for m, size in sorted(sizes.items(), key=lambda pair: -pair[1]) if size >= SPEAKS * strongest)
 
 
 def _entered(plain: Plain, sparse: Sparse) -> Entry | None:
