@@ -5,7 +5,7 @@ sequentially thresholded least squares, on the first part of the estimation expe
 missing force of the last part with the fewest terms. The plain model was tuned without these terms and its parameters lie: added as they
 are, the right terms often make it worse. So every port's terms are re-estimated jointly with the parameters on the first part, which is
 more than SINDy does, and ports are a contest of errors on the last: the answer is the best one, if it beats the plain model there. Its free
-run is judged twice, with coefficients as regressed and with everything re-estimated (``refit``).
+run is judged twice, with coefficients as regressed and with everything re-estimated on whole records.
 
 What it cannot see: one output lets one missing force at a time be reconstructed, so two effects at two ports are beyond it; and whatever
 has a memory is no function of the signals that are there.
