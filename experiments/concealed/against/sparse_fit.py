@@ -16,6 +16,9 @@ THRESHOLDS = (0.03, 0.1, 0.2, 0.4)
 MOST_TERMS = 12
 """A regression that keeps more terms is not sparse, and is not considered."""
 
+LEFT = 1e-2
+"""Least share of a term that what the model can do already must leave, for it to be told from that."""
+
 SPEAKS = 0.5
 """A mechanism is named whose terms carry at least this share of what those of the strongest carry."""
 
@@ -34,23 +37,25 @@ class Sparse:
     predicted: float
 
 
-def regress(port: str, library: Sequence[Term], table: np.ndarray, force: np.ndarray, stop: int) -> Iterator[Sparse]:
+def regress(
+    port: str, library: Sequence[Term], table: np.ndarray, own: np.ndarray, force: np.ndarray, stop: int
+) -> Iterator[Sparse]:
     """Sparse fits of a missing force (N,) by the columns ``table`` (N, n) over its first ``stop`` samples, one for every threshold.
 
-    Terms that speak for nothing are the plain model's own: they are projected out of everything before, and left to its parameters.
-    Columns that are then zero are left out. Coefficients are in units of the force per unit of the term.
+    What the plain model's own parameters can do (``own`` (N, k), :mod:`.own_terms`), and terms that speak for nothing, are projected out of
+    everything before, and left to the parameters. Columns of which little is then left are left out. Coefficients are in units of the force
+    per unit of the term.
     """
     from pysindy import STLSQ  # half a second, and a package that only the proof needs
 
-    own = np.array([not t.positive and not t.negative for t in library])
-    first, last = (
-        _without(table[part][:, own], np.column_stack([table[part], force[part]]))
-        for part in (slice(stop), slice(stop, None))
-    )
+    silent = np.array([not t.positive and not t.negative for t in library])
+    nuisance = np.column_stack([own, table[:, silent]])
+    both = np.column_stack([table, force])
+    first, last = (_without(nuisance[part], both[part]) for part in (slice(stop), slice(stop, None)))
     size, rough = np.sqrt(np.mean(first**2, axis=0)), np.sqrt(np.mean(table[:stop] ** 2, axis=0))
-    if not np.isfinite(size).all() or size[-1] == 0.0:
+    if not np.isfinite(size).all() or size[-1] <= 1e-12 * float(np.sqrt(np.mean(force[:stop] ** 2))):
         return
-    there = np.flatnonzero(~own & (size[:-1] > 1e-6 * np.maximum(rough, 1e-300)))
+    there = np.flatnonzero(~silent & (size[:-1] > LEFT * np.maximum(rough, 1e-300)))
     if not len(there):
         return
     for threshold in THRESHOLDS:
@@ -69,7 +74,9 @@ def regress(port: str, library: Sequence[Term], table: np.ndarray, force: np.nda
 
 def _without(nuisance: np.ndarray, table: np.ndarray) -> np.ndarray:
     """What a regression on ``nuisance`` (N, k) leaves of each column of ``table`` (N, n)."""
-    return table - nuisance @ np.linalg.lstsq(nuisance, table, rcond=None)[0] if nuisance.shape[1] else table
+    scale = np.sqrt(np.mean(nuisance**2, axis=0))
+    columns = nuisance[:, scale > 0] / scale[scale > 0]
+    return table - columns @ np.linalg.lstsq(columns, table, rcond=1e-10)[0] if columns.shape[1] else table
 
 
 def _predicted(prediction: np.ndarray, force: np.ndarray) -> float:

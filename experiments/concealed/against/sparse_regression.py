@@ -1,7 +1,8 @@
 """Residual regression in the manner of SINDy: which few terms, of a library, are the force that the model lacks?
 
 For every port the missing force is smoothed out of the recordings (:mod:`.residual_force`) and regressed on the library by pysindy's
-sequentially thresholded least squares, on the first part of the estimation experiments; threshold and smoothness are those that predict the
+sequentially thresholded least squares, on the first part of the estimation experiments, beside what the model's own parameters can do
+there already (:mod:`.own_terms`); threshold and smoothness are those that predict the
 missing force of the last part with the fewest terms. The plain model was tuned without these terms and its parameters lie: added as they
 are, the right terms often make it worse. So every port's terms are re-estimated jointly with the parameters on the first part, which is
 more than SINDy does, and ports are a contest of errors on the last: the answer is the best one, if it beats the plain model there. Its free
@@ -22,6 +23,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from experiments.concealed.against.judge import Answer
+from experiments.concealed.against.own_terms import own_columns
 from experiments.concealed.against.plain import CHOSEN_ON, Plain
 from experiments.concealed.against.residual_force import Smoother
 from experiments.concealed.against.sparse_fit import Sparse, named, regress
@@ -116,7 +118,8 @@ def _regressed(plain: Plain) -> Iterator[Sparse]:
         for wander in WANDER:
             smoothed = smoother.run(begin, wander)
             table = columns(plain.problem, model, attachment, smoothed.states)
-            found += regress(port.name, library, table, smoothed.force, split(plain))
+            own = own_columns(plain.problem, port.name, smoothed.states)
+            found += regress(port.name, library, table, own, smoothed.force, split(plain))
         best = max((s.predicted for s in found), default=-np.inf)
         if best > LEAST:
             yield min((s for s in found if s.predicted >= best - SPARSER), key=lambda s: (len(s.terms), -s.predicted))

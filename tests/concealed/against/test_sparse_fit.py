@@ -19,6 +19,7 @@ LIBRARY = (
     Term("tanh", ("speed",), lambda s: s.speed, "nonlinear_stiffness", "backlash"),
 )
 SPLIT = 1400
+NOTHING = np.zeros((2000, 0))
 
 
 def table(seed: int) -> np.ndarray:
@@ -30,7 +31,7 @@ def table(seed: int) -> np.ndarray:
 def test_a_planted_term_is_found_with_its_coefficient(seed: int, size: float, sign: float) -> None:
     columns = table(seed)
     noise = 0.02 * size * np.random.default_rng(seed + 1).standard_normal(len(columns))
-    found = list(regress("rotor", LIBRARY, columns, sign * size * columns[:, 1] + 40.0 + noise, SPLIT))
+    found = list(regress("rotor", LIBRARY, columns, NOTHING, sign * size * columns[:, 1] + 40.0 + noise, SPLIT))
     sparsest = min(found, key=lambda s: len(s.terms))
     assert [t.name for t in sparsest.terms] == ["v |v|"]  # and the constant, which speaks for nothing, is projected out
     assert sparsest.coefficients[0] == pytest.approx(sign * size, rel=0.02)
@@ -40,15 +41,27 @@ def test_a_planted_term_is_found_with_its_coefficient(seed: int, size: float, si
 
 def test_noise_is_not_predicted() -> None:
     force = np.random.default_rng(3).standard_normal(2000)
-    assert all(s.predicted < 0.05 for s in regress("rotor", LIBRARY, table(4), force, SPLIT))
+    assert all(s.predicted < 0.05 for s in regress("rotor", LIBRARY, table(4), NOTHING, force, SPLIT))
 
 
 @pytest.mark.parametrize("force", [np.zeros(2000), np.full(2000, np.nan)])
 def test_no_force_and_a_force_that_is_no_number_give_no_fit(force: np.ndarray) -> None:
-    assert list(regress("rotor", LIBRARY, table(5), force, SPLIT)) == []
+    assert list(regress("rotor", LIBRARY, table(5), NOTHING, force, SPLIT)) == []
 
 
 def test_mechanisms_are_named_by_what_their_terms_carry_together() -> None:
     gram = np.diag([1.0, 1.0, 1.0])
     chosen = (LIBRARY[0], LIBRARY[1], LIBRARY[3])
     assert named(chosen, np.array([0.1, 1.0, -0.8]), gram) == ("quadratic_drag", "backlash")
+
+
+def test_what_the_model_can_do_already_is_no_finding() -> None:
+    columns = table(6)
+    noise = 0.05 * np.random.default_rng(7).standard_normal(2000)
+    force = 3.0 * columns[:, 0] - 0.5 * columns[:, 1] + noise
+    found = list(regress("rotor", LIBRARY, columns, columns[:, :1], force, SPLIT))
+    assert found
+    assert all("v" not in [t.name for t in s.terms] for s in found)
+    sparsest = min(found, key=lambda s: len(s.terms))
+    assert [t.name for t in sparsest.terms] == ["v |v|"]
+    assert sparsest.coefficients[0] == pytest.approx(-0.5, rel=0.02)
