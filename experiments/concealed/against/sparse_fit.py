@@ -25,7 +25,7 @@ SPEAKS = 0.5
 
 @dataclass(frozen=True)
 class Sparse:
-    """Terms with coefficients (n,) at a port, and what share of the missing force's variance they ``predicted`` on the last part.
+    """Terms with coefficients (n,) at a port, and what share of the missing force's mean square they ``predicted`` on the last part.
 
     ``gram`` (n, n): mean products of the terms, by which the size of what some of them carry is told.
     """
@@ -80,9 +80,9 @@ def _without(nuisance: np.ndarray, table: np.ndarray) -> np.ndarray:
 
 
 def _predicted(prediction: np.ndarray, force: np.ndarray) -> float:
-    """The share of a force's variance that a prediction explains, whatever constant lies between them."""
-    spread = float(np.var(force))
-    return 1.0 - float(np.var(force - prediction)) / spread if spread > 0 else -np.inf
+    """The share of a force's mean square that a prediction explains: a constant force counts like any other."""
+    size = float(np.mean(force**2))
+    return 1.0 - float(np.mean((force - prediction) ** 2)) / size if size > 0 else -np.inf
 
 
 def named(chosen: Sequence[Term], coefficients: np.ndarray, gram: np.ndarray) -> tuple[str, ...]:

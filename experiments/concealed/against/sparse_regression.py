@@ -40,10 +40,10 @@ WANDER = (30.0, 1000.0)
 """Samples after which the missing force may have become as large as the forces that are there."""
 
 SPARSER = 0.05
-"""What share of the missing force's variance fewer terms may cost."""
+"""What share of the missing force's mean square fewer terms may cost."""
 
 LEAST = 0.05
-"""What share of the missing force's variance terms must predict on data they were not fitted to."""
+"""What share of the missing force's mean square terms must predict on data they were not fitted to."""
 
 WORTH = 0.9
 """What share of the plain model's held-out error an answer may leave at most."""

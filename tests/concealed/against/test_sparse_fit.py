@@ -65,3 +65,12 @@ def test_what_the_model_can_do_already_is_no_finding() -> None:
     sparsest = min(found, key=lambda s: len(s.terms))
     assert [t.name for t in sparsest.terms] == ["v |v|"]
     assert sparsest.coefficients[0] == pytest.approx(-0.5, rel=0.02)
+
+
+def test_a_constant_force_is_found_where_it_speaks_for_something() -> None:
+    bias = Term("1", ("speed",), lambda s: 1.0, "constant_bias", "constant_bias")
+    library = (*LIBRARY[:2], bias, LIBRARY[3])
+    noise = 0.05 * np.random.default_rng(9).standard_normal(2000)
+    sparsest = min(regress("rotor", library, table(8), NOTHING, 0.3 + noise, SPLIT), key=lambda s: len(s.terms))
+    assert [t.name for t in sparsest.terms] == ["1"]
+    assert sparsest.predicted > 0.9
