@@ -29,3 +29,22 @@ class Pendulum(GreyBoxModel):
 
     def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
         return {"position": x.position, "velocity": x.velocity}
+
+
+class PublishedPendulum(Pendulum):
+    """I d²θ/dt² = τ + τ_0 − m g l sin θ − F_v ω − F_c tanh(ω / ω_0): with the friction and the offset as published (source: see above).
+
+    The published sign of the velocity is smoothed over ω_0 = 0.02 rad/s.
+    """
+
+    name = "published_pendulum"
+    parameters = [
+        *Pendulum.declared_parameters,
+        Parameter("F_v", 0.0471, unit="N m s/rad", lower=0.0, description="viscous friction"),
+        Parameter("F_c", 0.1839, unit="N m", lower=0.0, description="Coulomb friction"),
+        Parameter("offset", -0.0759, unit="N m", description="torque offset"),
+    ]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        friction = p.F_v * x.velocity + p.F_c * (x.velocity / 0.02).tanh()
+        return super().derivative(x, u, p, port.replaced(pivot=port.pivot + p.offset - friction))

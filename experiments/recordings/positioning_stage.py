@@ -29,3 +29,18 @@ class PositioningStage(GreyBoxModel):
 
     def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
         return {"position": x.position}
+
+
+class PublishedPositioningStage(PositioningStage):
+    """M d²x/dt² = F − F_v v − F_c tanh(v / v_0) − offset: the published model (source: see above), its sign smoothed over v_0 = 1 mm/s."""
+
+    name = "published_positioning_stage"
+    parameters = [
+        *PositioningStage.declared_parameters,
+        Parameter("F_c", 20.3935, unit="N", lower=0.0, description="Coulomb friction"),
+        Parameter("offset", -3.1648, unit="N", description="constant force against the motor"),
+    ]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        friction = p.F_c * (x.velocity / 1e-3).tanh() + p.offset
+        return super().derivative(x, u, p, port.replaced(carriage=port.carriage - friction))

@@ -36,3 +36,19 @@ class Silverbox(GreyBoxModel):
 
     def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
         return {"deflection": x.deflection + p.y_0}
+
+
+class PublishedSilverbox(Silverbox):
+    """d²y/dt² = b (u + u_0) − k y − k_3 y³ − d dy/dt: with the cubic term of the spring that the circuit was built for (source: see above).
+
+    The source gives the form of the equation but no values: k_3 starts where the other start values make it matter.
+    """
+
+    name = "published_silverbox"
+    parameters = [
+        *Silverbox.declared_parameters,
+        Parameter("k_3", 5e5, unit="1/(s V)^2", description="cubic stiffness by mass"),
+    ]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return super().derivative(x, u, p, port.replaced(spring=port.spring + p.k_3 * x.deflection**3))

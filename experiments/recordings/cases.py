@@ -1,0 +1,167 @@
+"""Which recordings, what is concealed from their models, and which answers are right.
+
+An answer is a pair (port, mechanism). ``accept``, ``near`` and ``ports`` mean what they mean in the keys of the simulated cases
+(:mod:`experiments.concealed.effects`). Where a law contains the one that is concealed (Stribeck friction contains Coulomb friction) it is
+accepted. What nature added to these machines besides is nobody's to say: further findings are listed, and are neither hits nor misses.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).parent
+SHARED = HERE.parents[2] / "shared" / "recordings"
+
+PUBLISHED_ARM = str(SHARED / "robot_arm" / "dataset.toml")
+"""The card of the published problem lies beside the recordings of the arm."""
+
+Pair = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Where a finding states the concealed quantity: ``parameter`` of ``mechanism``, times ``sign``, over parameter ``over`` if given."""
+
+    mechanism: str
+    parameter: str
+    sign: float = 1.0
+    over: str = ""
+
+
+@dataclass(frozen=True)
+class Concealed:
+    """One piece of physics that the model lacks.
+
+    ``parameter`` is its name in the full published model, ``published`` its published value in ``unit`` (None where none was
+    published), ``readings`` how findings express it.
+    """
+
+    name: str
+    parameter: str
+    published: float | None
+    unit: str
+    accept: tuple[Pair, ...]
+    near: tuple[Pair, ...]
+    ports: tuple[str, ...]
+    readings: tuple[Reading, ...]
+
+
+@dataclass(frozen=True)
+class Case:
+    """A recording: the card whose model lacks something, what that is, and the card of the full published model.
+
+    ``published_model`` is the full model's file and class, empty where ``published_card`` names it itself.
+    """
+
+    name: str
+    folder: str
+    card: str
+    published_card: str
+    published_model: str
+    concealed: tuple[Concealed, ...]
+
+    @property
+    def recordings(self) -> Path:
+        """The folder that holds the recordings."""
+        return SHARED / self.folder
+
+
+def _friction(port: str, level: float, unit: str, *, behind: str = "") -> Concealed:
+    """Dry friction of a body; ``behind`` names the body that moves with it but for a twist, where the same law is nearly right.
+
+    That body was added, as near and never as right, after a first run had found the level there.
+    """
+    names = ("coulomb_friction", "stribeck_friction")
+    bodies = (port, behind) if behind else (port,)
+    return Concealed(
+        "Coulomb friction", "F_c", level, unit,
+        accept=tuple((port, name) for name in names),
+        near=tuple((b, n) for b in bodies for n in (*names, "presliding_hysteresis") if b != port or n not in names),
+        ports=bodies,
+        readings=(*(Reading(name, "F_c") for name in names), Reading("presliding_hysteresis", "F")),
+    )  # fmt: skip
+
+
+def _offset(port: str, parameter: str, value: float, unit: str, sign: float) -> Concealed:
+    """A constant force: the same at the body and at the actuator."""
+    return Concealed(
+        "constant force", parameter, value, unit,
+        accept=((port, "constant_bias"), ("actuator", "input_bias")),
+        near=((port, "coulomb_asymmetry"),),
+        ports=(port, "actuator"),
+        readings=(Reading("constant_bias", "bias", sign), Reading("input_bias", "bias", sign)),
+    )  # fmt: skip
+
+
+def _stiffness(port: str, parameter: str, value: float | None, unit: str) -> Concealed:
+    return Concealed(
+        "cubic stiffness", parameter, value, unit,
+        accept=((port, "nonlinear_stiffness"),),
+        near=((port, "hysteretic_spring"), (port, "backlash")),
+        ports=(port,),
+        readings=(Reading("nonlinear_stiffness", "k_3"),),
+    )  # fmt: skip
+
+
+def _viscous(value: float, unit: str) -> Concealed:
+    return Concealed(
+        "viscous friction", "F_v", value, unit,
+        accept=(("pivot", "viscous_friction"),),
+        near=(("pivot", "quadratic_drag"),),
+        ports=("pivot",),
+        readings=(Reading("viscous_friction", "c"), Reading("stribeck_friction", "c")),
+    )  # fmt: skip
+
+
+def _coupling_damping() -> Concealed:
+    """The library knows no linear damper of a coupling: its dry damping d_0 tanh(r / r_0) is one of d_0 / r_0 while r stays below r_0."""
+    return Concealed(
+        "arm damping", "d_a", 0.00283465, "N m s/rad",
+        accept=(("arm_spring", "nonlinear_damping"),),
+        near=(("arm_spring", "hysteretic_spring"), ("arm", "viscous_friction"), ("gearbox", "viscous_friction")),
+        ports=("arm_spring", "arm"),
+        readings=(Reading("nonlinear_damping", "d_0", over="r_0"),),
+    )  # fmt: skip
+
+
+def _arm(what: str, concealed: Concealed, suffix: str = "", published: str = PUBLISHED_ARM) -> Case:
+    name = f"arm without {concealed.name}{suffix}"
+    return Case(name, "robot_arm", f"robot_arm_without_{what}.toml", published, "", (concealed,))
+
+
+def _other(name: str, folder: str, file: str, published: str, *concealed: Concealed) -> Case:
+    return Case(name, folder, f"{file}.toml", f"{file}.toml", f"{file}.py:{published}", concealed)
+
+
+CASES = (
+    _arm("coulomb", _friction("motor", 0.74302635727901, "N m", behind="gearbox")),
+    _arm("coulomb_viscous_free", _friction("motor", 0.74302635727901, "N m", behind="gearbox"), " (all free)", "robot_arm_all_free.toml"),
+    _arm("cubic_stiffness", _stiffness("gear_spring", "k_g3", 24.178, "N m/rad^3")),
+    _arm("arm_damping", _coupling_damping()),
+    _other(
+        "EMPS", "emps", "positioning_stage", "PublishedPositioningStage",
+        _friction("carriage", 20.3935, "N"), _offset("carriage", "offset", -3.1648, "N", -1.0),
+    ),
+    _other(
+        "Silverbox", "silverbox", "silverbox", "PublishedSilverbox",
+        _stiffness("spring", "k_3", None, "1/(s V)^2"),
+    ),
+    _other(
+        "pendulum", "simple_pendulum", "pendulum", "PublishedPendulum",
+        _friction("pivot", 0.1839, "N m"), _viscous(0.0471, "N m s/rad"), _offset("pivot", "offset", -0.0759, "N m", 1.0),
+    ),
+)  # fmt: skip
+"""In the order of the table."""
+
+
+def key(case: Case) -> dict[str, Any]:
+    """The answer key that :func:`experiments.concealed.scoring.score` reads; the noise of real recordings is not known, so no floor."""
+    return {
+        "effects": [c.name for c in case.concealed],
+        "accept": [[list(pair) for pair in c.accept] for c in case.concealed],
+        "near": [[list(pair) for pair in c.near] for c in case.concealed],
+        "ports": [list(c.ports) for c in case.concealed],
+        "sigma": 0.0,
+    }

@@ -1,0 +1,133 @@
+"""What a verdict on a real recording is worth, and the tables: hits beside misses, estimates beside the published values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from experiments.concealed.scoring import score
+from experiments.recordings.cases import Case, Concealed, key
+
+
+def row(case: Case, verdict: Mapping[str, Any], fit: Mapping[str, Any]) -> dict[str, Any]:
+    """One recording scored, as it goes into results.json.
+
+    Args:
+        verdict: verdict.json of the model that lacks something.
+        fit: fit.json of the full published model.
+    """
+    answers = key(case)
+    scored = score(case.name, verdict, answers)
+    near = [pair for pairs in answers["near"] for pair in pairs]
+    findings = [
+        {
+            "port": f.port,
+            "mechanism": f.mechanism,
+            "probability": f.probability,
+            "right": f.right,
+            "near": not f.right and [f.port, f.mechanism] in near,
+        }
+        for f in scored.findings
+    ]
+    return {
+        "recording": case.name,
+        "concealed": [c.name for c in case.concealed],
+        "detected": scored.detected,
+        "named": scored.named,
+        "complete": verdict.get("complete", True),
+        "seconds": verdict["seconds"],
+        "found": [f for f in findings if f["right"] or f["near"]],
+        "besides": [f for f in findings if not (f["right"] or f["near"])],
+        "fit": [
+            {
+                "experiment": concealed["experiment"],
+                "role": concealed["role"],
+                "output": concealed["output"],
+                "without": concealed["refit"]["fit"],
+                "found": concealed["augmented"]["fit"],
+                "published": published["refit"]["fit"],
+            }
+            for concealed, published in zip(verdict["fit"], fit["fit"], strict=True)
+        ],
+        "estimates": [_estimate(c, verdict, fit) for c in case.concealed],
+    }
+
+
+def _estimate(concealed: Concealed, verdict: Mapping[str, Any], fit: Mapping[str, Any]) -> dict[str, Any]:
+    """The concealed quantity as published, as the full model's fit has it, and as the verdict states it (None where it does not)."""
+    full = fit["parameters"][concealed.parameter]
+    found = None
+    for reading in concealed.readings:
+        for effect in verdict["effects"]:
+            if found is None and effect["mechanism"] == reading.mechanism and effect["port"] in concealed.ports:
+                value = effect["parameters"][reading.parameter]
+                scale = reading.sign / (effect["parameters"][reading.over]["value"] if reading.over else 1.0)
+                std = None if value["std"] is None else abs(scale) * value["std"]
+                found = {"mechanism": effect["mechanism"], "value": scale * value["value"], "std": std}
+    return {
+        "parameter": concealed.parameter,
+        "shown": _shown(full),
+        "unit": concealed.unit,
+        "published": concealed.published,
+        "full_model": {"value": full["value"], "std": full["std_sandwich"]},
+        "found": found,
+    }
+
+
+def _shown(full: Mapping[str, Any]) -> bool:
+    """Whether the recordings show the quantity at all: fitted in the full model it is more than two standard deviations from zero.
+
+    What the publication measured in other ways and fixed is taken as shown.
+    """
+    return full["fixed"] or (full["std_sandwich"] is not None and abs(full["value"]) > 2 * full["std_sandwich"])
+
+
+def table(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Two Markdown tables: what was found and what it is worth, then the estimates."""
+    lines = [
+        "| recording | concealed | found of it | besides | named | validation fit [%]: without, found, published model | s |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for r in rows:
+        fits = "; ".join(
+            f"{f['output']} {f['without']:.1f}, {f['found']:.1f}, {f['published']:.1f}"
+            for f in r["fit"]
+            if f["role"] == "validation"
+        )
+        shown = sum(e["shown"] for e in r["estimates"])
+        named = f"{r['named']}/{len(r['concealed'])}" + ("" if shown == len(r["estimates"]) else f" ({shown} shown)")
+        cells = (
+            r["recording"],
+            ", ".join(r["concealed"]),
+            _list(r["found"]),
+            _list(r["besides"]),
+            named,
+            fits,
+            f"{r['seconds']:.0f}" + ("" if r["complete"] else ", time limit"),
+        )
+        lines.append(f"| {' | '.join(cells)} |")
+    lines += [
+        "",
+        "| recording | quantity | unit | published | full model fitted | found | as |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for r in rows:
+        for e in r["estimates"]:
+            found = e["found"]
+            cells = (
+                r["recording"], e["parameter"], e["unit"],
+                "" if e["published"] is None else f"{e['published']:.4g}",
+                _number(e["full_model"]),
+                "not stated" if found is None else _number(found),
+                "" if found is None else found["mechanism"],
+            )  # fmt: skip
+            lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
+
+
+def _list(findings: Sequence[Mapping[str, Any]]) -> str:
+    return ", ".join(f"{f['mechanism']} at {f['port']} ({f['probability']:.2f})" for f in findings) or "nothing"
+
+
+def _number(value: Mapping[str, Any]) -> str:
+    return f"{value['value']:.4g}" + ("" if value["std"] is None else f" ± {value['std']:.2g}")
