@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +24,17 @@ UNEXPLAINED = 0.6
 
 CEILING = 0.97
 """The most that is ever claimed."""
+
+
+UNNAMED_SO_FAR = 0.5
+"""The most that is claimed for a free curve where the search was stopped: names may not have been tried in its place."""
+
+
+def of_a_stopped_search(effects: Sequence[Effect]) -> tuple[Effect, ...]:
+    """The effects with what was not yet tried allowed for."""
+    return tuple(
+        replace(e, probability=min(e.probability, UNNAMED_SO_FAR)) if e.mechanism == "unknown" else e for e in effects
+    )
 
 
 def shared(chosen: Ranked, ranked: Sequence[Ranked]) -> tuple[float, tuple[Alternative, ...]]:

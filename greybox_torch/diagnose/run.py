@@ -18,7 +18,7 @@ from greybox_torch.diagnose.final import finish
 from greybox_torch.diagnose.judgement import Judgement
 from greybox_torch.diagnose.locate import window_errors
 from greybox_torch.diagnose.noise import floor_known, times_noise
-from greybox_torch.diagnose.probability import confidence
+from greybox_torch.diagnose.probability import confidence, of_a_stopped_search
 from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.diagnose.select import Search
 from greybox_torch.diagnose.verdict import Verdict
@@ -122,6 +122,8 @@ def diagnose(
         augmented = finish(search.current, substeps, device=device) if search.current.effects else plain
         judged = Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
     effects = describe(search, augmented, substeps, judged.sums, gains) if search.current.effects else ()
+    if interrupted:
+        effects = of_a_stopped_search(effects)
     traces = judged.traces(bool(effects))
     detected = detect(judged.problem, traces)
     clock.stage("validation and report data", at)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from greybox_torch.diagnose.held_out import Gain, gain
 from greybox_torch.diagnose.leaders import Leader
 from greybox_torch.diagnose.name import Ranked, sureness
-from greybox_torch.diagnose.probability import CEILING, shared
+from greybox_torch.diagnose.probability import CEILING, of_a_stopped_search, shared
+from greybox_torch.diagnose.verdict import Effect
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction
@@ -128,3 +131,11 @@ def test_the_same_mechanism_at_another_order_is_no_rival_but_at_another_port_is(
     probability, alternatives = shared(chosen, [chosen, elsewhere])
     assert [(a.port, a.mechanism) for a in alternatives] == [("load", "torque_ripple")]
     assert probability + alternatives[0].probability == pytest.approx(CEILING, abs=1e-3)
+
+
+def test_a_stopped_search_is_not_sure_of_a_curve() -> None:
+    """Names may not have been tried in its place."""
+    curve = Effect("motor", "unknown", 0.97, ("speed",), "", {}, 0.5, (), None)
+    named = replace(curve, mechanism="backlash", port="gear_spring")
+    less, same = of_a_stopped_search((curve, named))
+    assert less.probability == 0.5 and same == named
