@@ -77,7 +77,10 @@ def gain(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> Gain:
     """What ``after`` removes of the error of ``before``, at the window length where that is surest.
 
     The share is a ratio of sums over windows; its standard error is that of a ratio estimator (W. G. Cochran, Sampling Techniques, 1977).
+    Where the model ``before`` cannot be simulated at all, everything is gained.
     """
+    if after and not before:
+        return Gain(1.0, 0.0)
     found = []
     for old, new in zip(before, after, strict=False):
         count, total = len(old.energies), float(old.energies.sum())
