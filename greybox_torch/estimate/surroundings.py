@@ -1,0 +1,130 @@
+"""Where the signals around every port moved in the recordings."""
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.mechanisms.attachment import position_unit
+from greybox_torch.mechanisms.mechanism import Range, Surroundings
+from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
+from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
+from greybox_torch.simulate.stepper import Stepper, whole_records
+
+
+def survey(model: GreyBoxModel, problem: Problem, stepper: Stepper, substeps: int) -> dict[str, Surroundings]:
+    """Ranges of the signals around every port of ``model``, along the free run of ``problem`` (of that model, or of it augmented)."""
+    run = stepper.run(
+        problem.driving_tape,
+        whole_records(problem.tape),
+        problem.values,
+        problem.initial,
+        substeps=substeps,
+        keep_states=True,
+    )
+    assert run.states is not None
+    pieces = [run.states[e, :n] for e, n in enumerate(problem.tape.lengths)]
+    states = np.concatenate(pieces)[:, : len(model.states)]
+    index = np.concatenate(
+        [np.arange(problem.tape.span(e).start, problem.tape.span(e).stop) for e in range(len(pieces))]
+    )
+    x = Signals("state", {s.name: torch.as_tensor(states[:, i]) for i, s in enumerate(model.states)})
+    u = Signals("input", {s.name: torch.as_tensor(problem.tape.u[i, index]) for i, s in enumerate(model.inputs)})
+    values = dict(zip(problem.names, problem.values, strict=True))
+    p = Signals(
+        "parameter", {q.name: torch.tensor(values[q.name], dtype=torch.float64) for q in model.declared_parameters}
+    )
+    times = np.concatenate([problem.tape.time(e) for e in range(len(pieces))])
+    return {port.name: _around(model, port, x, u, p, times, problem) for port in model.all_ports}
+
+
+def _around(
+    model: GreyBoxModel, port: Port, x: Signals, u: Signals, p: Signals, times: np.ndarray, problem: Problem
+) -> Surroundings:
+    values = {name: _evaluated(signal, x, u, p, times) for name, signal in port.signals.items()}
+    if isinstance(port, Body) and "position" not in values:
+        values["position"] = _integrated(values["speed"], problem)
+    if isinstance(port, Coupling):
+        body = driving_body(model.ports)
+        if body is not None:
+            if body.position is not None:
+                values["position"] = _evaluated(body.position, x, u, p, times)
+            else:
+                values["position"] = _integrated(_evaluated(body.speed, x, u, p, times), problem)
+            if body.load is not None and _turns_with(port, body, x, u, p):
+                values["load"] = _evaluated(body.load, x, u, p, times)
+    if isinstance(port, Actuator | Coupling) and (body := driving_body(model.ports)) is not None:
+        values["speed"] = _evaluated(body.speed, x, u, p, times)
+    if isinstance(port, Sensor):
+        row = [o.name for o in model.outputs].index(port.output)
+        values["output"] = problem.tape.y[row][~np.isnan(problem.tape.y[row])]
+    values["time"] = times
+    units = _units(model, port)
+    return Surroundings(
+        {name: _range(v) for name, v in values.items()},
+        units,
+        _force_unit(port, units),
+        float(np.median(problem.tape.dt)),
+    )
+
+
+def _turns_with(coupling: Coupling, body: Body, x: Signals, u: Signals, p: Signals) -> bool:
+    """Whether a body's speed is one of the two that make a coupling's deflection change."""
+    if not isinstance(body.speed, str) or isinstance(coupling.rate, str):
+        return False
+    faster = x.replaced(**{body.speed: x[body.speed] + 1.0})
+    return bool(torch.as_tensor(coupling.rate(faster, u, p) != coupling.rate(x, u, p)).any())
+
+
+def _evaluated(signal: Signal, x: Signals, u: Signals, p: Signals, times: np.ndarray) -> np.ndarray:
+    value = x[signal] if isinstance(signal, str) else signal(x, u, p)
+    return np.broadcast_to(np.asarray(value, dtype=float), times.shape)
+
+
+def _integrated(speed: np.ndarray, problem: Problem) -> np.ndarray:
+    dt, done, pieces = problem.tape.dt, 0, []
+    for e, n in enumerate(problem.tape.lengths):
+        step = dt[problem.tape.span(e)]
+        pieces.append(np.concatenate([[0.0], np.cumsum(speed[done : done + n - 1] * step[:-1])]))
+        done += n
+    return np.concatenate(pieces)
+
+
+def _range(values: np.ndarray) -> Range:
+    finite = values[np.isfinite(values)]
+    if not len(finite):
+        return Range(-1.0, 1.0, 1.0)
+    return Range(float(finite.min()), float(finite.max()), float(np.sqrt(np.mean(finite**2))))
+
+
+def _units(model: GreyBoxModel, port: Port) -> dict[str, str]:
+    of = {s.name: s.unit for s in (*model.states, *model.inputs)}
+    units = {name: of[signal] for name, signal in port.signals.items() if isinstance(signal, str) and signal in of}
+    if isinstance(port, Body):
+        units["position"] = position_unit(model, port)
+    if isinstance(port, Coupling):
+        if "deflection" in units and "rate" not in units:
+            units["rate"] = f"{units['deflection']}/s"
+        if "rate" in units and "deflection" not in units:
+            units["deflection"] = units["rate"].removesuffix("/s")
+    if isinstance(port, Actuator):
+        units["input"] = of[port.input]
+    body = driving_body(model.ports)
+    if isinstance(port, Actuator | Coupling) and body is not None and isinstance(body.speed, str):
+        units["speed"] = of[body.speed]
+    if isinstance(port, Sensor):
+        units["output"] = next(o.unit for o in model.outputs if o.name == port.output)
+    units["time"] = "s"
+    return units
+
+
+def _force_unit(port: Port, units: dict[str, str]) -> str:
+    if isinstance(port, Actuator):
+        return units["input"]
+    if isinstance(port, Sensor):
+        return units["output"]
+    if isinstance(port, Balance):
+        return f"{units['level']}/s" if units.get("level") else ""
+    place = units.get("position" if isinstance(port, Body) else "deflection", "")
+    return {"rad": "N m", "m": "N"}.get(place, "")
