@@ -1,0 +1,7 @@
+"""The hybrid: a network at a port of a physical model, trained on sequences and polished by Gauss-Newton."""
+
+from greybox_torch.train.hybrid import Hybrid, attach_network, default_port
+from greybox_torch.train.settings import TrainingSettings
+from greybox_torch.train.train import Report, Trained, train
+
+__all__ = ["Hybrid", "Report", "Trained", "TrainingSettings", "attach_network", "default_port", "train"]

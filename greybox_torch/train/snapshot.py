@@ -1,0 +1,91 @@
+"""A training on disk: one safetensors file with the arrays, and the rest as JSON in its header.
+
+One file, so that a kill at any moment leaves the one before or this one whole. Nothing in it is executed on loading.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from safetensors import SafetensorError, safe_open
+from safetensors.numpy import save
+
+from greybox_torch.errors import UserError
+from greybox_torch.files import write_all
+from greybox_torch.train.state import Epoch, TrainingState
+
+SCHEMA = "greybox-training/1"
+ARRAYS = ("z", "best", "first", "second", "starts")
+NUMBERS = ("lesson", "epoch", "best_loss", "waited", "steps", "caution")
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """``about`` says which training it is (data, model, network, settings); ``state`` where that stands; ``physics`` (n_p,) and
+    ``initial`` (E, n_x) what the physics alone was estimated at, ``scale`` (d,) and ``mean_square`` what the unknowns are measured by.
+    """
+
+    about: Mapping[str, Any]
+    state: TrainingState
+    physics: np.ndarray
+    initial: np.ndarray
+    scale: np.ndarray
+    mean_square: float
+
+
+def save_snapshot(path: Path, snapshot: Snapshot) -> None:
+    """Write ``snapshot`` to ``path``, whole or not at all. Raises UserError where it cannot be written."""
+    state = snapshot.state
+    arrays = {name: np.ascontiguousarray(getattr(state, name)) for name in ARRAYS}
+    arrays |= {"physics": snapshot.physics, "initial": np.ascontiguousarray(snapshot.initial), "scale": snapshot.scale}
+    content = {
+        "about": dict(snapshot.about),
+        "numbers": {name: getattr(state, name) for name in NUMBERS},
+        "generator": state.generator,
+        "history": [asdict(epoch) for epoch in state.history],
+        "mean_square": snapshot.mean_square,
+    }
+    write_all({path: save(arrays, {"schema": SCHEMA, "training": json.dumps(content)})})
+
+
+def load_snapshot(path: Path, about: Mapping[str, Any]) -> Snapshot:
+    """The snapshot at ``path``, if it is of the training ``about``.
+
+    Raises:
+        UserError: no such file, a damaged one, or one of another training.
+    """
+    if not path.is_file():
+        raise UserError(f"--resume: {path}: no such file; expected what an interrupted training has left there")
+    try:
+        with safe_open(path, framework="np") as file:
+            header = file.metadata() or {}
+            arrays = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118 (it is not a mapping)
+        if header.get("schema") != SCHEMA:
+            raise UserError(f'--resume: {path}: schema is {json.dumps(header.get("schema"))}, expected "{SCHEMA}"')
+        content = json.loads(header["training"])
+        _check_same(path, content["about"], about)
+        history = [Epoch(**entry) for entry in content["history"]]
+        state = TrainingState(
+            generator=content["generator"], history=history, **content["numbers"], **{n: arrays[n] for n in ARRAYS}
+        )
+        return Snapshot(
+            about, state, arrays["physics"], arrays["initial"], arrays["scale"], float(content["mean_square"])
+        )
+    except (SafetensorError, json.JSONDecodeError, KeyError, TypeError, ValueError) as error:
+        raise UserError(f"--resume: {path}: damaged ({type(error).__name__}: {error}); train without --resume") from None
+
+
+def _check_same(path: Path, found: Mapping[str, Any], expected: Mapping[str, Any]) -> None:
+    """Raises UserError at the first thing in which the training that was interrupted is another."""
+    wanted = json.loads(json.dumps(dict(expected)))
+    for name in sorted({*found, *wanted}):
+        if found.get(name) != wanted.get(name):
+            raise UserError(
+                f"--resume: {path}: its {name} is {json.dumps(found.get(name))}, and now it is {json.dumps(wanted.get(name))}; "
+                "expected the training that was interrupted, with the same data, model and options"
+            )
