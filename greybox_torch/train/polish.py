@@ -8,17 +8,17 @@ estimated once more, on all samples of the estimation experiments.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from greybox_torch.estimate.free_run import FreeRun, simulate
 from greybox_torch.estimate.levenberg_marquardt import Optimum, Quadratic, Settings, minimise
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.estimate.window_fit import fit_windows
 from greybox_torch.simulate.stepper import Stepper
 from greybox_torch.train.course import without_samples
 from greybox_torch.train.lessons import Course
+from greybox_torch.train.physics import on_whole_records, windows_in_turn, with_physics
 from greybox_torch.train.unknowns import Unknowns
 
 WEIGHTS = (1.0, 10.0, 100.0)
@@ -26,6 +26,9 @@ WEIGHTS = (1.0, 10.0, 100.0)
 
 WINDOW_SETTINGS = Settings(iterations=25, tolerance=1e-3, trials=6)
 RECORD_SETTINGS = Settings(iterations=60, tolerance=1e-6)
+LONGEST_PART = 4
+"""Windows of this part of the longest record are the last on the way to whole records."""
+
 LAST_SETTINGS = Settings(iterations=100, tolerance=1e-8)
 
 Told = Callable[[str], None]
@@ -85,44 +88,53 @@ class PenalisedRun:
         )
 
 
-def polish(course: Course, z: np.ndarray, starts: np.ndarray, physics: Problem, plain: Stepper, told: Told) -> Polished:
+def polish(course: Course, z: np.ndarray, physics: Problem, plain: Stepper, told: Told) -> Polished:
     """From the unknowns ``z`` (d,) that the windows were left with to the optimum of whole records.
 
     Args:
-        starts: of the longest windows, (W, n_x).
         physics: the plain model at its own optimum, on the same records, and ``plain`` its stepper.
         told: is told what is being done.
     """
-    hybrid = course.unknowns.problem(z)
+    hybrid = course.unknowns.hybrid.problem
     told("Gauss-Newton on windows")
-    masked = without_samples(hybrid, course.mask)
-    windows = fit_windows(
-        masked, course.stepper, course.lengths[-1], starts=starts, substeps=course.substeps, settings=WINDOW_SETTINGS
-    )
-    begun = masked if windows is None else masked.with_values(windows.problem.values)
-    choices, found = [_physics_alone(course, physics, plain)], {}
-    for factor in WEIGHTS:
-        weight = factor * course.settings.penalty
+    begun = [_by_windows(course, course.unknowns.values(point)) for point in (z, course.unknowns.start)]
+    alone = _physics_alone(course, physics, plain)
+    trials: list[tuple[Choice, Problem]] = []
+    first, *others = (factor * course.settings.penalty for factor in WEIGHTS)
+    for weight in (first, *others):
         told(f"Gauss-Newton on whole records, penalty {weight:g}")
-        for start in (begun, masked):
-            run = FreeRun(start, course.stepper, course.substeps)
-            optimum = _run(course, run, weight).minimum(RECORD_SETTINGS)
-            if optimum is not None:
-                at = run.at(optimum.point)
-                choice = Choice(weight, held_out_error(hybrid, at, course))
-                if choice.held_out < min((c.held_out for c in choices if c.weight == weight), default=np.inf):
-                    found[choice] = at
-                choices.append(choice)
+        found = [trial for start in begun if (trial := _trial(course, start, weight)) is not None]
+        if found:
+            trials.append(min(found, key=lambda trial: trial[0].held_out))
+            begun = [trials[-1][1]]
+    choices = (alone, *(choice for choice, _ in trials))
     chosen = min(choices, key=lambda c: c.held_out)
     if chosen.weight is None:
-        return Polished(_at_rest(course.unknowns, hybrid, physics), chosen, tuple(choices), None)
-    told(f"on all samples, penalty {chosen.weight:g}")
-    everything = hybrid.with_values(found[chosen].values, found[chosen].initial)
-    run = FreeRun(everything, course.stepper, course.substeps)
-    optimum = _run(course, run, chosen.weight).minimum(LAST_SETTINGS)
+        return Polished(_at_rest(course.unknowns, hybrid, physics), chosen, choices, None)
+    told(f"Gauss-Newton on all samples, penalty {chosen.weight:g}")
+    best = next(problem for choice, problem in trials if choice is chosen)
+    run = FreeRun(replace(best, tape=hybrid.tape), course.stepper, course.substeps)
+    optimum = PenalisedRun(run, course.unknowns, chosen.weight * course.mean_square).minimum(LAST_SETTINGS)
+    return Polished(run.problem if optimum is None else run.at(optimum.point), chosen, choices, optimum)
+
+
+def _by_windows(course: Course, values: np.ndarray) -> Problem:
+    """The hybrid begun at ``values`` (n_p,), led through windows of rising lengths without the held-out stretches."""
+    masked = without_samples(course.unknowns.hybrid.problem, course.mask).with_values(values)
+    longest = max(course.lengths[-1], int(masked.tape.lengths.max()) // LONGEST_PART)
+    lengths = [*course.lengths, *([longest] if longest > course.lengths[-1] else [])]
+    size = course.unknowns.force
+    found = windows_in_turn(masked, course.stepper, lengths, course.substeps, size, WINDOW_SETTINGS)
+    return on_whole_records(found[-1], masked) if found else masked
+
+
+def _trial(course: Course, start: Problem, weight: float) -> tuple[Choice, Problem] | None:
+    run = FreeRun(start, course.stepper, course.substeps)
+    optimum = PenalisedRun(run, course.unknowns, weight * course.mean_square).minimum(RECORD_SETTINGS)
     if optimum is None:
-        return Polished(everything, chosen, tuple(choices), None)
-    return Polished(run.at(optimum.point), chosen, tuple(choices), optimum)
+        return None
+    at = run.at(optimum.point)
+    return Choice(weight, held_out_error(course.unknowns.hybrid.problem, at, course)), at
 
 
 def held_out_error(complete: Problem, at: Problem, course: Course) -> float:
@@ -138,10 +150,6 @@ def _error(complete: Problem, simulated: np.ndarray, mask: np.ndarray) -> float:
     return value if np.isfinite(value) else float("inf")
 
 
-def _run(course: Course, run: FreeRun, weight: float) -> PenalisedRun:
-    return PenalisedRun(run, course.unknowns, weight * course.mean_square)
-
-
 def _physics_alone(course: Course, physics: Problem, plain: Stepper) -> Choice:
     """The plain model on the same footing: estimated without the held-out stretches, unless it is frozen."""
     run = FreeRun(without_samples(physics, course.mask), plain, course.substeps)
@@ -155,7 +163,7 @@ def _physics_alone(course: Course, physics: Problem, plain: Stepper) -> Choice:
 
 def _at_rest(unknowns: Unknowns, hybrid: Problem, physics: Problem) -> Problem:
     """The hybrid with its network at zero and everything else as the physics alone has it."""
-    values, own = hybrid.values.copy(), dict(zip(physics.names, physics.values, strict=True))
-    for k, name in enumerate(hybrid.names):
-        values[k] = own.get(name, 0.0 if unknowns.hybrid.heights[k] else hybrid.values[k])
-    return hybrid.with_values(values)
+    values = np.where(unknowns.hybrid.heights, 0.0, hybrid.values)
+    initial = hybrid.initial.copy()
+    initial[:, : physics.initial.shape[1]] = physics.initial
+    return with_physics(hybrid.with_values(values, initial), physics.values)

@@ -36,7 +36,7 @@ class TrainingSettings:
     factors: tuple[int, ...] = (1, 2, 4)
     warm_up: float = 0.15
     held_out: float = 0.2
-    learning_rate: float = 0.03
+    learning_rate: float = 0.01
     clip: float = 1.0
     patience: int = 40
     refresh: int = 20

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from safetensors.numpy import save
 
 from greybox_torch.errors import UserError
 from greybox_torch.files import write_all
+from greybox_torch.train.physics import Physics
 from greybox_torch.train.state import Epoch, TrainingState
 
 SCHEMA = "greybox-training/1"
@@ -26,14 +27,13 @@ NUMBERS = ("lesson", "epoch", "best_loss", "waited", "steps", "caution")
 
 @dataclass(frozen=True)
 class Snapshot:
-    """``about`` says which training it is (data, model, network, settings); ``state`` where that stands; ``physics`` (n_p,) and
-    ``initial`` (E, n_x) what the physics alone was estimated at, ``scale`` (d,) and ``mean_square`` what the unknowns are measured by.
+    """``about`` says which training it is (data, model, network, settings); ``state`` where that stands; ``physics`` what the physics
+    alone was estimated at, ``scale`` (d,) and ``mean_square`` what the unknowns are measured by.
     """
 
     about: Mapping[str, Any]
     state: TrainingState
-    physics: np.ndarray
-    initial: np.ndarray
+    physics: Physics
     scale: np.ndarray
     mean_square: float
 
@@ -42,7 +42,7 @@ def save_snapshot(path: Path, snapshot: Snapshot) -> None:
     """Write ``snapshot`` to ``path``, whole or not at all. Raises UserError where it cannot be written."""
     state = snapshot.state
     arrays = {name: np.ascontiguousarray(getattr(state, name)) for name in ARRAYS}
-    arrays |= {"physics": snapshot.physics, "initial": np.ascontiguousarray(snapshot.initial), "scale": snapshot.scale}
+    arrays |= {"scale": snapshot.scale, **_physics_arrays(snapshot.physics)}
     content = {
         "about": dict(snapshot.about),
         "numbers": {name: getattr(state, name) for name in NUMBERS},
@@ -53,31 +53,62 @@ def save_snapshot(path: Path, snapshot: Snapshot) -> None:
     write_all({path: save(arrays, {"schema": SCHEMA, "training": json.dumps(content)})})
 
 
-def load_snapshot(path: Path, about: Mapping[str, Any]) -> Snapshot:
+def check_snapshot(path: Path, about: Mapping[str, Any]) -> None:
+    """Raises UserError unless the file at ``path`` is a snapshot of the training ``about``."""
+    _read(path, about)
+
+
+def load_snapshot(path: Path, about: Mapping[str, Any], physics: Physics) -> Snapshot:
     """The snapshot at ``path``, if it is of the training ``about``.
+
+    Args:
+        physics: as estimated now; the snapshot has it with the numbers as they were then.
 
     Raises:
         UserError: no such file, a damaged one, or one of another training.
     """
+    arrays, content = _read(path, about)
+    try:
+        history = [Epoch(**entry) for entry in content["history"]]
+        state = TrainingState(
+            generator=content["generator"], history=history, **content["numbers"], **{n: arrays[n] for n in ARRAYS}
+        )
+        then = _with_arrays(physics, arrays)
+        return Snapshot(about, state, then, arrays["scale"], float(content["mean_square"]))
+    except (KeyError, TypeError, ValueError) as error:
+        raise _damaged(path, error) from None
+
+
+def _read(path: Path, about: Mapping[str, Any]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     if not path.is_file():
         raise UserError(f"--resume: {path}: no such file; expected what an interrupted training has left there")
     try:
         with safe_open(path, framework="np") as file:
             header = file.metadata() or {}
             arrays = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118 (it is not a mapping)
-        if header.get("schema") != SCHEMA:
-            raise UserError(f'--resume: {path}: schema is {json.dumps(header.get("schema"))}, expected "{SCHEMA}"')
+        schema = header.get("schema")
+        if schema != SCHEMA:
+            raise UserError(f'--resume: {path}: schema is {json.dumps(schema)}, expected "{SCHEMA}"')
         content = json.loads(header["training"])
         _check_same(path, content["about"], about)
-        history = [Epoch(**entry) for entry in content["history"]]
-        state = TrainingState(
-            generator=content["generator"], history=history, **content["numbers"], **{n: arrays[n] for n in ARRAYS}
-        )
-        return Snapshot(
-            about, state, arrays["physics"], arrays["initial"], arrays["scale"], float(content["mean_square"])
-        )
     except (SafetensorError, json.JSONDecodeError, KeyError, TypeError, ValueError) as error:
-        raise UserError(f"--resume: {path}: damaged ({type(error).__name__}: {error}); train without --resume") from None
+        raise _damaged(path, error) from None
+    return arrays, content
+
+
+def _damaged(path: Path, error: Exception) -> UserError:
+    return UserError(f"--resume: {path}: damaged ({type(error).__name__}: {error}); train without --resume")
+
+
+def _physics_arrays(physics: Physics) -> dict[str, np.ndarray]:
+    problem = physics.result.problem
+    initial = np.ascontiguousarray(problem.initial)
+    return {"physics": problem.values, "initial": initial, "short": np.ascontiguousarray(physics.values)}
+
+
+def _with_arrays(physics: Physics, arrays: Mapping[str, np.ndarray]) -> Physics:
+    problem = physics.result.problem.with_values(arrays["physics"], arrays["initial"])
+    return Physics(replace(physics.result, problem=problem), arrays["short"])
 
 
 def _check_same(path: Path, found: Mapping[str, Any], expected: Mapping[str, Any]) -> None:

@@ -12,9 +12,9 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.errors import UserError
-from greybox_torch.estimate.fit import FitResult, fit
+from greybox_torch.estimate.fit import FitResult
 from greybox_torch.estimate.free_run import FreeRun
-from greybox_torch.estimate.problem import Problem, make_problem
+from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.estimate.termination import Termination
 from greybox_torch.estimate.uncertainty import uncertainty
@@ -25,9 +25,10 @@ from greybox_torch.train.gradients import make_gradient
 from greybox_torch.train.gradients.tangents import TangentsGradient
 from greybox_torch.train.hybrid import Hybrid, attach_network, default_port, make_network, port_named
 from greybox_torch.train.lessons import Course, descend
+from greybox_torch.train.physics import Physics, estimate_physics, with_physics
 from greybox_torch.train.polish import Polished, polish
 from greybox_torch.train.settings import TrainingSettings
-from greybox_torch.train.snapshot import Snapshot, load_snapshot, save_snapshot
+from greybox_torch.train.snapshot import Snapshot, check_snapshot, load_snapshot, save_snapshot
 from greybox_torch.train.state import Epoch, TrainingState
 from greybox_torch.train.unknowns import Unknowns
 
@@ -96,7 +97,7 @@ def train(
     learner = make_network(net, site, signals, **{"seed": settings.seed, **(network or {})})
     if not data.estimation():
         raise UserError(f'{data.path}: no experiment has the role "estimation"; expected at least one to train on')
-    problem = make_problem(data, model, data.estimation())
+    problem = all_starts_free(data, make_problem(data, model, data.estimation()))
     lengths = tuple(window_lengths(problem.tape, settings))
     about = {
         "data": data.sha256,
@@ -106,18 +107,21 @@ def train(
         "network": {"kind": net, **learner.options(), "inputs": list(learner.inputs)},
         "settings": settings.as_json(),
     }
-    before = load_snapshot(_path(snapshot), about) if resume else None
+    if resume:
+        check_snapshot(_path(snapshot), about)
     tell(Report("estimating the physics"))
     plain = make_stepper(model, problem.free_names, device=device)
-    physics = fit(problem, stepper=plain, device=device, seed=settings.seed, starts=1)
-    if before is not None:
-        physics = replace(physics, problem=physics.problem.with_values(before.physics, before.initial))
+    alone = estimate_physics(problem, plain, lengths, settings.seed)
+    before = load_snapshot(_path(snapshot), about, alone) if resume else None
+    alone = alone if before is None else before.physics
+    physics = alone.result
     surroundings = survey(model, physics.problem, plain, physics.substeps)
-    hybrid = _frozen(attach_network(physics.problem, site.name, learner, surroundings), settings)
+    hybrid = attach_network(physics.problem, site.name, learner, surroundings)
+    hybrid = _frozen(hybrid) if settings.freeze_physics else _begun(hybrid, alone.values)
     stepper = make_stepper(hybrid.problem.model, hybrid.problem.free_names, device=device)
     course = _course(hybrid, stepper, settings, lengths, physics, device, before)
     state = TrainingState.new(course.unknowns.start, settings.seed) if before is None else before.state
-    kept = _Keeper(snapshot, about, physics.problem, course)
+    kept = _Keeper(snapshot, about, alone, course)
 
     def on_epoch(now: TrainingState) -> None:
         kept(now)
@@ -128,7 +132,7 @@ def train(
         descend(course, state, on_epoch)
     finally:
         kept.last()
-    polished = polish(course, state.z, state.starts, physics.problem, plain, lambda what: tell(Report(what, 1.0)))
+    polished = polish(course, state.z, physics.problem, plain, lambda what: tell(Report(what, 1.0)))
     result = _result(polished, stepper, physics)
     seconds = time.perf_counter() - began
     return Trained(physics, result, hybrid, polished, tuple(state.history), settings, seconds)
@@ -140,11 +144,15 @@ def _path(snapshot: Path | None) -> Path:
     return snapshot
 
 
-def _frozen(hybrid: Hybrid, settings: TrainingSettings) -> Hybrid:
-    if not settings.freeze_physics:
-        return hybrid
+def _frozen(hybrid: Hybrid) -> Hybrid:
+    """Only the network is free."""
     free = hybrid.problem.free & hybrid.is_network
     return replace(hybrid, problem=replace(hybrid.problem, free=free))
+
+
+def _begun(hybrid: Hybrid, values: np.ndarray) -> Hybrid:
+    """The physics at ``values``, from short windows."""
+    return replace(hybrid, problem=with_physics(hybrid.problem, values))
 
 
 def _course(
@@ -201,7 +209,7 @@ def _result(polished: Polished, stepper: Stepper, physics: FitResult) -> FitResu
 class _Keeper:
     """Writes snapshots, but not more often than every :data:`SNAPSHOT_SECONDS`."""
 
-    def __init__(self, path: Path | None, about: dict[str, Any], physics: Problem, course: Course) -> None:
+    def __init__(self, path: Path | None, about: dict[str, Any], physics: Physics, course: Course) -> None:
         self._path, self._about, self._physics, self._course = path, about, physics, course
         self._due, self._waiting = 0.0, None
 
@@ -209,7 +217,7 @@ class _Keeper:
         """Keep the state at the end of an epoch, on disk if it is time."""
         if self._path is not None:
             own = self._course.unknowns.scale, self._course.mean_square
-            self._waiting = Snapshot(self._about, _copied(state), self._physics.values, self._physics.initial, *own)
+            self._waiting = Snapshot(self._about, _copied(state), self._physics, *own)
             if time.monotonic() >= self._due:
                 self.last()
 

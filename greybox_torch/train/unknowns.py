@@ -41,6 +41,11 @@ class Unknowns:
         return Unknowns(hybrid, scale, np.where(heights, 0.0, values / scale), network)
 
     @property
+    def force(self) -> float:
+        """The size of a weight of the output, in the unit of the port's force."""
+        return float(self.scale[self.hybrid.heights[self.hybrid.problem.free]][0])
+
+    @property
     def start(self) -> np.ndarray:
         """The unknowns (d,) at the hybrid's own values."""
         return self.of_values(self.hybrid.problem.values)
