@@ -163,9 +163,7 @@ def carried_starts(
     return starts
 
 
-def _weak_hold(
-    problem: Problem, states: np.ndarray, mean_square: float, steps: int, size: float | None
-) -> _Hold:
+def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: int, size: float | None) -> _Hold:
     """Holds that matter only where the data say nothing: start states within several times their spread, parameters within several
     times their start value (without which a friction law's shape can wander off where no speed is visited).
     """

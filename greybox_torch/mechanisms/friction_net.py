@@ -79,11 +79,13 @@ class FrictionNet(Network):
     def _level(self, s: Signals, p: Signals) -> Any:
         """The level of friction, never negative."""
         sigma = self.scaled(s.replaced(speed=torch.abs(s.speed)) if self.odd else s, p)
-        level = 0.0
-        for k in range(self.units):
-            away = sum((p[f"{name}_{k}"] * sigma[name] + p[f"{name}_bias_{k}"]) ** 2 for name in self.inputs)
-            level = level + torch.clamp(p[f"out_{k}"], 0.0) * torch.exp(-away)
-        return level
+        return sum(torch.clamp(p[f"out_{k}"], 0.0) * self._bump(sigma, p, k) for k in range(self.units))
+
+    def _bump(self, sigma: dict[str, Any], p: Signals, k: int) -> Any:
+        product: Any = 1.0
+        for name in self.inputs:
+            product = product * torch.exp(-((p[f"{name}_{k}"] * sigma[name] + p[f"{name}_bias_{k}"]) ** 2))
+        return product
 
     def _bumps(self) -> list[Parameter]:
         """Slopes and biases of the bumps, spread over the range of the speed and drawn along the other inputs."""

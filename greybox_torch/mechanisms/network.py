@@ -29,7 +29,9 @@ class Network(Mechanism):
         UserError: no input, an input named twice, or a number of units that is none.
     """
 
-    source = "G. Cybenko, Approximation by superpositions of a sigmoidal function, Math. Control Signals Systems 2, 1989"
+    source = (
+        "G. Cybenko, Approximation by superpositions of a sigmoidal function, Math. Control Signals Systems 2, 1989"
+    )
 
     def __init__(self, inputs: Sequence[str], units: int = 8, seed: int = 0) -> None:
         self.inputs = tuple(inputs)
@@ -44,7 +46,9 @@ class Network(Mechanism):
     def span(self, name: str, around: Surroundings) -> tuple[float, float]:
         """Lowest and highest value of an input as the hidden layer reads it, in its unit."""
         if name not in around.ranges:
-            raise UserError(f"{self.name}: there is no signal '{name}' at this port (there is: {', '.join(around.ranges)})")
+            raise UserError(
+                f"{self.name}: there is no signal '{name}' at this port (there is: {', '.join(around.ranges)})"
+            )
         return around.ranges[name].low, around.ranges[name].high
 
     def scaling(self, around: Surroundings) -> list[Parameter]:
@@ -53,7 +57,9 @@ class Network(Mechanism):
         for name in self.inputs:
             low, high = self.span(name, around)
             unit, half = around.units.get(name, ""), max(0.5 * (high - low), 1e-9 * max(abs(low), abs(high), 1e-3))
-            result.append(Parameter(f"{name}_centre", 0.5 * (low + high), unit, fixed=True, description=f"middle of {name}"))
+            result.append(
+                Parameter(f"{name}_centre", 0.5 * (low + high), unit, fixed=True, description=f"middle of {name}")
+            )
             result.append(Parameter(f"{name}_scale", half, unit, fixed=True, description=f"half the range of {name}"))
         return result
 

@@ -30,7 +30,7 @@ class Adam:
             self.inner.load_state_dict(held)
 
     def proposed(self, z: np.ndarray, slope: np.ndarray, learning_rate: float) -> np.ndarray:
-        """Where one step with the gradient ``slope`` (d,) leads from ``z`` (d,); the gradient is shortened to ``clip`` where it is longer."""
+        """Where one step with the gradient ``slope`` (d,) leads from ``z`` (d,); a gradient longer than ``clip`` is shortened to it."""
         with torch.no_grad():
             self.unknowns.copy_(torch.as_tensor(z))
         self.unknowns.grad = torch.tensor(slope)

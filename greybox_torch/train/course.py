@@ -63,7 +63,7 @@ def window_lengths(tape: Tape, settings: TrainingSettings) -> list[int]:
     lengths = [unit * factor for factor in settings.factors if unit * factor <= longest // 4]
     if not lengths:
         raise UserError(
-            f"training needs an experiment of role \"estimation\" with at least {4 * SHORTEST * settings.factors[0]} samples, to learn on "
+            f'training needs an experiment of role "estimation" with at least {4 * SHORTEST * settings.factors[0]} samples, to learn on '
             f"some stretches and hold out others; the longest has {longest}"
         )
     return lengths
@@ -90,7 +90,7 @@ def without_samples(problem: Problem, mask: np.ndarray) -> Problem:
 def lesson(problem: Problem, length: int, starts: np.ndarray, mask: np.ndarray, warm_up: float) -> Lesson:
     """The windows of ``length`` samples of a problem with start states (W, n_x)."""
     windows = cut(problem.tape, length)
-    ahead = int(round(warm_up * length))
+    ahead = round(warm_up * length)
     y = problem.tape.y.copy()
     for first in windows.start:
         y[:, first : first + ahead] = np.nan

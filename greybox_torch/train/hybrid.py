@@ -90,7 +90,9 @@ def port_named(model: GreyBoxModel, name: str) -> Port:
     ports = {port.name: port for port in model.all_ports}
     if name not in ports:
         known = ", ".join(ports)
-        raise UserError(f"--port {name}: model {model.title} has no such port{did_you_mean(name, ports)}; it has: {known}")
+        raise UserError(
+            f"--port {name}: model {model.title} has no such port{did_you_mean(name, ports)}; it has: {known}"
+        )
     return ports[name]
 
 
@@ -117,7 +119,9 @@ def attach_network(
         if signal not in around.ranges:
             known = [name for name in around.ranges if name != "delayed"]
             hint = did_you_mean(signal, known)
-            raise UserError(f"--signals {signal}: there is no such signal at {port}{hint}; there is: {', '.join(known)}")
+            raise UserError(
+                f"--signals {signal}: there is no such signal at {port}{hint}; there is: {', '.join(known)}"
+            )
     attachments = (*others, attach(physics.model, port, network))
     model = AugmentedModel(physics.model, attachments, surroundings)
     return Hybrid(problem_for(physics, model, {}), attachments, surroundings)

@@ -65,9 +65,7 @@ def windows_in_turn(
     for length in lengths:
         before = found[-1] if found else None
         begun = problem if before is None else problem.with_values(before.problem.values)
-        fitted = fit_windows(
-            begun, stepper, length, shorter=before, substeps=substeps, settings=settings, size=size
-        )
+        fitted = fit_windows(begun, stepper, length, shorter=before, substeps=substeps, settings=settings, size=size)
         if fitted is None:
             break
         found.append(fitted)

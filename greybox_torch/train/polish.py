@@ -76,7 +76,9 @@ class PenalisedRun:
         cost = found.cost + 0.5 * float(stiffness @ away**2)
         return Quadratic(cost, found.gradient + stiffness * away, found.hessian + np.diag(stiffness), None)
 
-    def minimum(self, settings: Settings, told: Callable[[int, float, float], None] | None = None) -> Optimum[None] | None:
+    def minimum(
+        self, settings: Settings, told: Callable[[int, float, float], None] | None = None
+    ) -> Optimum[None] | None:
         """The optimum that descent from the run's own values leads to; None where they do not simulate."""
         return minimise(
             self.quadratic,
@@ -153,8 +155,10 @@ def _error(complete: Problem, simulated: np.ndarray, mask: np.ndarray) -> float:
 def _physics_alone(course: Course, physics: Problem, plain: Stepper) -> Choice:
     """The plain model on the same footing: estimated without the held-out stretches, unless it is frozen."""
     run = FreeRun(without_samples(physics, course.mask), plain, course.substeps)
-    optimum = None if course.settings.freeze_physics else minimise(
-        run.quadratic, run.start, *run.bounds, settings=RECORD_SETTINGS, admissible=run.admissible
+    optimum = (
+        None
+        if course.settings.freeze_physics
+        else minimise(run.quadratic, run.start, *run.bounds, settings=RECORD_SETTINGS, admissible=run.admissible)
     )
     at = run.problem if optimum is None else run.at(optimum.point)
     simulated = np.concatenate(simulate(at, plain, substeps=course.substeps)).T

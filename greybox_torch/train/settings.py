@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from itertools import pairwise
 from typing import Any
 
 from greybox_torch.errors import UserError
@@ -58,8 +59,8 @@ class TrainingSettings:
             raise UserError(f"training: warm_up is {self.warm_up!r}; expected a share from 0 to below 0.9")
         if not 0.0 < self.held_out <= 0.5:
             raise UserError(f"training: held_out is {self.held_out!r}; expected a share above 0 and of at most 0.5")
-        rising = all(a < b for a, b in zip(self.factors, self.factors[1:], strict=False))
-        if not self.factors or self.factors[0] < 1 or not rising or any(b % a for a, b in _pairs(self.factors)):
+        rising = all(a < b for a, b in pairwise(self.factors))
+        if not self.factors or self.factors[0] < 1 or not rising or any(b % a for a, b in pairwise(self.factors)):
             raise UserError(
                 f"training: factors are {list(self.factors)}; expected rising whole numbers, each a multiple of the one before"
             )
@@ -67,7 +68,3 @@ class TrainingSettings:
     def as_json(self) -> dict[str, Any]:
         """The choices by name, as JSON has them."""
         return {**asdict(self), "factors": list(self.factors)}
-
-
-def _pairs(values: tuple[int, ...]) -> list[tuple[int, int]]:
-    return list(zip(values, values[1:], strict=False))

@@ -70,9 +70,8 @@ def load_snapshot(path: Path, about: Mapping[str, Any], physics: Physics) -> Sna
     arrays, content = _read(path, about)
     try:
         history = [Epoch(**entry) for entry in content["history"]]
-        state = TrainingState(
-            generator=content["generator"], history=history, **content["numbers"], **{n: arrays[n] for n in ARRAYS}
-        )
+        own: dict[str, Any] = {**content["numbers"], **{name: arrays[name] for name in ARRAYS}}
+        state = TrainingState(generator=content["generator"], history=history, **own)
         then = _with_arrays(physics, arrays)
         return Snapshot(about, state, then, arrays["scale"], float(content["mean_square"]))
     except (KeyError, TypeError, ValueError) as error:

@@ -44,6 +44,14 @@ class Report:
     share: float = 0.0
     last: Epoch | None = None
 
+    @property
+    def line(self) -> str:
+        """The figures of the last epoch in words, empty where there is none."""
+        last = self.last
+        if last is None:
+            return ""
+        return f"epoch {last.epoch}  loss {last.loss:.4f}  held out {last.held_out:.4f} ({last.fit:.2f} %)"
+
 
 @dataclass(frozen=True)
 class Trained:
@@ -60,6 +68,11 @@ class Trained:
     history: tuple[Epoch, ...]
     settings: TrainingSettings
     seconds: float
+
+    @property
+    def physics_chosen(self) -> bool:
+        """Whether the network was left at zero, since physics alone predicts the held-out stretches better."""
+        return self.polished.chosen.weight is None
 
 
 def train(

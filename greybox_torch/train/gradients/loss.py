@@ -55,10 +55,8 @@ class SequenceGradient(Protocol):
     def __call__(self, values: np.ndarray, batch: Batch) -> Loss: ...
 
 
-def squared_errors(
-    simulated: torch.Tensor, batch: Batch, weights: np.ndarray, first: int = 0
-) -> torch.Tensor:
-    """Sum of the squared weighted errors of ``simulated`` (n_y, K', B), the outputs at the samples ``first``, ``first`` + 1, … of each window."""
+def squared_errors(simulated: torch.Tensor, batch: Batch, weights: np.ndarray, first: int = 0) -> torch.Tensor:
+    """Sum of the squared weighted errors of ``simulated`` (n_y, K', B): the outputs from the sample ``first`` of each window on."""
     stretch = slice(first, first + simulated.shape[1])
     measured = torch.as_tensor(np.swapaxes(batch.tape.y[:, batch.index[:, stretch]], 1, 2)).to(simulated)
     known = ~torch.isnan(measured) & torch.as_tensor(batch.inside[:, stretch].T).to(simulated.device)
