@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from greybox_torch.mechanisms.residual_net import ResidualNet
     from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
     from greybox_torch.systems import load_model
-    from greybox_torch.train import TrainingSettings, train
+    from greybox_torch.train import TrainingSettings, train_hybrid
 
 __version__ = "0.1.0"
 
@@ -33,7 +33,7 @@ __all__ = [
     "TrainingSettings",
     "load_dataset",
     "load_model",
-    "train",
+    "train_hybrid",
 ]
 
 _HOME_OF = {
@@ -50,7 +50,7 @@ _HOME_OF = {
     "TrainingSettings": "greybox_torch.train",
     "load_dataset": "greybox_torch.data",
     "load_model": "greybox_torch.systems",
-    "train": "greybox_torch.train",
+    "train_hybrid": "greybox_torch.train",
 }
 
 

@@ -22,7 +22,7 @@ from greybox_torch.estimate.problem import all_starts_free, problem_for
 from greybox_torch.files import json_text, write_all
 from greybox_torch.simulate.stepper import make_stepper
 from greybox_torch.simulate.substeps import choose_substeps
-from greybox_torch.train import Report, Trained, TrainingSettings, train
+from greybox_torch.train import Report, Trained, TrainingSettings, train_hybrid
 from greybox_torch.train.tensorboard import tensorboard_log
 
 RESULT, MODEL, SNAPSHOT, LOG = "train.json", "model", "training.safetensors", "tensorboard"
@@ -60,7 +60,7 @@ def run(dataset: Path, options: Options, choices: Choices) -> None:
             if log is not None and report.last is not None:
                 log(report.last)
 
-        found = train(
+        found = train_hybrid(
             task.data,
             task.model,
             net=choices.net,

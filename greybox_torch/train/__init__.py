@@ -2,6 +2,6 @@
 
 from greybox_torch.train.hybrid import Hybrid, attach_network, default_port
 from greybox_torch.train.settings import TrainingSettings
-from greybox_torch.train.train import Report, Trained, train
+from greybox_torch.train.training import Report, Trained, train_hybrid
 
-__all__ = ["Hybrid", "Report", "Trained", "TrainingSettings", "attach_network", "default_port", "train"]
+__all__ = ["Hybrid", "Report", "Trained", "TrainingSettings", "attach_network", "default_port", "train_hybrid"]

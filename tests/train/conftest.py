@@ -65,6 +65,6 @@ def table_hybrid(table_problem) -> Hybrid:
     """The turntable with a network of its speed whose weights are not zero."""
     plain = make_stepper(table_problem.model, ())
     around = survey(table_problem.model, table_problem, plain, 1)
-    made = attach_network(table_problem, "table", FrictionNet(units=4), around)
+    made = attach_network(table_problem, "table", FrictionNet(units=3), around)
     heights = np.where(made.heights, 0.05 + 0.02 * np.arange(len(made.heights)) / 4, made.problem.values)
     return replace(made, problem=made.problem.with_values(heights))

@@ -75,7 +75,7 @@ class Trained:
         return self.polished.chosen.weight is None
 
 
-def train(
+def train_hybrid(
     data: DataSet,
     model: GreyBoxModel,
     *,
@@ -153,7 +153,7 @@ def train(
 
 def _path(snapshot: Path | None) -> Path:
     if snapshot is None:
-        raise UserError("train: resume=True needs a snapshot to take the training up from")
+        raise UserError("train_hybrid: resume=True needs a snapshot to take the training up from")
     return snapshot
 
 
