@@ -21,7 +21,7 @@ from greybox_torch.train.lessons import Course
 from greybox_torch.train.physics import on_whole_records, windows_in_turn, with_physics
 from greybox_torch.train.unknowns import Unknowns
 
-WEIGHTS = (1.0, 10.0, 100.0)
+WEIGHTS = (1.0, 10.0, 100.0, 1000.0)
 """Penalties that are tried, as multiples of the one of the training."""
 
 WINDOW_SETTINGS = Settings(iterations=25, tolerance=1e-3, trials=6)

@@ -124,9 +124,7 @@ def test_any_curve_can_be_drawn(net: Network) -> None:
     values = {p.name: p.value for p in net.parameters(AROUND)}
     speeds = np.linspace(-24.0, 24.0, 200)
     target = -np.tanh(speeds / 0.75) * (0.5 + np.exp(-0.5 * ((np.abs(speeds) - 14.0) / 3.0) ** 2))
-    columns = np.stack(
-        [force(net, {**values, f"out_{k}": 1.0}, speed=speeds) for k in range(12)], axis=1
-    )
+    columns = np.stack([force(net, {**values, f"out_{k}": 1.0}, speed=speeds) for k in range(12)], axis=1)
     from scipy.optimize import nnls
 
     heights = nnls(columns, target)[0] if isinstance(net, FrictionNet) else np.linalg.lstsq(columns, target)[0]

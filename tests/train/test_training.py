@@ -16,7 +16,7 @@ from greybox_torch.train import Report, Trained, TrainingSettings, train_hybrid
 
 from .conftest import Turntable, true_friction
 
-SHORT = TrainingSettings(epochs=12, refresh=5, patience=12)
+SHORT = TrainingSettings(epochs=8, refresh=3, patience=8, learning_rate=0.03)
 
 
 def learned(found: Trained, speed: np.ndarray) -> np.ndarray:
@@ -29,15 +29,15 @@ def learned(found: Trained, speed: np.ndarray) -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def trained(table_data) -> Trained:
-    return train_hybrid(table_data, Turntable(), settings=SHORT, network={"units": 6})
+    return train_hybrid(table_data, Turntable(), settings=SHORT, network={"units": 5})
 
 
 def test_the_learned_curve_is_the_true_one(trained: Trained) -> None:
     """Friction beside the viscous one, within 10 % of its largest value, over the speeds that were visited."""
-    speed = np.linspace(-6.0, 6.0, 121)
+    speed = np.linspace(-4.4, 4.4, 89)
     viscous = dict(zip(trained.result.problem.names, trained.result.problem.values, strict=True))["b"] - 0.05
     error = learned(trained, speed) - viscous * speed - true_friction(speed)
-    assert np.abs(error).max() < 0.1 * np.abs(true_friction(speed)).max() + 0.005
+    assert np.abs(error).max() < 0.1 * np.abs(true_friction(speed)).max()
 
 
 def test_better_than_the_physics(trained: Trained) -> None:
@@ -51,7 +51,7 @@ def test_better_than_the_physics(trained: Trained) -> None:
 
 def test_adam_itself_learns(trained: Trained) -> None:
     first = [e for e in trained.history if e.lesson == 0]
-    assert first[-1].held_out < 0.8 * first[0].held_out
+    assert first[-1].loss < 0.9 * first[0].loss
     assert {e.lesson for e in trained.history} == {0, 1, 2}
     assert all(e.learning_rate <= SHORT.learning_rate for e in trained.history)
 
@@ -96,9 +96,9 @@ class Stop(Exception):
     pass
 
 
-@pytest.mark.parametrize("after", [1, 5, 12, 30])
+@pytest.mark.parametrize("after", [1, 8, 20])
 def test_resumed_to_the_same_result(after: int, table_data, trained: Trained, tmp_path: Path) -> None:
-    """Interrupted in the first epoch, before start states are fitted anew, at the end of a window length, and in the last one."""
+    """Interrupted in the first epoch, at the end of a window length, and in the last one."""
     count, told = 0, []
 
     def stop(report: Report) -> None:
@@ -107,7 +107,7 @@ def test_resumed_to_the_same_result(after: int, table_data, trained: Trained, tm
         if count == after:
             raise Stop
 
-    file, options = tmp_path / "training.safetensors", {"settings": SHORT, "network": {"units": 6}}
+    file, options = tmp_path / "training.safetensors", {"settings": SHORT, "network": {"units": 5}}
     with pytest.raises(Stop):
         train_hybrid(table_data, Turntable(), snapshot=file, progress=stop, **options)
     again = train_hybrid(
@@ -180,7 +180,7 @@ def test_networks_that_cannot_be(options: dict[str, Any], expected: str, table_d
 
 def test_too_short(data_set, table_data) -> None:
     part = [{n: s[:79] for n, s in table_data.recordings[0].signals.items()}]
-    with pytest.raises(UserError, match="at least 80 samples.*the longest has 79"):
+    with pytest.raises(UserError, match=r"at least 80 samples.*the longest has 79"):
         train_hybrid(data_set({"torque": "N m", "speed": "rad/s"}, part), Turntable())
 
 

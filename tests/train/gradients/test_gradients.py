@@ -22,9 +22,9 @@ def problem(table_hybrid) -> Problem:
 @pytest.fixture(scope="module")
 def batch(problem) -> Batch:
     """Windows of two lengths in two experiments, with missing samples, a warm-up, and one that ends with its experiment."""
-    start, last = np.array([3, 200, 1590, 1700]), np.array([16, 210, 1599, 1713])
+    start, last = np.array([13, 200, 1590, 1695]), np.array([26, 210, 1599, 1708])
     y = problem.tape.y.copy()
-    y[0, [10, 11, 205, 1700, 1701]] = np.nan
+    y[0, [15, 16, 205, 1700, 1701]] = np.nan
     windows = Windows(start, last, int((last - start).max()) + 1)
     return Batch(replace(problem.tape, y=y), windows, problem.tape.y[0, start][:, None] + 0.1)
 
@@ -43,7 +43,9 @@ def test_against_differences(name: str, substeps: int, problem, batch) -> None:
     assert found.slope.shape == (len(problem.free_names),)
     tolerance = 1e-3 if name == "odeint_adjoint" else 1e-7  # the adjoint is not of the steps but of the solution
     for part in ("", ".friction_net."):  # all parameters, and those of the network alone
-        taken = np.where(problem.free & np.array([part in n for n in problem.names]), np.abs(problem.values) + 0.01, 0.0)
+        taken = np.where(
+            problem.free & np.array([part in n for n in problem.names]), np.abs(problem.values) + 0.01, 0.0
+        )
         expected = difference(gradient, problem.values, batch, taken)
         assert abs(expected) > 0.1
         assert found.slope @ taken[problem.free] == pytest.approx(expected, rel=tolerance)
@@ -76,7 +78,7 @@ def test_straight_lines_between_samples(name: str, problem, batch) -> None:
     found = make_gradient(name, foh, stepper)(problem.values, other)
     exact = make_gradient("tangents", foh, stepper)(problem.values, other)
     assert found.energy == pytest.approx(exact.energy, rel=1e-4)
-    assert abs(exact.energy / make_gradient(name, problem, stepper)(problem.values, batch).energy - 1) > 1e-3
+    assert abs(exact.energy / make_gradient(name, problem, stepper)(problem.values, batch).energy - 1) > 1e-6
 
 
 def test_samples_that_count(batch) -> None:
@@ -86,7 +88,7 @@ def test_samples_that_count(batch) -> None:
 @pytest.mark.parametrize("name", GRADIENTS)
 def test_overflow_is_a_value(name: str, problem, batch) -> None:
     values = problem.values.copy()
-    values[problem.names.index("J")] = 1e-6
+    values[problem.names.index("J")] = 1e-30
     with np.errstate(all="ignore"):
         found = make_gradient(name, problem, make_stepper(problem.model, problem.free_names))(values, batch)
     assert not found.finite
