@@ -7,7 +7,7 @@ estimated once more, on all samples of the estimation experiments.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,6 +23,9 @@ from greybox_torch.train.unknowns import Unknowns
 
 WEIGHTS = (1.0, 10.0, 100.0, 1000.0)
 """Penalties that are tried, as multiples of the one of the training."""
+
+WORTH = 0.02
+"""Share by which the held-out error must fall for less of a penalty, or for a network at all, to be worth it: physics is preferred."""
 
 WINDOW_SETTINGS = Settings(iterations=25, tolerance=1e-3, trials=6)
 RECORD_SETTINGS = Settings(iterations=60, tolerance=1e-6)
@@ -110,7 +113,7 @@ def polish(course: Course, z: np.ndarray, physics: Problem, plain: Stepper, told
             trials.append(min(found, key=lambda trial: trial[0].held_out))
             begun = [trials[-1][1]]
     choices = (alone, *(choice for choice, _ in trials))
-    chosen = min(choices, key=lambda c: c.held_out)
+    chosen = plainest(choices)
     if chosen.weight is None:
         return Polished(_at_rest(course.unknowns, hybrid, physics), chosen, choices, None)
     told(f"Gauss-Newton on all samples, penalty {chosen.weight:g}")
@@ -118,6 +121,13 @@ def polish(course: Course, z: np.ndarray, physics: Problem, plain: Stepper, told
     run = FreeRun(replace(best, tape=hybrid.tape), course.stepper, course.substeps)
     optimum = PenalisedRun(run, course.unknowns, chosen.weight * course.mean_square).minimum(LAST_SETTINGS)
     return Polished(run.problem if optimum is None else run.at(optimum.point), chosen, choices, optimum)
+
+
+def plainest(choices: Sequence[Choice]) -> Choice:
+    """The choice nearest to physics alone whose held-out error is within :data:`WORTH` of the least: it, else the strongest penalty."""
+    least = min(choice.held_out for choice in choices)
+    worthy = [choice for choice in choices if choice.held_out <= (1.0 + WORTH) * least]
+    return max(worthy, key=lambda c: np.inf if c.weight is None else c.weight)
 
 
 def _by_windows(course: Course, values: np.ndarray) -> Problem:

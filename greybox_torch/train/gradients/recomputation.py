@@ -44,8 +44,8 @@ class RecomputationGradient:
         energy = torch.zeros((), dtype=torch.float64, device=self.device)
         for first in range(0, steps, chunk or steps):
             stretch = (batch, inputs, first, min(first + (chunk or steps), steps))
-            if chunk:
-                x, own = checkpoint(self._advanced, x, p, *stretch, use_reentrant=False)  # type: ignore[misc]
+            if chunk:  # reentrant: the other kind holds on to what it computed again, and takes three times as long
+                x, own = checkpoint(self._advanced, x, p, *stretch, use_reentrant=True)  # type: ignore[misc]
             else:
                 x, own = self._advanced(x, p, *stretch)
             energy = energy + own
