@@ -25,7 +25,9 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"{chosen.dataset}: [model] name is missing and no --model is given", file=sys.stderr)
         return 2
     signals = tuple(chosen.signals.split(",")) if chosen.signals else ()
-    print(f"{'seed':>4} {'seconds':>8} {'physics':>10} {'hybrid':>10} {'held out: physics':>18} {'hybrid':>10}  penalty")
+    print(
+        f"{'seed':>4} {'seconds':>8} {'physics':>10} {'hybrid':>10} {'held out: physics':>18} {'hybrid':>10}  penalty"
+    )
     after = []
     for seed in range(chosen.seeds):
         found = train_hybrid(

@@ -3,8 +3,8 @@
     python -m experiments.concealed.generate CASES --cases 2 --effects speed_bump,speed_waves --seed 7
     python -m experiments.concealed.learned_curve CASES/c000 [--units 12] [--seed 0]
 
-What is compared is all friction of the machine at a speed, the network's and the physics' together: bodies that turn alike can pass friction
-on to one another, and the network and the parameters of friction beside it too. The key is read once the training is over.
+What is compared is all friction of the machine at a speed, the network's and the physics' together: bodies that turn alike can pass
+friction on to one another, and the network and the parameters of friction beside it too. The key is read once the training is over.
 """
 
 from __future__ import annotations
@@ -15,11 +15,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-import torch
 
 from experiments.concealed.effects import CATALOGUE
 from greybox_torch.data import load_dataset
-from greybox_torch.model import Signals
 from greybox_torch.systems import load_model
 from greybox_torch.train import Trained, TrainingSettings, train_hybrid
 
@@ -46,12 +44,22 @@ def main() -> int:
     key = json.loads((chosen.case / "key.json").read_text())
     effect = concealed_force(key, speed)
     error = learned - (arm_friction(key["truth"], speed) + effect)
-    seen = np.abs(speed) > 0.5  # nearer to rest the estimation experiment hardly is, and the arm's own narrow peak is there
+    seen = (
+        np.abs(speed) > 0.5
+    )  # nearer to rest the estimation experiment hardly is, and the arm's own narrow peak is there
     size = np.sqrt(np.mean(effect[seen] ** 2))
-    print(f"{chosen.case.name}: {'+'.join(key['effects'])}, speeds from {low:.1f} to {high:.1f} rad/s, {found.seconds:.0f} s")
-    print(f"mean squared error: physics {found.physics.mse:.5g}, hybrid {found.result.mse:.5g}, noise {key['sigma'] ** 2:.5g} (rad/s)^2")
-    print(f"curve, root mean square error relative to the effect: {100 * np.sqrt(np.mean(error[seen] ** 2)) / size:.1f} %")
-    print(f"largest error relative to the largest force of the effect: {100 * np.abs(error[seen]).max() / np.abs(effect).max():.1f} %")
+    print(
+        f"{chosen.case.name}: {'+'.join(key['effects'])}, speeds from {low:.1f} to {high:.1f} rad/s, {found.seconds:.0f} s"
+    )
+    print(
+        f"mean squared error: physics {found.physics.mse:.5g}, hybrid {found.result.mse:.5g}, noise {key['sigma'] ** 2:.5g} (rad/s)^2"
+    )
+    print(
+        f"curve, root mean square error relative to the effect: {100 * np.sqrt(np.mean(error[seen] ** 2)) / size:.1f} %"
+    )
+    print(
+        f"largest error relative to the largest force of the effect: {100 * np.abs(error[seen]).max() / np.abs(effect).max():.1f} %"
+    )
     return 0
 
 
@@ -63,11 +71,8 @@ def arm_friction(p: Mapping[str, float], speed: np.ndarray) -> np.ndarray:
 
 def learned_friction(found: Trained, speed: np.ndarray) -> np.ndarray:
     """The estimated friction and the network's force, N m."""
-    problem, network = found.result.problem, found.hybrid.network
-    values = dict(zip(problem.names, map(float, problem.values), strict=True))
-    p = Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in values.items()})
-    own = problem.model.curve(network, {"speed": torch.as_tensor(speed)}, p)
-    return arm_friction(values, speed) + np.asarray(own.detach())
+    values = dict(zip(found.result.problem.names, map(float, found.result.problem.values), strict=True))
+    return arm_friction(values, speed) + found.force(speed=speed)
 
 
 def concealed_force(key: Mapping, speed: np.ndarray) -> np.ndarray:
@@ -75,7 +80,9 @@ def concealed_force(key: Mapping, speed: np.ndarray) -> np.ndarray:
     total = np.zeros_like(speed)
     for name in key["effects"]:
         effect = CATALOGUE[name]
-        switches = {k.partition(".")[2]: np.full(len(speed), v) for k, v in key["switches"].items() if k.startswith(name)}
+        switches = {
+            k.partition(".")[2]: np.full(len(speed), v) for k, v in key["switches"].items() if k.startswith(name)
+        }
         law = effect.law(np.arange(len(speed)), switches, effect.port)
         total += law.force(None, speed)  # type: ignore[attr-defined]
     return total

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from contextlib import ExitStack
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from rich.console import Console
 
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.commands.options import Options
@@ -52,6 +53,7 @@ def run(dataset: Path, options: Options, choices: Choices) -> None:
     check_estimation(dataset, task.data)
     settings = TrainingSettings(seed=options.seed, **choices.training)
     with ExitStack() as together:
+        together.enter_context(_interruptible(task.folder / SNAPSHOT))
         log = together.enter_context(tensorboard_log(task.folder / LOG)) if choices.tensorboard else None
         tell = together.enter_context(training(f"training a hybrid of {task.data.name}"))
 
@@ -84,6 +86,19 @@ def run(dataset: Path, options: Options, choices: Choices) -> None:
     )
     print_summary(options.console(), task, found, scores)
     options.print_json(result)
+
+
+@contextmanager
+def _interruptible(snapshot: Path) -> Iterator[None]:
+    """Says how to go on where the user stops a training."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if snapshot.is_file():
+            Console(stderr=True, highlight=False).print(
+                f"stopped; the same command with --resume goes on from {snapshot}"
+            )
+        raise
 
 
 def _scores(task: Task, found: Trained) -> Scores:

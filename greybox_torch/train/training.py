@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,55 +24,15 @@ from greybox_torch.train.course import fitted_starts, held_out_samples, lesson, 
 from greybox_torch.train.gradients import make_gradient
 from greybox_torch.train.gradients.tangents import TangentsGradient
 from greybox_torch.train.hybrid import Hybrid, attach_network, default_port, make_network, port_named
+from greybox_torch.train.keeper import Keeper
 from greybox_torch.train.lessons import Course, descend
-from greybox_torch.train.physics import Physics, estimate_physics, with_physics
+from greybox_torch.train.physics import estimate_physics, with_physics
 from greybox_torch.train.polish import Polished, polish
 from greybox_torch.train.settings import TrainingSettings
-from greybox_torch.train.snapshot import Snapshot, check_snapshot, load_snapshot, save_snapshot
-from greybox_torch.train.state import Epoch, TrainingState
+from greybox_torch.train.snapshot import Snapshot, check_snapshot, load_snapshot
+from greybox_torch.train.state import TrainingState
+from greybox_torch.train.trained import Report, Trained
 from greybox_torch.train.unknowns import Unknowns
-
-SNAPSHOT_SECONDS = 0.5
-"""Time between two snapshots at the least."""
-
-
-@dataclass(frozen=True)
-class Report:
-    """What a training is at: in words, the share of the epochs done, and the last epoch where there is one."""
-
-    stage: str
-    share: float = 0.0
-    last: Epoch | None = None
-
-    @property
-    def line(self) -> str:
-        """The figures of the last epoch in words, empty where there is none."""
-        last = self.last
-        if last is None:
-            return ""
-        return f"epoch {last.epoch}  loss {last.loss:.4f}  held out {last.held_out:.4f} ({last.fit:.2f} %)"
-
-
-@dataclass(frozen=True)
-class Trained:
-    """A trained hybrid.
-
-    ``physics`` and ``result`` are the estimates of the plain model and of the hybrid; ``hybrid`` says what is attached;
-    ``polished`` which penalty the held-out stretches chose; ``history`` has the epochs.
-    """
-
-    physics: FitResult
-    result: FitResult
-    hybrid: Hybrid
-    polished: Polished
-    history: tuple[Epoch, ...]
-    settings: TrainingSettings
-    seconds: float
-
-    @property
-    def physics_chosen(self) -> bool:
-        """Whether the network was left at zero, since physics alone predicts the held-out stretches better."""
-        return self.polished.chosen.weight is None
 
 
 def train_hybrid(
@@ -116,6 +76,7 @@ def train_hybrid(
         "data": data.sha256,
         "model": model.title,
         "start": problem.values.tolist(),
+        "free": list(problem.free_names),
         "port": site.name,
         "network": {"kind": net, **learner.options(), "inputs": list(learner.inputs)},
         "settings": settings.as_json(),
@@ -134,7 +95,7 @@ def train_hybrid(
     stepper = make_stepper(hybrid.problem.model, hybrid.problem.free_names, device=device)
     course = _course(hybrid, stepper, settings, lengths, physics, device, before)
     state = TrainingState.new(course.unknowns.start, settings.seed) if before is None else before.state
-    kept = _Keeper(snapshot, about, alone, course)
+    kept = Keeper(snapshot, about, alone, course)
 
     def on_epoch(now: TrainingState) -> None:
         kept(now)
@@ -217,30 +178,3 @@ def _result(polished: Polished, stepper: Stepper, physics: FitResult) -> FitResu
         uncertainty=None if here is None else uncertainty(run, run.start),
         substeps=physics.substeps,
     )
-
-
-class _Keeper:
-    """Writes snapshots, but not more often than every :data:`SNAPSHOT_SECONDS`."""
-
-    def __init__(self, path: Path | None, about: dict[str, Any], physics: Physics, course: Course) -> None:
-        self._path, self._about, self._physics, self._course = path, about, physics, course
-        self._due, self._waiting = 0.0, None
-
-    def __call__(self, state: TrainingState) -> None:
-        """Keep the state at the end of an epoch, on disk if it is time."""
-        if self._path is not None:
-            own = self._course.unknowns.scale, self._course.mean_square
-            self._waiting = Snapshot(self._about, _copied(state), self._physics, *own)
-            if time.monotonic() >= self._due:
-                self.last()
-
-    def last(self) -> None:
-        """Write what is waiting."""
-        if self._path is not None and self._waiting is not None:
-            save_snapshot(self._path, self._waiting)
-            self._waiting, self._due = None, time.monotonic() + SNAPSHOT_SECONDS
-
-
-def _copied(state: TrainingState) -> TrainingState:
-    """The state as it is now: an interrupted epoch must not change what waits to be written."""
-    return replace(state, history=list(state.history))

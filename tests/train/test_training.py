@@ -8,23 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-import torch
 
 from greybox_torch.errors import UserError
-from greybox_torch.model import Signals
 from greybox_torch.train import Report, Trained, TrainingSettings, train_hybrid
 
 from .conftest import Turntable, true_friction
 
 SHORT = TrainingSettings(epochs=8, refresh=3, patience=8, learning_rate=0.03)
-
-
-def learned(found: Trained, speed: np.ndarray) -> np.ndarray:
-    """The network's own force, N m."""
-    model, network = found.result.problem.model, found.hybrid.network
-    pairs = zip(found.result.problem.names, found.result.problem.values, strict=True)
-    p = Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in pairs})
-    return model.curve(network, {"speed": torch.as_tensor(speed)}, p).detach().numpy()
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +26,7 @@ def test_the_learned_curve_is_the_true_one(trained: Trained) -> None:
     """Friction beside the viscous one, within 10 % of its largest value, over the speeds that were visited."""
     speed = np.linspace(-4.4, 4.4, 89)
     viscous = dict(zip(trained.result.problem.names, trained.result.problem.values, strict=True))["b"] - 0.05
-    error = learned(trained, speed) - viscous * speed - true_friction(speed)
+    error = trained.force(speed=speed) - viscous * speed - true_friction(speed)
     assert np.abs(error).max() < 0.1 * np.abs(true_friction(speed)).max()
 
 
@@ -73,7 +63,7 @@ def test_nothing_missing(data_set) -> None:
     data = data_set({"torque": "N m", "speed": "rad/s"}, [signals])
     found = train_hybrid(data, Turntable(), settings=replace(SHORT, epochs=3), network={"units": 4})
     assert found.result.mse == pytest.approx(found.physics.mse, rel=0.05)
-    assert np.abs(learned(found, np.linspace(-5, 5, 21))).max() < 0.02
+    assert np.abs(found.force(speed=np.linspace(-5, 5, 21))).max() < 0.02
 
 
 @pytest.mark.parametrize("gradient", ["recomputation", "odeint_adjoint"])
