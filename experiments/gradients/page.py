@@ -63,7 +63,8 @@ def _advice(rows: Sequence[Row]) -> list[str]:
     ratio = again["seconds"] / tangents["seconds"]
     return [
         "- **`tangents`** (default): one forward pass of compiled code that carries a sensitivity for each weight. Exact for the steps "
-        f"that are made, {ratio:.0f} times as fast as recomputation at {longest} samples, and its normal matrix serves Gauss-Newton as well. "
+        f"that are made, {ratio:.0f} times as fast as recomputation at {longest} samples, and its normal matrix serves Gauss-Newton "
+        "as well. "
         "Its time grows with the number of weights: for thousands of them, or without a compiler, take another.",
         "- **`recomputation`**: backpropagation through the steps, the steps between two kept states computed again. Exact for the steps "
         "too; time hardly depends on the number of weights; memory grows with the root of the length: "
