@@ -11,7 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from greybox_torch.data import load_dataset
+    from greybox_torch.mechanisms.friction_net import FrictionNet
+    from greybox_torch.mechanisms.residual_net import ResidualNet
     from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
+    from greybox_torch.systems import load_model
+    from greybox_torch.train import TrainingSettings, train_hybrid
 
 __version__ = "0.1.0"
 
@@ -19,24 +23,34 @@ __all__ = [
     "Balance",
     "Body",
     "Coupling",
+    "FrictionNet",
     "GreyBoxModel",
     "Input",
     "Output",
     "Parameter",
+    "ResidualNet",
     "State",
+    "TrainingSettings",
     "load_dataset",
+    "load_model",
+    "train_hybrid",
 ]
 
 _HOME_OF = {
     "Balance": "greybox_torch.model",
     "Body": "greybox_torch.model",
     "Coupling": "greybox_torch.model",
+    "FrictionNet": "greybox_torch.mechanisms.friction_net",
     "GreyBoxModel": "greybox_torch.model",
     "Input": "greybox_torch.model",
     "Output": "greybox_torch.model",
     "Parameter": "greybox_torch.model",
+    "ResidualNet": "greybox_torch.mechanisms.residual_net",
     "State": "greybox_torch.model",
+    "TrainingSettings": "greybox_torch.train",
     "load_dataset": "greybox_torch.data",
+    "load_model": "greybox_torch.systems",
+    "train_hybrid": "greybox_torch.train",
 }
 
 

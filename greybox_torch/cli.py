@@ -144,7 +144,7 @@ def fit(
 def compare(
     dataset: DataSetFile,
     checkpoints: Annotated[
-        list[Path] | None, typer.Argument(metavar="[CHECKPOINT]...", help="Results of fit or diagnose.")
+        list[Path] | None, typer.Argument(metavar="[CHECKPOINT]...", help="Results of fit, train or diagnose.")
     ] = None,
     model: Model = None,
     out: Out = None,
@@ -195,6 +195,54 @@ def diagnose(
     from greybox_torch.commands import diagnose
 
     diagnose.run(dataset, time_limit, Options(model, out, seed, device, json))
+
+
+@app.command()
+def train(
+    dataset: DataSetFile,
+    net: Annotated[
+        str, typer.Option(metavar="friction|residual", help="A body's friction, or any extra force at any port.")
+    ] = "friction",
+    port: Annotated[
+        str | None, typer.Option(metavar="PORT", help="Where it acts.", show_default="the driving body")
+    ] = None,
+    signals: Annotated[
+        str | None,
+        typer.Option(metavar="A,B", help="What it reads at the port.", show_default="speed; deflection,rate; level; …"),
+    ] = None,
+    units: Annotated[int, typer.Option(min=1, max=256, help="Hidden units of the network.")] = 8,
+    odd: Annotated[bool, typer.Option(help="The same friction in both directions.")] = True,
+    dissipative: Annotated[bool, typer.Option(help="Friction that never drives, whatever the weights.")] = True,
+    gradient: Annotated[
+        str,
+        typer.Option(metavar="tangents|recomputation|odeint_adjoint", help="How a gradient is computed."),
+    ] = "tangents",
+    epochs: Annotated[int, typer.Option(min=1, help="Most passes over the windows of each length.")] = 120,
+    freeze_physics: Annotated[
+        bool, typer.Option("--freeze-physics", help="Keep the physical parameters as estimated without the network.")
+    ] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with the training that DIR holds.")] = False,
+    tensorboard: Annotated[bool, typer.Option("--tensorboard", help="Log the course to DIR/tensorboard.")] = False,
+    model: Model = None,
+    out: Out = None,
+    seed: Seed = 0,
+    device: Device = "cpu",
+    json: Json = False,
+) -> None:
+    """Train a small network at a port of the model, for physics that has no name yet."""
+    from greybox_torch.commands import train
+
+    friction = {"odd": odd, "dissipative": dissipative} if net == "friction" else {}
+    choices = train.Choices(
+        net=net,
+        port=port,
+        signals=tuple(s.strip() for s in signals.split(",")) if signals else (),
+        network={"units": units, **friction},
+        training={"epochs": epochs, "gradient": gradient, "freeze_physics": freeze_physics},
+        resume=resume,
+        tensorboard=tensorboard,
+    )
+    train.run(dataset, Options(model, out, seed, device, json), choices)
 
 
 @app.command()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
 
 import pytest
 from typer.testing import CliRunner
@@ -54,13 +53,10 @@ def test_version() -> None:
 
 
 @pytest.mark.parametrize("arguments", [["--help"], ["inspect", "--help"]])
-def test_help_answers_at_once(arguments: list[str]) -> None:
-    best = float("inf")
-    for _ in range(3):  # the best of three, as other tests run beside this one
-        start = time.perf_counter()
-        result = subprocess.run(
-            [sys.executable, "-m", "greybox_torch", *arguments], capture_output=True, text=True, check=True
-        )
-        best = min(best, time.perf_counter() - start)
-    assert "Usage" in result.stdout
-    assert best < 0.5
+def test_help_loads_nothing_heavy(arguments: list[str]) -> None:
+    """That it answers at once is for a benchmark to say; what would keep it is seen here."""
+    command = [sys.executable, "-X", "importtime", "-m", "greybox_torch", *arguments]
+    result = subprocess.run(command, capture_output=True, text=True, check=True)
+    loaded = {line.rsplit("|", 1)[-1].strip() for line in result.stderr.splitlines()}
+    assert "Usage" in result.stdout and "greybox_torch.cli" in loaded
+    assert not loaded & {"torch", "numpy", "pandas", "scipy", "matplotlib"}

@@ -13,7 +13,7 @@ from greybox_torch.estimate.profile import LEVEL, THRESHOLD, Profile
 from greybox_torch.estimate.termination import Termination
 
 Scores = dict[str, tuple[Score, ...]]
-"""Rows by "start" and "refit", in the order of the data set's experiments."""
+"""Rows by model ("start", "refit", and "augmented" where there is one), in the order of the data set's experiments."""
 
 
 def result_json(found: FitResult, scores: Scores, seconds: float) -> dict[str, Any]:
@@ -22,8 +22,8 @@ def result_json(found: FitResult, scores: Scores, seconds: float) -> dict[str, A
     return {
         "schema": "greybox-fit/1",
         "seconds": seconds,
-        "parameters": _parameters_json(found),
-        "initial": {name: _initial_json(found, e) for e, name in enumerate(problem.tape.names)},
+        "parameters": parameters_json(found),
+        "initial": {name: initial_json(found, e) for e, name in enumerate(problem.tape.names)},
         "fit": [
             {
                 **{k: v for k, v in start.items() if k not in ("fit", "rmse")},
@@ -96,7 +96,8 @@ def _correlation_json(found: FitResult) -> dict[str, Any]:
     return {"names": list(correlation.names), "matrix": correlation.matrix.tolist()}
 
 
-def _parameters_json(found: FitResult) -> dict[str, Any]:
+def parameters_json(found: FitResult) -> dict[str, Any]:
+    """Every parameter with its value, deviations, bounds, and whether it was estimated."""
     problem = found.problem
     plain, sandwich = found.parameter_deviations(), found.parameter_deviations("sandwich")
     result = {}
@@ -114,7 +115,8 @@ def _parameters_json(found: FitResult) -> dict[str, Any]:
     return result
 
 
-def _initial_json(found: FitResult, experiment: int) -> dict[str, Any]:
+def initial_json(found: FitResult, experiment: int) -> dict[str, Any]:
+    """Every start state of one experiment."""
     problem = found.problem
     plain, sandwich = found.initial_deviations(), found.initial_deviations("sandwich")
     return {

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 
 @contextmanager
@@ -29,3 +29,46 @@ def stages(first: str) -> Iterator[Callable[[str], None]]:
     ) as bar:
         task = bar.add_task(escape(first))
         yield lambda what: bar.update(task, description=escape(what))
+
+
+LINE_SECONDS = 5.0
+"""Time between two lines on the course of a training, where there is no terminal."""
+
+
+@contextmanager
+def training(first: str) -> Iterator[Callable[[str, float, str], None]]:
+    """A function that is told the stage, the share of the epochs done, and the last figures; the bar says how much time is left."""
+    console = Console(stderr=True, highlight=False)
+    if not console.is_terminal:
+        yield _lines(console, first)
+        return
+    columns = (
+        SpinnerColumn(),
+        TimeElapsedColumn(),
+        BarColumn(24),
+        TextColumn("{task.description}"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task(escape(first), total=1.0)
+        yield lambda stage, share, line: bar.update(
+            task, completed=share, description=escape(f"{stage}  {line}" if line else stage)
+        )
+
+
+def _lines(console: Console, first: str) -> Callable[[str, float, str], None]:
+    """A line at every new stage, and every few seconds within one, with the time left."""
+    began = time.perf_counter()
+    before, due = "", 0.0
+
+    def tell(stage: str, share: float, line: str) -> None:
+        nonlocal before, due
+        now = time.perf_counter() - began
+        if stage == before and now < due:
+            return
+        before, due = stage, now + LINE_SECONDS
+        left = f"  about {now * (1.0 - share) / share:.0f} s left" if 0.0 < share < 1.0 else ""
+        console.print(f"{now:7.1f} s  {escape(stage)}{'  ' if line else ''}{escape(line)}{left}", soft_wrap=True)
+
+    tell(first, 0.0, "")
+    return tell

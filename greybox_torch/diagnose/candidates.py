@@ -8,7 +8,7 @@ import numpy as np
 import torch
 
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.forces import Gravity, TorqueRipple
 from greybox_torch.mechanisms.friction import PositionDependentFriction
 from greybox_torch.mechanisms.library import LIBRARY
@@ -88,16 +88,6 @@ def periodic_candidates(
                 if shifted:
                     found.append(attach(model, port.name, TransmissionError(order), shifted))
     return found
-
-
-def attach(model: GreyBoxModel, port: str, mechanism: Mechanism, shifted: str = "") -> Attachment:
-    """The attachment of ``mechanism`` at ``port``, with the body that its position belongs to."""
-    site = next(q for q in model.all_ports if q.name == port)
-    position = ""
-    if "position" in mechanism.signals() or "position" in mechanism.needs:
-        body = site if isinstance(site, Body) else driving_body(model.ports)
-        position = body.name if body is not None else ""
-    return Attachment(port, mechanism, position=position, shifted_state=shifted)
 
 
 def _curves(port: Port, knots: int) -> Iterable[Unknown]:

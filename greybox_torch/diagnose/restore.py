@@ -8,22 +8,18 @@ from typing import Any
 
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
-from greybox_torch.mechanisms.library import LIBRARY
+from greybox_torch.mechanisms.library import LEARNED, LIBRARY
 from greybox_torch.mechanisms.mechanism import Mechanism, Range, Surroundings
-from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import GreyBoxModel
 
 
 def attachment_json(attachment: Attachment, around: Surroundings) -> dict[str, Any]:
     """Everything needed to attach the same mechanism again."""
     mechanism = attachment.mechanism
-    options = {
-        name: getattr(mechanism, name) for name in ("order", "signal", "knots", "factor") if name in vars(mechanism)
-    }
     return {
         "port": attachment.port,
         "mechanism": mechanism.name,
-        "options": options,
+        "options": mechanism.options(),
         "position": attachment.position,
         "shifted_state": attachment.shifted_state,
         "surroundings": {
@@ -58,10 +54,7 @@ def restored_model(base: GreyBoxModel, attachments: Sequence[Mapping[str, Any]])
 
 
 def _mechanism(name: str, options: Mapping[str, Any]) -> Mechanism:
-    if name == Unknown.name:
-        return Unknown(**options)
-    if name not in LIBRARY:
-        raise UserError(
-            f"mechanism '{name}' is not in the library; expected one of {', '.join(LIBRARY)}, {Unknown.name}"
-        )
-    return LIBRARY[name](**options)
+    known = {**LIBRARY, **LEARNED}
+    if name not in known:
+        raise UserError(f"mechanism '{name}' is not in the library; expected one of {', '.join(known)}")
+    return known[name](**options)

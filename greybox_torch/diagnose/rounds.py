@@ -16,9 +16,9 @@ from greybox_torch.diagnose.name import Ranked, judged, polished, rank
 from greybox_torch.diagnose.orders import scan_orders
 from greybox_torch.diagnose.refit import POLISH_SETTINGS, WINDOW_SETTINGS, Hypothesis, hypothesis
 from greybox_torch.diagnose.screen import Look, Screen
-from greybox_torch.diagnose.surroundings import survey
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.surroundings import survey
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown

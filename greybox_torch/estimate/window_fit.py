@@ -55,6 +55,7 @@ def fit_windows(
     shorter: WindowFit | None = None,
     substeps: int = 1,
     settings: Settings = ROUGH,
+    size: float | None = None,
 ) -> WindowFit | None:
     """Estimate the free parameters on windows of ``length`` samples with free start states; None where even these overflow.
 
@@ -62,6 +63,7 @@ def fit_windows(
         starts: window start states (W, n_x) to begin with; by default those of ``shorter`` at the same samples, else the measured
             values where a state is measured and the model's start value where not.
         shorter: a fit on shorter windows, of this model or of the model that it extends.
+        size: the size at which a shrunk parameter costs :data:`SHRINKING` samples' worth of error; the largest start value by default.
     """
     windows = cut(problem.tape, length)
     states = starts
@@ -72,7 +74,7 @@ def fit_windows(
     here = _evaluate(problem, stepper, windows, states, None, substeps)
     if here is None:
         return None
-    hold = _weak_hold(problem, states, here.mean_square, windows.steps)
+    hold = _weak_hold(problem, states, here.mean_square, windows.steps, size)
     here = held(here, hold)
     evaluations, accepted_steps, damping, growth = 1, 0, 1e-2, 2.0
     for _ in range(settings.iterations):
@@ -146,7 +148,7 @@ def carried_starts(
     return starts
 
 
-def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: int) -> Hold:
+def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: int, size: float | None) -> Hold:
     """Holds that matter only where the data say nothing: start states within several times their spread, parameters within several
     times their start value (without which a friction law's shape can wander off where no speed is visited).
     """
@@ -161,7 +163,7 @@ def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: 
     declared = {p.name: p.shrunk for p in problem.model.declared_parameters}
     shrunk = np.array([declared[n] for n in problem.free_names], dtype=bool)
     if shrunk.any():
-        size = max(float(np.abs(values[shrunk]).max()), 1e-12)
+        size = max(float(np.abs(values[shrunk]).max()) if size is None else size, 1e-12)
         value_weights = np.where(shrunk, SHRINKING * mean_square / size**2, value_weights)
         values = np.where(shrunk, 0.0, values)
     return Hold(states, 1e-4 * mean_square * steps / spread**2, values, value_weights)

@@ -31,6 +31,16 @@ class Attachment:
         return f"{self.port}.{self.mechanism.name}{self.label}"
 
 
+def attach(model: GreyBoxModel, port: str, mechanism: Mechanism, shifted: str = "") -> Attachment:
+    """The attachment of ``mechanism`` at ``port``, with the body that its position belongs to."""
+    site = next(q for q in model.all_ports if q.name == port)
+    position = ""
+    if "position" in mechanism.signals() or "position" in mechanism.needs:
+        body = site if isinstance(site, Body) else driving_body(model.ports)
+        position = body.name if body is not None else ""
+    return Attachment(port, mechanism, position=position, shifted_state=shifted)
+
+
 OFFSETS = sorted(np.linspace(-0.9, 0.9, 37), key=abs)
 """Start positions tried, in shares of the travel, where an effect acts at one place."""
 
@@ -222,7 +232,7 @@ class AugmentedModel(GreyBoxModel):
         if (
             driving is not None
             and isinstance(site, Actuator | Coupling)
-            and getattr(a.mechanism, "signal", "") == "speed"
+            and "speed" in (*a.mechanism.needs, getattr(a.mechanism, "signal", ""))
         ):
             values["speed"] = _value(driving.speed, x, u, p)
         if isinstance(site, Sensor):

@@ -23,7 +23,9 @@ from greybox_torch.mechanisms.friction import (
     StribeckFriction,
     ViscousFriction,
 )
+from greybox_torch.mechanisms.friction_net import FrictionNet
 from greybox_torch.mechanisms.mechanism import Mechanism
+from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorGain, SensorLag
 from greybox_torch.mechanisms.transmission import (
     Backlash,
@@ -32,6 +34,7 @@ from greybox_torch.mechanisms.transmission import (
     NonlinearStiffness,
     TransmissionError,
 )
+from greybox_torch.mechanisms.unknown import Unknown
 
 LIBRARY: dict[str, type[Mechanism]] = {
     mechanism.name: mechanism
@@ -69,6 +72,9 @@ LIBRARY: dict[str, type[Mechanism]] = {
         SensorGain,
     )
 }
+
+LEARNED: dict[str, type[Mechanism]] = {curve.name: curve for curve in (Unknown, FrictionNet, ResidualNet)}
+"""Curves and networks that are learned where no law has a name; never hypotheses of their own."""
 
 
 def register(mechanism: type[Mechanism]) -> type[Mechanism]:

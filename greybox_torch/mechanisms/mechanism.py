@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
@@ -64,13 +65,13 @@ SHARE = "share"
 class Mechanism:
     """A named law at a port of one of ``kinds``; subclasses are the hypothesis library, and users may add their own.
 
-    Class attributes: ``name`` as in the contract; ``kinds`` of ports it fits; ``needs``, the signals it uses; ``explanation``, one
-    sentence for the report; ``source`` in the literature.
+    Class attributes: ``name`` as in the contract; ``kinds`` of ports it fits; ``needs``, the signals it uses (an instance may choose them);
+    ``explanation``, one sentence for the report; ``source`` in the literature.
     """
 
     name: ClassVar[str]
     kinds: ClassVar[tuple[str, ...]]
-    needs: ClassVar[tuple[str, ...]] = ()
+    needs: tuple[str, ...] = ()
     explanation: ClassVar[str] = ""
     source: ClassVar[str] = ""
     kinematic: ClassVar[bool] = False
@@ -117,6 +118,10 @@ class Mechanism:
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         """The looks that the screen takes."""
         raise NotImplementedError
+
+    def options(self) -> dict[str, Any]:
+        """What the constructor was told, by argument, so that the same mechanism can be made again."""
+        return {name: vars(self)[name] for name in inspect.signature(type(self)).parameters if name in vars(self)}
 
     def signals(self) -> tuple[str, ...]:
         """The local signals that the effect is a function of, for the report."""

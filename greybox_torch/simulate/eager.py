@@ -71,7 +71,7 @@ class EagerStepper:
                 if keep_states:
                     xs.append(x)
                 for m in range(substeps):
-                    step = _rk4(self._rates, u0, u1, dt / substeps, m / substeps, (m + 1) / substeps)
+                    step = runge_kutta_step(self._rates, u0, u1, dt / substeps, m / substeps, (m + 1) / substeps)
                     x, dx = self._pushed(step, x, u0, values, dx, dp)
         directed = n_p + n_s > 0
         y = _array(torch.stack(ys), (2, 0, 1))
@@ -126,7 +126,7 @@ class EagerStepper:
         return torch.as_tensor(np.array(values), dtype=self.dtype, device=self.device)
 
 
-def _rk4(rates: Field, u0: Vector, u1: Vector, h: Vector, start: float, end: float) -> Field:
+def runge_kutta_step(rates: Field, u0: Vector, u1: Vector, h: Vector, start: float, end: float) -> Field:
     """One Runge-Kutta step over the part [start, end] of a sample interval."""
     slope = u1 - u0
     a, middle, b = u0 + start * slope, u0 + 0.5 * (start + end) * slope, u0 + end * slope

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greybox_torch.diagnose.surroundings import survey
 from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate.surroundings import survey
 from greybox_torch.model.ports import driving_body
 from greybox_torch.simulate.stepper import make_stepper, whole_records
 from greybox_torch.systems import RobotArm

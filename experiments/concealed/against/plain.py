@@ -13,10 +13,10 @@ from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.diagnose.final import finish
 from greybox_torch.diagnose.noise import noise_floor
 from greybox_torch.diagnose.refit import hypothesis, lengths
-from greybox_torch.diagnose.surroundings import survey
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.comparison import Score, compare
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
+from greybox_torch.estimate.surroundings import survey
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.simulate.stepper import make_stepper

@@ -1,0 +1,58 @@
+"""What `greybox train` writes to train.json and prints with --json."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from greybox_torch.commands.fit_json import Scores, initial_json, parameters_json, status
+from greybox_torch.commands.free_runs import scores_json
+from greybox_torch.commands.task import Task
+from greybox_torch.train import Trained
+from greybox_torch.train.polish import Choice
+
+MODELS = ("start", "refit", "augmented")
+"""As in `verdict.json`: the card's values, the physics alone, and the hybrid."""
+
+
+def result_json(task: Task, found: Trained, scores: Scores) -> dict[str, Any]:
+    """The result as `train --json` prints it."""
+    problem, network = found.result.problem, found.hybrid.network
+    return {
+        "schema": "greybox-train/1",
+        "seconds": found.seconds,
+        "parameters": parameters_json(found.result),
+        "initial": {name: initial_json(found.result, e) for e, name in enumerate(problem.tape.names)},
+        "fit": _fit_json(scores),
+        "statistics": {
+            "mse": found.result.mse,
+            "mse_physics": found.physics.mse,
+            "samples": found.result.samples,
+            "epochs": len(found.history),
+            "iterations": found.result.iterations,
+            "status": "physics" if found.physics_chosen else status(found.result.termination),
+            "held_out": [_choice_json(choice) for choice in found.polished.choices],
+            "penalty": found.polished.chosen.weight,
+        },
+        "network": {"port": network.port, "mechanism": network.mechanism.name, **network.mechanism.options()},
+        "settings": found.settings.as_json(),
+        "history": [asdict(epoch) for epoch in found.history],
+        "dataset": task.data.name,
+        "model": task.model_name,
+        "held_out_by_default": task.data.held_out_by_default,
+        "checkpoint": str(task.folder / "model"),
+    }
+
+
+def _fit_json(scores: Scores) -> list[dict[str, Any]]:
+    rows = []
+    for together in zip(*(scores_json(scores[name]) for name in MODELS), strict=True):
+        place = {k: v for k, v in together[0].items() if k not in ("fit", "rmse")}
+        numbers = [{"fit": row["fit"], "rmse": row["rmse"]} for row in together]
+        rows.append(place | dict(zip(MODELS, numbers, strict=True)))
+    return rows
+
+
+def _choice_json(choice: Choice) -> dict[str, Any]:
+    """What the held-out stretches said of a penalty; null stands for the physics alone."""
+    return {"penalty": choice.weight, "mse": choice.held_out}

@@ -1,0 +1,65 @@
+"""What `greybox train` prints."""
+
+from __future__ import annotations
+
+from rich.console import Console
+from rich.text import Text
+
+from greybox_torch.commands.fit_json import Scores
+from greybox_torch.commands.free_runs import print_scores, print_substeps
+from greybox_torch.commands.tables import print_table
+from greybox_torch.commands.task import Task
+from greybox_torch.train import Trained
+
+
+def print_summary(console: Console, task: Task, found: Trained, scores: Scores) -> None:
+    """What the network is and what it adds, how the physics moved, and fit and error of every experiment before and after."""
+    network = found.hybrid.network
+    console.print(Text(f"{task.data.name}: {task.model.title}", style="bold"))
+    console.print(Text(f"\n{_sentence(found)}", style="bold"), soft_wrap=True)
+    options = ", ".join(f"{k} {_told(v)}" for k, v in network.mechanism.options().items())
+    console.print(Text(f"{network.mechanism.name} at {network.port}: {options}"), soft_wrap=True)
+    _print_parameters(console, found)
+    _print_choices(console, found)
+    print_substeps(console, found.result.substeps)
+    console.print()
+    print_scores(console, task.data, dict(scores))
+    console.print(Text(f"{found.seconds:.1f} s, {len(found.history)} epochs, seed {found.settings.seed}"))
+    files = "train.json, model.safetensors, model.json, training.safetensors"
+    console.print(Text(f"Written to {task.folder}: {files}"), soft_wrap=True)
+
+
+def _sentence(found: Trained) -> str:
+    network = found.hybrid.network
+    if found.physics_chosen:
+        return f"A network at {network.port} predicts the held-out stretches no better than the physics alone: it is left at zero."
+    return (
+        f"With a network at {network.port} the mean squared error of the estimation experiments falls from "
+        f"{found.physics.mse:.4g} to {found.result.mse:.4g}."
+    )
+
+
+def _told(value: object) -> str:
+    if isinstance(value, tuple):
+        return "/".join(map(str, value))
+    return {True: "yes", False: "no"}.get(value, str(value)) if isinstance(value, bool) else str(value)
+
+
+def _print_parameters(console: Console, found: Trained) -> None:
+    """The physical parameters, alone and beside the network."""
+    physics, hybrid = found.physics.problem, found.result.problem
+    rows = []
+    for k, declared in enumerate(physics.model.declared_parameters):
+        kept = "estimated" if hybrid.free[k] else "fixed"
+        numbers = [float(physics.values[k]), float(hybrid.values[k])]
+        rows.append([declared.name, declared.description, declared.unit, *numbers, kept])
+    columns = ["name", "description", "unit", "physics\nalone", "beside the\nnetwork", ""]
+    print_table(console, columns, rows, prose=["description"])
+
+
+def _print_choices(console: Console, found: Trained) -> None:
+    rows = []
+    for choice in found.polished.choices:
+        name = "physics alone" if choice.weight is None else f"penalty {choice.weight:g}"
+        rows.append([name, choice.held_out, "chosen" if choice is found.polished.chosen else ""])
+    print_table(console, ["free run on the held-out stretches", "mean squared error", ""], rows)

@@ -1,0 +1,43 @@
+"""Three ways to the gradient of a sequence loss, chosen by name."""
+
+from __future__ import annotations
+
+from greybox_torch.errors import UserError, did_you_mean
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.simulate.stepper import Stepper
+from greybox_torch.train.gradients.adjoint import AdjointGradient
+from greybox_torch.train.gradients.loss import Batch, Loss, SequenceGradient
+from greybox_torch.train.gradients.recomputation import RecomputationGradient
+from greybox_torch.train.gradients.tangents import TangentsGradient
+
+GRADIENTS = ("tangents", "recomputation", "odeint_adjoint")
+"""Forward sensitivities of the stepper; backpropagation through its steps, these computed again on the way back; the adjoint equation."""
+
+
+def make_gradient(
+    name: str, problem: Problem, stepper: Stepper, *, substeps: int = 1, device: str = "cpu"
+) -> SequenceGradient:
+    """The gradient called ``name`` of the free parameters of ``problem``.
+
+    Args:
+        stepper: of the problem's model, with tangents for its free parameters; only ``tangents`` uses it.
+
+    Raises:
+        UserError: there is no gradient of that name.
+    """
+    check_gradient(name)
+    if name == "tangents":
+        return TangentsGradient(problem, stepper, substeps)
+    made = RecomputationGradient if name == "recomputation" else AdjointGradient
+    return made(problem, substeps, device)
+
+
+def check_gradient(name: str) -> None:
+    """Raises UserError unless ``name`` is one of :data:`GRADIENTS`."""
+    if name not in GRADIENTS:
+        raise UserError(
+            f"--gradient {name}: unknown{did_you_mean(name, GRADIENTS)}; expected one of {', '.join(GRADIENTS)}"
+        )
+
+
+__all__ = ["GRADIENTS", "Batch", "Loss", "SequenceGradient", "check_gradient", "make_gradient"]

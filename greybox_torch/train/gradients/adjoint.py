@@ -1,0 +1,38 @@
+"""The adjoint equation of the differential equation, by torchdiffeq: constant memory, and errors of the order of the steps'.
+
+Source: R. T. Q. Chen, Y. Rubanova, J. Bettencourt, D. Duvenaud, "Neural ordinary differential equations", 2018.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.simulate.odeint import solve
+from greybox_torch.train.gradients.loss import Batch, Loss, squared_errors
+
+
+@dataclass(frozen=True)
+class AdjointGradient:
+    """See :class:`greybox_torch.train.gradients.loss.SequenceGradient`.
+
+    The derivative of the solution, not of the steps: it differs from that of the computed loss by what the steps are off.
+    """
+
+    problem: Problem
+    substeps: int = 1
+    device: str = "cpu"
+
+    def __call__(self, values: np.ndarray, batch: Batch) -> Loss:
+        p = torch.tensor(values, dtype=torch.float64, device=self.device, requires_grad=True)
+        x0 = torch.as_tensor(np.ascontiguousarray(batch.starts.T), device=self.device)
+        model = self.problem.model
+        tape = model.prepared(batch.tape, values)
+        y = solve(model, tape, batch.windows, x0, values=p, adjoint=True, substeps=self.substeps)
+        energy = squared_errors(y, batch, self.problem.weights)
+        energy.backward()
+        assert p.grad is not None
+        return Loss(float(energy.detach()), p.grad.cpu().numpy()[self.problem.free].copy())

@@ -1,0 +1,42 @@
+"""Forward sensitivities: the stepper propagates one tangent a parameter beside the states, in compiled code.
+
+Time grows with the number of parameters, memory not with the length of a window. For the tens of weights of a network at a port this
+is the fastest way by far, see `docs/gradients.md`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.simulate.stepper import Stepper
+from greybox_torch.train.gradients.loss import Batch, Loss
+
+
+@dataclass(frozen=True)
+class TangentsGradient:
+    """See :class:`greybox_torch.train.gradients.loss.SequenceGradient`. The gradient is exact for the steps that are made."""
+
+    problem: Problem
+    stepper: Stepper
+    substeps: int = 1
+
+    def __call__(self, values: np.ndarray, batch: Batch) -> Loss:
+        total = self.normal(values, batch)
+        return Loss(float(total[-1, -1]), -2.0 * total[:-1, -1])
+
+    def normal(self, values: np.ndarray, batch: Batch) -> np.ndarray:
+        """[J e]ᵀ[J e] (d + 1, d + 1) of the outputs' sensitivities to the free parameters and the weighted errors."""
+        run = self.stepper.run(
+            self.problem.model.prepared(batch.tape, values),
+            batch.windows,
+            values,
+            batch.starts,
+            tangents=True,
+            substeps=self.substeps,
+            weights=self.problem.weights,
+        )
+        assert run.normal is not None
+        return run.normal.sum(axis=0)

@@ -1,0 +1,158 @@
+"""`greybox train` from the command line, killed and taken up again among the rest."""
+
+from __future__ import annotations
+
+import json
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from greybox_torch.checkpoint import load_checkpoint
+from greybox_torch.cli import app
+
+Make = Callable[..., Path]
+QUICK = ("--net", "residual", "--port", "actuator", "--units", "4", "--epochs", "5")
+FILES = ["model.json", "model.safetensors", "train.json", "training.safetensors"]
+
+
+def train(folder: Path, *options: str) -> Result:
+    return CliRunner().invoke(app, ["train", str(folder / "dataset.toml"), "--out", str(folder / "out"), *options])
+
+
+def written(folder: Path) -> list[str]:
+    out = folder / "out"
+    return sorted(p.name for p in out.iterdir()) if out.exists() else []
+
+
+def test_json_and_checkpoint(motor_folder: Make) -> None:
+    """A dead zone that the model does not know, learned as a change of the input."""
+    folder = motor_folder(dead_zone=0.4)
+    result = train(folder, *QUICK, "--json")
+    assert result.exit_code == 0, result.stderr
+    found = json.loads(result.stdout)
+    assert written(folder) == FILES
+    assert found == json.loads((folder / "out" / "train.json").read_text())
+    assert found["schema"] == "greybox-train/1"
+    assert found["network"] == {
+        "port": "actuator",
+        "mechanism": "residual_net",
+        "inputs": ["input"],
+        "units": 4,
+        "seed": 0,
+    }
+    assert found["parameters"]["J"]["unit"] == "kg m^2"
+    assert found["parameters"]["actuator.residual_net.out_0"]["unit"] == "V"
+    assert found["statistics"]["epochs"] == len(found["history"]) > 0
+    assert found["statistics"]["held_out"][0]["penalty"] is None
+    sweep = found["fit"][2]
+    assert (sweep["experiment"], sweep["role"]) == ("Sweep", "validation")
+    assert sweep["augmented"]["fit"] > sweep["refit"]["fit"] + 1.0
+
+    checkpoint = str(folder / "out" / "model")
+    assert load_checkpoint(Path(checkpoint)).effects[0]["mechanism"] == "residual_net"
+    compared = CliRunner().invoke(
+        app, ["compare", str(folder / "dataset.toml"), checkpoint, "--json", "--out", str(folder / "cmp")]
+    )
+    assert compared.exit_code == 0, compared.stderr
+    _, restored = json.loads(compared.stdout)["models"]
+    for row, after in zip(found["fit"], restored["fit"], strict=True):
+        assert after["fit"] == pytest.approx(row["augmented"]["fit"], abs=1e-6)
+
+
+def test_summary(motor_folder: Make) -> None:
+    folder = motor_folder(dead_zone=0.4)
+    result = train(folder, *QUICK)
+    assert result.exit_code == 0, result.stderr
+    assert "With a network at actuator the mean squared error of the estimation experiments falls from" in result.stdout
+    assert "residual_net at actuator: inputs input, units 4, seed 0" in result.stdout
+    assert "physics alone" in result.stdout
+    assert "epoch 1  loss" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        (("--net", "fiction"), "--net fiction: unknown"),
+        (("--port", "rotary"), "--port rotary: model Motor has no such port"),
+        (("--signals", "speed,load"), "--signals load: there is no such signal at rotor"),
+        (("--gradient", "adjoint"), "--gradient adjoint: unknown"),
+        (("--resume",), "--resume: "),
+        (("--units", "0"), ""),
+        (("--epochs", "0"), ""),
+    ],
+)
+def test_input_at_fault(options: tuple[str, ...], expected: str, motor_folder: Make) -> None:
+    folder = motor_folder()
+    result = train(folder, *options)
+    assert result.exit_code == 2
+    assert expected in result.stderr and "Traceback" not in result.stderr
+    assert (result.stdout, written(folder)) == ("", [])
+
+
+def test_tensorboard_that_is_not_there(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "torch.utils.tensorboard", None)
+    folder = motor_folder()
+    result = train(folder, "--tensorboard")
+    assert result.exit_code == 2
+    assert "--tensorboard: the package tensorboard is not installed" in result.stderr
+    assert written(folder) == []
+
+
+def test_tensorboard(motor_folder: Make) -> None:
+    pytest.importorskip("tensorboard", reason="the extra tensorboard is not installed")
+    folder = motor_folder()
+    assert train(folder, *QUICK, "--tensorboard").exit_code == 0
+    from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+    events = EventAccumulator(str(folder / "out" / "tensorboard"))
+    events.Reload()
+    epochs = json.loads((folder / "out" / "train.json").read_text())["history"]
+    logged = [e.value for e in events.Scalars("held_out")]
+    assert logged == pytest.approx([e["held_out"] for e in epochs], rel=1e-6)
+
+
+def test_all_results_or_none(motor_folder: Make) -> None:
+    folder = motor_folder()
+    (folder / "out" / "train.json").mkdir(parents=True)
+    result = train(folder, *QUICK)
+    assert result.exit_code == 2
+    assert "train.json: cannot be written: it is a folder" in result.stderr
+    assert written(folder) == ["train.json", "training.safetensors"]
+
+
+def test_killed_and_resumed(motor_folder: Make) -> None:
+    """SIGKILL at a random moment of the training; what goes on from the snapshot ends at the same validation fit."""
+    folder = motor_folder(dead_zone=0.4)
+    command = [
+        sys.executable,
+        "-m",
+        "greybox_torch",
+        "train",
+        str(folder / "dataset.toml"),
+        *QUICK[:-1],
+        "40",
+        "--json",
+    ]
+
+    def validation_fit(*options: str) -> Any:
+        done = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)["fit"][2]["augmented"]["fit"]
+
+    whole = validation_fit("--out", str(folder / "whole"))
+    part, delay = folder / "part", random.uniform(0.0, 0.6)
+    process = subprocess.Popen([*command, "--out", str(part)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    while not (part / "training.safetensors").exists() and process.poll() is None:
+        time.sleep(0.002)
+    time.sleep(delay)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert validation_fit("--out", str(part), "--resume") == pytest.approx(whole, abs=1e-6), f"killed after {delay} s"
