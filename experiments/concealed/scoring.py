@@ -124,9 +124,9 @@ def _closed(verdict: Mapping[str, Any], key: Mapping[str, Any]) -> float:
     left = {"refit": 0.0, "augmented": 0.0}
     for row in verdict["fit"]:
         if row["role"] == "validation":
-            floor = float(sigma[row["output"]] if isinstance(sigma, Mapping) else sigma)
+            floor, unit = (sigma[row["output"]],) * 2 if isinstance(sigma, Mapping) else (sigma, 1.0)
             for stage in left:
-                left[stage] += max((float(row[stage]["rmse"]) / floor) ** 2 - 1.0, 0.0)
+                left[stage] += max(float(row[stage]["rmse"]) ** 2 - floor**2, 0.0) / unit**2
     return 1.0 - (left["augmented"] / left["refit"]) ** 0.5 if left["refit"] > 0 else 0.0
 
 

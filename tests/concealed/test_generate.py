@@ -108,7 +108,7 @@ def test_bad_arguments_are_named(arguments: list[str], message: str, tmp_path: P
     assert not (tmp_path / "out").exists()
 
 
-TOOLS_SIDE = ("nominal", "against", "recordings.py")  # models for the tool, and those who are measured beside it
+TOOLS_SIDE = ("nominal", "against", "learned_curve.py")  # models for the tool, and those who are measured beside it
 
 
 def test_generator_shares_no_code_with_the_package():

@@ -10,7 +10,7 @@ from experiments.concealed.plant_arm import NOMINAL, ArmPlant
 
 
 def test_force_of_an_effect_by_its_own_law() -> None:
-    switches = {"speed_bump.height": 0.5, "speed_bump.center": 14.0, "speed_bump.width": 2.0}
+    switches = {"speed_bump.height": 0.5, "speed_bump.center": 14.0, "speed_bump.width": 2.0, "speed_bump.v_0": 0.1}
     key = {"effects": ["speed_bump"], "switches": switches}
     force = concealed_force(key, np.array([-14.0, 0.0, 14.0, 16.0, 40.0]))
     expected = [0.5, 0.0, -0.5, -0.5 * np.exp(-0.5), 0.0]
