@@ -10,7 +10,7 @@ import numpy as np
 from greybox_torch.diagnose.final import Final
 from greybox_torch.diagnose.held_out import Gain
 from greybox_torch.diagnose.locate import explained_energy, law_curve, local_signals, most_of, profile
-from greybox_torch.diagnose.probability import round_of, shared
+from greybox_torch.diagnose.probability import shared
 from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.rounds import Round
 from greybox_torch.diagnose.select import Search
@@ -49,7 +49,7 @@ def _parts(search: Search) -> list[float]:
     """How the explained error divides among several effects, by the gain of the round in which each was taken."""
     gains = []
     for effect in search.current.effects:
-        taken = round_of(search, effect.prefix)
+        taken = search.round_of(effect.prefix)
         gains.append(1.0 if taken is None or taken.taken is None else max(taken.taken.gain, 1e-6))
     return [g / sum(gains) for g in gains] if len(gains) > 1 else [1.0]
 
@@ -65,7 +65,7 @@ def _effect(
     gain: Gain | None,
 ) -> Effect:
     around = search.surroundings[attachment.port]
-    taken = round_of(search, attachment.prefix)
+    taken = search.round_of(attachment.prefix)
     probability, alternatives = (0.5, ()) if taken is None or taken.taken is None else shared(taken.taken, taken.ranked)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     profiles = _profiles(search, hypothesis, model, attachment, site, substeps)

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.estimate.free_run import FreeRun
-from greybox_torch.estimate.levenberg_marquardt import Settings, minimise
+from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimise
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.uncertainty import Uncertainty, uncertainty
 from greybox_torch.estimate.window_fit import WindowFit
-from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulate.side_by_side import side_by_side
+from greybox_torch.simulate.stepper import Stepper, make_stepper
 
 SETTINGS = Settings(iterations=60, tolerance=1e-8)
+BEGINNING = Settings(iterations=12, tolerance=1e-3)
+"""How far the values of every window length are followed before the best of them goes on to the end."""
 
 
 @dataclass(frozen=True)
@@ -47,17 +51,27 @@ def finish(hypothesis: Hypothesis, substeps: int, *, device: str = "cpu") -> Fin
     stepper = hypothesis.stepper
     if shrunk:
         stepper = make_stepper(model, [n for n in hypothesis.problem.free_names if n not in shrunk], device=device)
+    runs = [_free_run(fit, shrunk, stepper, substeps) for fit in reversed(hypothesis.fits)]
+    begun = side_by_side(partial(_descended, run, run.start, BEGINNING) for run in runs)
     best, cost = None, np.inf
-    for fit in reversed(hypothesis.fits):
-        problem = _from_windows(fit)
-        run = FreeRun(replace(problem, free=problem.free & ~np.isin(problem.names, shrunk)), stepper, substeps)
-        optimum = minimise(run.quadratic, run.start, *run.bounds, settings=SETTINGS, admissible=run.admissible)
+    for run, optimum in zip(runs, begun, strict=True):
         if optimum is not None and optimum.model.cost < (1 - 1e-3) * cost:
             best, cost = (run, optimum.point), optimum.model.cost
     if best is None:
         return Final(_from_windows(hypothesis.fits[-1]), None)
     run, point = best
+    ended = _descended(run, point, SETTINGS)
+    point = point if ended is None else ended.point
     return Final(run.at(point), uncertainty(run, point))
+
+
+def _free_run(fit: WindowFit, kept: list[str], stepper: Stepper, substeps: int) -> FreeRun:
+    problem = _from_windows(fit)
+    return FreeRun(replace(problem, free=problem.free & ~np.isin(problem.names, kept)), stepper, substeps)
+
+
+def _descended(run: FreeRun, start: np.ndarray, settings: Settings) -> Optimum[None] | None:
+    return minimise(run.quadratic, start, *run.bounds, settings=settings, admissible=run.admissible)
 
 
 def _from_windows(fit: WindowFit) -> Problem:

@@ -31,6 +31,11 @@ class Leader:
     starts: tuple[dict[str, float], ...]
     explained: float
 
+    @property
+    def unknown(self) -> bool:
+        """Whether it is a free curve."""
+        return isinstance(self.attachment.mechanism, Unknown)
+
 
 def leaders(
     looks: Sequence[Sequence[Look]],

@@ -22,7 +22,6 @@ from greybox_torch.diagnose.refit import (
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulate.side_by_side import side_by_side
 from greybox_torch.simulate.stepper import Stepper, cut, make_stepper
 
@@ -58,7 +57,7 @@ class Ranked:
 
     @property
     def unknown(self) -> bool:
-        return isinstance(self.leader.attachment.mechanism, Unknown)
+        return self.leader.unknown
 
     @property
     def size(self) -> int:
@@ -198,19 +197,17 @@ def _standard_errors(values: np.ndarray) -> float:
 def _finalists(
     first: list[tuple[float, Leader, Hypothesis, Stepper]],
 ) -> list[tuple[float, Leader, Hypothesis, Stepper]]:
-    """The best few, with at least one named hypothesis and one curve among them where there are any; what ties with the best named one,
-    and what they generalise.
-    """
+    """The best few, the best few named ones and what ties with the best of those, what they generalise, and the best curve."""
+    named = [e for e in first if not e[1].unknown]
     chosen = first[:FINALISTS]
-    named = [e for e in first if not isinstance(e[1].attachment.mechanism, Unknown)]
-    chosen += [e for e in named[:MOST_TIED] if e[0] < named[0][0] + TIE and e not in chosen]
+    tied = [e for e in named[:MOST_TIED] if e[0] < named[0][0] + TIE]
+    chosen += [e for e in named[: max(FINALISTS, len(tied))] if e not in chosen]
     contained = {(e[1].attachment.port, name) for e in chosen for name in e[1].attachment.mechanism.generalises}
     chosen += [
         e for e in first if (e[1].attachment.port, e[1].attachment.mechanism.name) in contained and e not in chosen
     ]
-    for unknown in (True, False):
-        if not any(isinstance(e[1].attachment.mechanism, Unknown) == unknown for e in chosen):
-            chosen += [e for e in first if isinstance(e[1].attachment.mechanism, Unknown) == unknown][:1]
+    if not any(e[1].unknown for e in chosen):
+        chosen += [e for e in first if e[1].unknown][:1]
     return chosen
 
 

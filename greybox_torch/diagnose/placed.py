@@ -29,7 +29,8 @@ def placed(problem: Problem, stepper: Stepper, length: int, substeps: int) -> Wi
     """A fit of the window start states alone, positions beginning where each experiment fits best; None where even windows overflow.
 
     Args:
-        problem: with no free parameters.
+        problem: with no free parameters, its start states estimated (:func:`estimate_initial`): a free run over the beginning and short
+            windows along the whole record are at times led astray by different things.
         length: of the windows, in samples; short ones.
     """
     fit = fit_windows(problem, stepper, length, substeps=substeps, settings=SETTINGS)
@@ -42,8 +43,10 @@ def placed(problem: Problem, stepper: Stepper, length: int, substeps: int) -> Wi
     experiments = np.searchsorted(problem.tape.first, fit.windows.start, side="right") - 1
     step = np.ptp(grid, axis=0) / max(len(grid) - 1, 1)
     best = np.zeros((len(problem.tape.first), len(places)))
+    known = [problem.initial[:, places]]
     for moves in (grid, np.outer(FINER, step), np.outer(FINER, step), np.outer(FINER, 0.2 * step)):
-        best = _best_of(fit, places, [best, *(best + move for move in moves)], experiments, stepper, substeps)
+        best = _best_of(fit, places, [*known, best, *(best + move for move in moves)], experiments, stepper, substeps)
+        known = []
         there = _moved(fit, places, best, experiments, stepper, substeps)
         if there is not None:  # with the trajectories there, the next look is nearer to the truth
             fit = continued(there, stepper, there.windows.steps, substeps, SETTINGS)

@@ -12,7 +12,6 @@ from greybox_torch.diagnose.noise import ABOVE_NOISE, times_noise
 from greybox_torch.diagnose.verdict import Alternative
 
 if TYPE_CHECKING:
-    from greybox_torch.diagnose.rounds import Round
     from greybox_torch.diagnose.select import Search
     from greybox_torch.diagnose.verdict import Effect
 
@@ -54,13 +53,6 @@ def _weight(chosen: Ranked, rival: Ranked) -> float:
     share = min(1.0, rival.gain / max(chosen.gain, 1e-12))
     simpler = np.exp(-max(0, rival.size - chosen.size))
     return float(np.exp(-0.5 * (behind / TEMPERATURE) ** 2) * share * simpler)
-
-
-def round_of(search: Search, prefix: str) -> Round | None:
-    """The round in which an effect was taken, the last one where it was chosen anew beside the others."""
-    return next(
-        (r for r in reversed(search.rounds) if r.taken is not None and r.taken.leader.attachment.prefix == prefix), None
-    )
 
 
 def confidence(search: Search, effects: Sequence[Effect], complete: bool) -> float:

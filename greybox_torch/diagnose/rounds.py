@@ -6,10 +6,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
+import numpy as np
+
 from greybox_torch.diagnose.candidates import candidates, periodic_candidates, shifted_states
 from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS, chosen
 from greybox_torch.diagnose.curve import finer
-from greybox_torch.diagnose.leaders import leaders
+from greybox_torch.diagnose.leaders import Leader, leaders
 from greybox_torch.diagnose.name import Ranked, judged, polished, rank
 from greybox_torch.diagnose.orders import scan_orders
 from greybox_torch.diagnose.refit import POLISH_SETTINGS, WINDOW_SETTINGS, Hypothesis, hypothesis
@@ -34,8 +36,14 @@ CLOSE = 0.7
 FRONT_RUNNERS = 3
 MOST_SHAPES = 3
 
+ORDER_SHIFTS = (-2, -1, 1, 2)
+"""Quarter periods over the travel by which orders are tried anew."""
+
 LEAST_PART = 0.02
 """Share of the plain model's mean squared error that a free curve has to remove at some window length."""
+
+HOPE = 0.5
+"""Share of that which a curve must promise in the screen to be refitted at all."""
 
 LEAST_BESIDE_CURVE = 0.1
 """Share of what a free curve leaves from which a further effect is worth refits, which are slow beside it."""
@@ -43,9 +51,12 @@ LEAST_BESIDE_CURVE = 0.1
 
 @dataclass(frozen=True)
 class Round:
-    """One round of the search: what the screen saw, what the refits said, and which of them was taken (None: nothing)."""
+    """One round of the search: what the screen saw, the hypothesis that was built on, what the refits said, and which of them was taken
+    (None: nothing).
+    """
 
     looks: tuple[tuple[Look, ...], ...]
+    parent: Hypothesis
     ranked: tuple[Ranked, ...]
     taken: Ranked | None
 
@@ -87,6 +98,13 @@ class Rounds:
             self.problem.model, plain.problem, plain.stepper, self.substeps
         )
 
+    def round_of(self, prefix: str) -> Round | None:
+        """The round in which an effect was taken, the last one where it was chosen anew beside the others."""
+        return next(
+            (r for r in reversed(self.rounds) if r.taken is not None and r.taken.leader.attachment.prefix == prefix),
+            None,
+        )
+
     def step(self, *, fine: bool = False) -> bool:
         """One round: screen, refit the leaders, take the best if it pays. Whether one was taken.
 
@@ -97,6 +115,7 @@ class Rounds:
         found = leaders(looks, self.current.fits, self.surroundings, self._card())
         if self._has_curve():
             found = [k for k in found if k.explained > LEAST_BESIDE_CURVE]
+        found = [k for k in found if not k.unknown or self._promising(k)]
         ranked = rank(
             self.problem,
             self.current,
@@ -106,13 +125,22 @@ class Rounds:
             device=self.device,
             progress=self.progress,
         )
+        return self._take(looks, ranked)
+
+    def _take(self, looks: Sequence[Sequence[Look]], ranked: Sequence[Ranked]) -> bool:
+        """End a round: compare what was refitted fairly, and take the best if it pays. Whether one was taken."""
         ranked = self._fairly(ranked)
         paying = (r for r in ranked if r.gain > LEAST_GAIN and r.surely > LEAST_SURENESS)
         taken = chosen([r for r in paying if not r.unknown or self._substantial(r)])
-        self.rounds.append(Round(tuple(tuple(at) for at in looks), tuple(ranked), taken))
+        self.rounds.append(Round(tuple(tuple(at) for at in looks), self.current, tuple(ranked), taken))
         if taken is not None:
             self.current = self._detailed(taken) if taken.unknown else taken.fitted
         return taken is not None
+
+    def _promising(self, curve: Leader) -> bool:
+        """Whether the screen leaves hope that a free curve is substantial: its refits are the slowest of all."""
+        left = (c.mean_square / p.mean_square for p, c in zip(self.plain.fits, self.current.fits, strict=True))
+        return curve.explained * max(left) > HOPE * LEAST_PART
 
     def _substantial(self, curve: Ranked) -> bool:
         """Whether a free curve explains a part of the whole mismatch that counts, and not what a named law lacks to be the machine's."""
@@ -205,7 +233,19 @@ class Rounds:
             tuple(sorted((f"{effect.prefix}.{n}", v) for n, v in probe.values.items() if n != "order"))
             for probe in probes
         }
-        return [{**values, **card, **dict(shape)} for shape in sorted(shapes)[:MOST_SHAPES]]
+        restarts = [{**values, **card, **dict(shape)} for shape in sorted(shapes)[:MOST_SHAPES]]
+        return restarts + self._neighbouring_orders(effect, values)
+
+    def _neighbouring_orders(self, effect: Attachment, values: dict[str, float]) -> list[dict[str, float]]:
+        """For a periodic effect, orders by which its phase shifts by a quarter period or more over the travel.
+
+        Along short windows positions are less exact than over long ones, where the order they suggest may lie in the next valley.
+        """
+        name = f"{effect.prefix}.order"
+        if name not in values:
+            return []
+        step = 0.5 * np.pi / self.surroundings[effect.port].ranges["position"].span
+        return [{**values, name: values[name] + shift * step} for shift in ORDER_SHIFTS]
 
     def _card(self) -> dict[str, float]:
         """The parameter values that the problem began with."""

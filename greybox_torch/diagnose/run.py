@@ -3,45 +3,29 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
 
-from greybox_torch.data import DataSet, Recording
+from greybox_torch.data import DataSet
+from greybox_torch.diagnose.confirm import confirmed, without_weakest
 from greybox_torch.diagnose.detect import detect
 from greybox_torch.diagnose.effects import describe
 from greybox_torch.diagnose.evidence import sentences
-from greybox_torch.diagnose.final import Final, finish
-from greybox_torch.diagnose.held_out import Gain, gain, held_out_fits, timelines
+from greybox_torch.diagnose.final import finish
+from greybox_torch.diagnose.judgement import Judgement
 from greybox_torch.diagnose.locate import window_errors
 from greybox_torch.diagnose.probability import confidence
 from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.diagnose.select import Search
-from greybox_torch.diagnose.verdict import Trace, Verdict
+from greybox_torch.diagnose.verdict import Verdict
 from greybox_torch.errors import UserError
-from greybox_torch.estimate.comparison import Comparison, compare
-from greybox_torch.estimate.initial import estimate_initial
-from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
+from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulate.side_by_side import side_by_side
-from greybox_torch.simulate.stepper import Stepper, make_stepper
+from greybox_torch.simulate.stepper import make_stepper
 from greybox_torch.simulate.substeps import choose_substeps
-
-LEAST_HELD_OUT = 1.0
-"""Standard errors by which an effect must lower the error on held-out experiments to be kept."""
-
-
-BEYOND_CHANCE = 3.0
-"""Standard errors by which a free curve must beat named effects on held-out experiments, to be preferred to them."""
-
-CONFIRMED = 5.0
-"""Standard errors of held-out gain from which a finding stands whatever the free runs of the validation experiments say."""
-
-UNEXERCISED = 2e-3
-"""Share of the held-out error below which, either way, those experiments do not exercise an effect: they cannot take it back."""
 
 
 @dataclass(frozen=True)
@@ -121,18 +105,18 @@ def diagnose(
     at = clock.stage("preparing", 0.0)
     interrupted = _searched(search)
     at = clock.stage("searching: screen, refit, select", at)
-    gains = _confirmed(dataset, search, progress)
+    gains = confirmed(dataset, search, progress)
     at = clock.stage("confirming on held-out experiments", at)
     progress("fitting whole records")
     plain = finish(search.plain, substeps, device=device)
     augmented = finish(search.current, substeps, device=device) if search.current.effects else plain
     at = clock.stage("final fits on whole records", at)
     progress("judging on the validation experiments")
-    judged = _Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
+    judged = Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
     while search.current.effects and not judged.holds:
-        gains = _without_weakest(search, gains)
+        gains = without_weakest(search, gains)
         augmented = finish(search.current, substeps, device=device) if search.current.effects else plain
-        judged = _Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
+        judged = Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
     effects = describe(search, augmented, substeps, judged.sums, gains) if search.current.effects else ()
     traces = judged.traces(bool(effects))
     detected = detect(judged.problem, traces)
@@ -155,41 +139,6 @@ def diagnose(
     chosen = search.current if effects else search.plain
     attachments = [attachment_json(e, search.surroundings[e.port]) for e in chosen.effects]
     return Diagnosis(verdict, chosen.model, final.values(), _starts(final.problem), attachments)
-
-
-def _confirmed(dataset: DataSet, search: Search, progress: Callable[[str], None]) -> dict[str, Gain]:
-    """Held-out gains by effect, after taking back, weakest first, every effect that gains nothing there."""
-    if not dataset.validation() or not search.current.effects:
-        return {}
-    progress("confirming on held-out experiments")
-    search.progress = progress
-    problem = all_starts_free(dataset, make_problem(dataset, search.problem.model, dataset.validation()))
-    if search.named is not None:
-        named, curve = (held_out_fits(h, problem, search.substeps) for h in (search.named[0], search.current))
-        if gain(named, curve).errors_away < BEYOND_CHANCE:
-            search.settle_for_named()
-    while search.current.effects:
-        on_others = partial(held_out_fits, problem=problem, substeps=search.substeps)
-        full, *without = side_by_side(partial(on_others, h) for h in (search.current, *search.without.values()))
-        gains = {
-            p: replace(gain(fits, full), timelines=timelines(fits, full))
-            for p, fits in zip(search.without, without, strict=True)
-        }
-        weakest = min(gains, key=lambda p: gains[p].errors_away)
-        found = gains[weakest]
-        if found.errors_away > LEAST_HELD_OUT or abs(found.share) + found.error < UNEXERCISED:
-            return gains
-        search.drop(weakest)
-    return {}
-
-
-def _without_weakest(search: Search, gains: Mapping[str, Gain]) -> dict[str, Gain]:
-    """Take back the effect that gained least on held-out experiments (the newest where that is not known); the gains of the others."""
-    names = [e.prefix for e in search.current.effects]
-    weakest = min(names, key=lambda n: gains[n].share) if all(n in gains for n in names) else names[-1]
-    search.drop(weakest)
-    left = {e.prefix for e in search.current.effects}
-    return {n: g for n, g in gains.items() if n in left}
 
 
 def _searched(search: Search) -> bool:
@@ -240,80 +189,3 @@ def _ranking(search: Search) -> tuple[tuple[str, str, float, float | None], ...]
     gains = {(r.leader.attachment.port, r.leader.attachment.mechanism.name): r.gain for r in reversed(first.ranked)}
     rows = [(port, name, share, gains.get((port, name))) for (port, name), share in best.items()]
     return tuple(sorted(rows, key=lambda row: -row[2])[:20])
-
-
-class _Judgement:
-    """The models on every experiment: the card's values, the plain refit, and the model with effects."""
-
-    def __init__(
-        self,
-        dataset: DataSet,
-        problem: Problem,
-        search: Search,
-        plain: Final,
-        augmented: Final,
-        substeps: int,
-        device: str,
-        gains: Mapping[str, Gain],
-    ) -> None:
-        self.gains = gains
-        self.recordings = dataset.recordings
-        self.problem = all_starts_free(dataset, make_problem(dataset, problem.model, dataset.recordings))
-        self.plain, self.augmented, self.substeps, self.device = plain, augmented, substeps, device
-        self.start = self._compared(problem, problem.values, None)
-        self.refit = self._compared(plain.problem, plain.problem.values, plain)
-        has_effects = bool(search.current.effects)
-        self.with_effects = (
-            self._compared(augmented.problem, augmented.problem.values, augmented) if has_effects else self.refit
-        )
-        self.sums = tuple(self._energy(c) for c in (self.refit, self.with_effects))
-
-    @property
-    def holds(self) -> bool:
-        """Whether the effects are borne out: over windows of the validation experiments, or by their free runs.
-
-        A free run can go astray where the machine is nearly bistable, however right the model is; windows with free starts cannot.
-        """
-        confirmed = bool(self.gains) and all(g.errors_away > CONFIRMED for g in self.gains.values())
-        return confirmed or self.sums[1] < (1 + UNEXERCISED) * self.sums[0]
-
-    def comparisons(self, effects: bool) -> dict[str, Comparison]:
-        return {"start": self.start, "refit": self.refit, "augmented": self.with_effects if effects else self.refit}
-
-    def traces(self, effects: bool) -> tuple[Trace, ...]:
-        last = self.with_effects if effects else self.refit
-        result = []
-        for e, recording in enumerate(self.recordings):
-            for k, output in enumerate(self.problem.model.outputs):
-                simulated = [c.simulated[e][:, k] for c in (self.start, self.refit, last)]
-                measured, time_axis = self.problem.tape.y[k, self.problem.tape.span(e)], self.problem.tape.time(e)
-                result.append(
-                    Trace(recording.name, recording.role, output.name, output.unit, time_axis, measured, *simulated)
-                )
-        return tuple(result)
-
-    def _compared(self, like: Problem, values: np.ndarray, final: Final | None) -> Comparison:
-        """Free runs of all experiments; start states fitted on whole estimation records where there are any, else on the first tenth."""
-        named = dict(zip(like.names, map(float, values), strict=True))
-        problem = (
-            self.problem.with_values(values)
-            if like.model is self.problem.model
-            else problem_for(self.problem, like.model, named)
-        )
-        stepper = make_stepper(like.model, (), device=self.device)
-        started = estimate_initial(problem, stepper, substeps=self.substeps)
-        if final is not None:
-            initial = started.initial.copy()
-            for row, name in zip(final.problem.initial, final.problem.tape.names, strict=True):
-                initial[started.tape.names.index(name)] = row
-            started = replace(started, initial=initial)
-        return _scored(started, self.recordings, stepper, self.substeps)
-
-    def _energy(self, comparison: Comparison) -> float:
-        roles = [s.role for s in comparison.scores]
-        judged = [s for s in comparison.scores if s.role == "validation" or "validation" not in roles]
-        return float(sum(s.rmse**2 for s in judged))
-
-
-def _scored(problem: Problem, recordings: tuple[Recording, ...], stepper: Stepper, substeps: int) -> Comparison:
-    return compare(problem, recordings, stepper, substeps=substeps, estimate_starts=False)

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS
 from greybox_torch.diagnose.leaders import Leader, leaders
-from greybox_torch.diagnose.name import PARSIMONY, sureness
+from greybox_torch.diagnose.name import PARSIMONY, Ranked, sureness
 from greybox_torch.diagnose.noise import ABOVE_NOISE, only_noise, times_noise
 from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.rounds import Round, Rounds
 from greybox_torch.diagnose.screen import Look
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulate.side_by_side import side_by_side
 
 MOST_EFFECTS = 4
@@ -98,7 +97,7 @@ class Search(Rounds):
         if done.taken is None or done.taken.unknown:
             return None
         shortest = done.looks[0]
-        found = [k for k in leaders(done.looks, before.fits, self.surroundings, self._card()) if not _is_curve(k)]
+        found = [k for k in leaders(done.looks, before.fits, self.surroundings, self._card()) if not k.unknown]
         shares = {k.attachment.prefix: _explained(shortest, k.attachment) for k in found}
         best = max(found, key=lambda k: shares[k.attachment.prefix], default=None)
         if best is None or shares[best.attachment.prefix] < LEAST_SHARE_PASSED_OVER:
@@ -114,28 +113,32 @@ class Search(Rounds):
         return best if taken < 0.5 * shares[best.attachment.prefix] else None
 
     def _advance(self) -> None:
+        """Take effects while it pays."""
         while len(self.current.effects) < MOST_EFFECTS and not only_noise(self.problem, self.current):
-            before, rounds = self.current, list(self.rounds)
+            rounds = list(self.rounds)
             if not (self.step() or self._step_with_fine_curves()):
                 break
-            taken = self.rounds[-1].taken
-            if taken is not None and taken.unknown:
-                self._named_instead(before, rounds)
+            done = self.rounds[-1]
+            if done.taken is not None and done.taken.unknown:
+                self._named_instead(done, rounds)
+                if len(self.current.effects) == len(done.parent.effects):
+                    break  # what is there already comes as far as the curve, and no name goes farther
 
     def _step_with_fine_curves(self) -> bool:
         """Where nothing pays and yet more than noise is left: one round with curves fine enough for a narrow law."""
         more = times_noise(self.problem, self.current) > ABOVE_NOISE
         return self._may_be_a_curve() and more and self.step(fine=True)
 
-    def _named_instead(self, before: Hypothesis, rounds: list[Round]) -> None:
-        """Where a free curve was taken: the search from ``before`` without curves, kept if named effects come as far.
+    def _named_instead(self, done: Round, rounds: list[Round]) -> None:
+        """Where a free curve was taken: the search without curves from where that round began, kept if named effects come as far.
 
         One curve can stand for several laws of the same signal, none of which would come near it alone.
         """
-        with_curve, its_rounds = self.current, self.rounds
+        with_curve, its_rounds, before = self.current, self.rounds, done.parent
         self.current, self.rounds, self.curves = before, rounds, False
         try:
-            self._advance()
+            if self._take(done.looks, [r for r in done.ranked if not r.unknown]):
+                self._advance()
         except BaseException:  # interrupted: the curve is the best so far
             self.current, self.rounds = with_curve, its_rounds
             raise
@@ -154,12 +157,31 @@ class Search(Rounds):
         self.without = {}
         self.prune()
 
+    def contained(self, effect: Attachment) -> list[tuple[Ranked, Hypothesis]]:
+        """Laws that the law of ``effect`` contains, of those that were refitted beside it, and each in its place beside the others."""
+        done, found = self.round_of(effect.prefix), []
+        for rival in done.ranked if done is not None else ():
+            other = rival.leader.attachment
+            if other.port == effect.port and other.mechanism.name in effect.mechanism.generalises:
+                self.progress(f"refitting {other.prefix} in the place of {effect.prefix}")
+                effects = tuple(other if e is effect else e for e in self.current.effects)
+                fitted = self._refitted(effects, self.current, [rival.fitted.values()])
+                found += [] if fitted is None else [(rival, fitted)]
+        return found
+
+    def settle_for(self, rival: Ranked, fitted: Hypothesis, effect: Attachment) -> None:
+        """Take ``fitted``, with the law of ``rival`` in the place of ``effect``, as if the round had found that."""
+        done = self.round_of(effect.prefix)
+        self.rounds = [replace(r, taken=rival) if r is done else r for r in self.rounds]
+        self.current = fitted
+        self.prune()
+
     def _revised(self) -> bool:
-        """Choose every one of several effects once more, beside the others: an early choice was made while they were still missing.
+        """Choose every effect but the newest once more, beside the others: an early choice was made while those were still missing.
 
         Whether one was replaced; the rest is then left as it is.
         """
-        for effect in self.current.effects if len(self.current.effects) > 1 else ():
+        for effect in self.current.effects[:-1]:
             whole, rounds = self.current, list(self.rounds)
             self.progress(f"choosing {effect.prefix} once more")
             self.current = self.without[effect.prefix]
@@ -203,10 +225,6 @@ class Search(Rounds):
             return self.plain
         self.progress(f"trying without {effect.prefix}")
         return self._refitted(rest, self.current) or self.plain
-
-
-def _is_curve(leader: Leader) -> bool:
-    return isinstance(leader.attachment.mechanism, Unknown)
 
 
 def _explained(looks: Sequence[Look], attachment: Attachment) -> float:

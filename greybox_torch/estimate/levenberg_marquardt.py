@@ -8,6 +8,7 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
+from greybox_torch.estimate.bounded_step import bounded_step
 from greybox_torch.estimate.termination import Termination
 
 Extra = TypeVar("Extra")
@@ -71,8 +72,8 @@ def minimise(
     Returns:
         The optimum, or None where ``evaluate`` fails at the start already.
 
-    Source: D. W. Marquardt (1963); damping after H. B. Nielsen, "Damping parameter in Marquardt's method", 1999; bounds by an active
-    set of variables whose gradient points outwards.
+    Source: D. W. Marquardt (1963); damping after H. B. Nielsen, "Damping parameter in Marquardt's method", 1999; bounds by
+    :func:`bounded_step`.
     """
     point = np.clip(start, lower, upper)
     here = evaluate(point)
@@ -81,13 +82,10 @@ def minimise(
     evaluations, growth, damping = 1, 2.0, settings.damping
     diagonal = _diagonal(here.hessian, None)
     for iteration in range(1, settings.iterations + 1):
-        free = ~(((point <= lower) & (here.gradient > 0)) | ((point >= upper) & (here.gradient < 0)))
-        if not free.any():
-            return Optimum(point, here, iteration - 1, evaluations, Termination.converged)
         diagonal = _diagonal(here.hessian, diagonal)
         moved = False
         for _ in range(settings.trials):
-            step = _step(here, diagonal, damping, free)
+            step = _step(here, diagonal, damping, lower - point, upper - point)
             trial = _shortened(point, step, lower, upper, admissible)
             taken = trial - point
             predicted = -(here.gradient @ taken) - 0.5 * taken @ here.hessian @ taken
@@ -119,14 +117,12 @@ def _diagonal(hessian: np.ndarray, before: np.ndarray | None) -> np.ndarray:
     return np.maximum(largest, 1e-14 * max(float(largest.max()), 1e-300))
 
 
-def _step(here: Quadratic, diagonal: np.ndarray, damping: float, free: np.ndarray) -> np.ndarray:
-    scale = 1.0 / np.sqrt(diagonal[free])
-    matrix = here.hessian[np.ix_(free, free)] * scale[:, None] * scale[None, :]
+def _step(here: Quadratic, diagonal: np.ndarray, damping: float, lowest: np.ndarray, highest: np.ndarray) -> np.ndarray:
+    """The damped step between ``lowest`` and ``highest`` (d,)."""
+    scale = 1.0 / np.sqrt(diagonal)
+    matrix = here.hessian * scale[:, None] * scale[None, :]
     matrix[np.diag_indices_from(matrix)] += damping
-    right = -here.gradient[free] * scale
-    step = np.zeros(len(free))
-    step[free] = scale * np.linalg.lstsq(matrix, right, rcond=1e-15)[0]
-    return step
+    return scale * bounded_step(matrix, -here.gradient * scale, lowest / scale, highest / scale)
 
 
 def _shortened(

@@ -9,17 +9,24 @@ Source: H. G. Bock, "Recent advances in parameter identification techniques for 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from greybox_torch.estimate.levenberg_marquardt import ROUGH, Settings
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.rough_starts import rough_starts
+from greybox_torch.estimate.window_step import Hold, WindowModel, held, stepped
 from greybox_torch.simulate.stepper import Stepper, Windows, cut
 
 SHRINKING = 30.0
 """Samples' worth of error that a shrunk parameter costs when it is as large as it began."""
+
+NEGLIGIBLE = 1e-2
+"""Predicted gain, as a share of the tolerance, from which a step is not worth simulating."""
+
+LEAST_GAIN_RATIO = 1e-4
+"""Share of the predicted gain that a step must bring to be accepted."""
 
 CARRY_EVERY = 4
 """Accepted steps after which carried states are brought along anew, with the parameters as they then are."""
@@ -37,31 +44,6 @@ class WindowFit:
     mean_square: float
     energies: np.ndarray
     evaluations: int
-
-
-@dataclass(frozen=True)
-class _Hold:
-    """How weakly the unknowns are held where they began: weights of squared distances, of start states (n_x,) and parameters (n_p,)."""
-
-    starts: np.ndarray
-    weights: np.ndarray
-    values: np.ndarray
-    value_weights: np.ndarray
-
-
-@dataclass(frozen=True)
-class _Pass:
-    cost: float
-    hpp: np.ndarray
-    gp: np.ndarray
-    hss: np.ndarray
-    hsp: np.ndarray
-    gs: np.ndarray
-    mean_square: float
-    energies: np.ndarray
-    open_states: np.ndarray
-    away: np.ndarray
-    moved: np.ndarray
 
 
 def fit_windows(
@@ -93,20 +75,23 @@ def fit_windows(
     if here is None:
         return None
     hold = _weak_hold(problem, states, here.mean_square, windows.steps, size)
-    here = _held(here, hold)
+    here = held(here, hold)
     evaluations, accepted_steps, damping, growth = 1, 0, 1e-2, 2.0
     for _ in range(settings.iterations):
         accepted = False
         for _ in range(settings.trials):
-            trial, trial_states = _stepped(problem, here, states, damping)
+            trial, trial_states, predicted = stepped(problem, here, states, damping)
+            if predicted <= NEGLIGIBLE * settings.tolerance * here.cost:
+                break
             there = None
             if problem.admissible(trial.values):
                 there = _evaluate(trial, stepper, windows, trial_states, hold, substeps)
                 evaluations += 1
-            if there is not None and there.cost < here.cost:
+            gain = -1.0 if there is None else (here.cost - there.cost) / predicted
+            if there is not None and gain > LEAST_GAIN_RATIO:
                 change = (here.cost - there.cost) / here.cost
                 problem, states, here, accepted = trial, trial_states, there, True
-                damping, growth = max(damping / 5.0, 1e-9), 2.0
+                damping, growth = max(damping * max(0.1, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3), 1e-9), 2.0
                 accepted_steps += 1
                 break
             damping, growth = damping * growth, growth * 2.0
@@ -163,7 +148,7 @@ def carried_starts(
     return starts
 
 
-def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: int, size: float | None) -> _Hold:
+def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: int, size: float | None) -> Hold:
     """Holds that matter only where the data say nothing: start states within several times their spread, parameters within several
     times their start value (without which a friction law's shape can wander off where no speed is visited).
     """
@@ -181,7 +166,7 @@ def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: 
         size = max(float(np.abs(values[shrunk]).max()) if size is None else size, 1e-12)
         value_weights = np.where(shrunk, SHRINKING * mean_square / size**2, value_weights)
         values = np.where(shrunk, 0.0, values)
-    return _Hold(states, 1e-4 * mean_square * steps / spread**2, values, value_weights)
+    return Hold(states, 1e-4 * mean_square * steps / spread**2, values, value_weights)
 
 
 def _evaluate(
@@ -189,9 +174,9 @@ def _evaluate(
     stepper: Stepper,
     windows: Windows,
     states: np.ndarray,
-    hold: _Hold | None,
+    hold: Hold | None,
     substeps: int,
-) -> _Pass | None:
+) -> WindowModel | None:
     count, n_x = states.shape
     n_p = int(problem.free.sum())
     open_states = np.flatnonzero(~problem.carried)
@@ -211,7 +196,7 @@ def _evaluate(
         return None
     h, g = run.normal[:, :-1, :-1], -run.normal[:, :-1, -1]
     energies = run.normal[:, -1, -1]
-    found = _Pass(
+    found = WindowModel(
         cost=0.5 * float(energies.sum()),
         hpp=h[:, :n_p, :n_p].sum(0),
         gp=g[:, :n_p].sum(0),
@@ -224,22 +209,7 @@ def _evaluate(
         away=states[:, open_states],
         moved=problem.values[problem.free],
     )
-    return found if hold is None else _held(found, hold)
-
-
-def _held(found: _Pass, hold: _Hold) -> _Pass:
-    """The pass with the weak holds added to cost, gradient and Hessian."""
-    weights = hold.weights[found.open_states]
-    away, moved = found.away - hold.starts[:, found.open_states], found.moved - hold.values
-    held = float((weights * away**2).sum() + (hold.value_weights * moved**2).sum())
-    return replace(
-        found,
-        cost=found.cost + 0.5 * held,
-        hpp=found.hpp + np.diag(hold.value_weights),
-        gp=found.gp + hold.value_weights * moved,
-        hss=found.hss + np.diag(weights),
-        gs=found.gs + weights * away,
-    )
+    return found if hold is None else held(found, hold)
 
 
 def _weighted_samples(problem: Problem, windows: Windows) -> int:
@@ -247,24 +217,3 @@ def _weighted_samples(problem: Problem, windows: Windows) -> int:
     known = np.concatenate([[0], np.cumsum((~np.isnan(problem.tape.y)).sum(axis=0))])
     ends = np.minimum(windows.start + windows.steps, windows.last + 1)
     return int((known[ends] - known[windows.start]).sum())
-
-
-def _stepped(problem: Problem, here: _Pass, states: np.ndarray, damping: float) -> tuple[Problem, np.ndarray]:
-    """The damped Gauss-Newton step, window starts eliminated."""
-    diagonal = np.einsum("wii->wi", here.hss)
-    floor = 1e-12 * diagonal.max()
-    damped = here.hss + np.eye(diagonal.shape[1]) * (damping * (diagonal + floor))[:, :, None]
-    solved = np.linalg.solve(damped, np.concatenate([here.hsp, here.gs[..., None]], axis=2))
-    back, own = solved[..., :-1], solved[..., -1]
-    matrix = here.hpp - np.einsum("wsp,wsq->pq", here.hsp, back)
-    right = -(here.gp - np.einsum("wsp,ws->p", here.hsp, own))
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(here.hpp), 1e-14 * max(np.diag(here.hpp).max(initial=0.0), 1e-300)))
-    scaled = matrix * scale[:, None] * scale[None, :] + damping * np.eye(len(scale))
-    step = scale * np.linalg.lstsq(scaled, right * scale, rcond=1e-14)[0] if len(scale) else np.zeros(0)
-    values = problem.values.copy()
-    low, high = problem.lower[problem.free], problem.upper[problem.free]
-    values[problem.free] = np.clip(values[problem.free] + step, low, high)
-    taken = values[problem.free] - problem.values[problem.free]
-    moved = states.copy()
-    moved[:, here.open_states] -= own + back @ taken
-    return problem.with_values(values), moved

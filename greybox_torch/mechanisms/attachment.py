@@ -105,9 +105,8 @@ class AugmentedModel(GreyBoxModel):
             local, own, memory = self._local(a, seen, u if isinstance(site, Actuator) else acting, p)
             if not a.mechanism.kinematic and not isinstance(site, Actuator | Sensor):
                 forces[a.port] = forces[a.port] + self._share(a, p) * a.mechanism.force(local, own, memory)
-            reaction = a.mechanism.reaction(local, own) if a.mechanism.kinematic else None
-            if reaction is not None:
-                forces[a.position] = forces[a.position] + self._share(a, p) * reaction
+            for place, force in self._kinematic_forces(a, local, own):
+                forces[place] = forces[place] + self._share(a, p) * force
             for name, rate in a.mechanism.rates(local, own, memory).items():
                 extra[f"{a.prefix}.{name}"] = rate
         rates = dict(self.base.derivative(seen, acting, p, Signals("port", forces)))
@@ -116,6 +115,13 @@ class AugmentedModel(GreyBoxModel):
         if self._needs("time"):
             rates["time"] = torch.ones_like(x[self.states[0].name])
         return {**rates, **extra}
+
+    def _kinematic_forces(self, a: Attachment, local: Signals, own: Signals) -> list[tuple[str, Any]]:
+        """What a kinematic law that follows a body does beyond the change of deflection: forces by port."""
+        if not (a.mechanism.kinematic and a.position):
+            return []
+        found = [(a.position, a.mechanism.reaction(local, own)), (a.port, a.mechanism.damped(local, own))]
+        return [(place, force) for place, force in found if force is not None]
 
     def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
         values = dict(self.base.output(x, self._acting_inputs(x, u, p), p))
@@ -220,6 +226,8 @@ class AugmentedModel(GreyBoxModel):
             values["position"] = self._position(a.position, x, u, p)
         if isinstance(site, Coupling) and a.position and "load" in self.surroundings[a.port].ranges:
             values["load"] = _value(self._body(a.position).signals["load"], x, u, p)
+        if a.mechanism.kinematic and a.position:
+            values["speed"] = _value(self._body(a.position).speed, x, u, p)
         driving = driving_body(self.base_ports.values())
         if (
             driving is not None

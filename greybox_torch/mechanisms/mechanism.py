@@ -111,6 +111,10 @@ class Mechanism:
         """For a kinematic law that follows a body's position, the force on that body, if there is one."""
         return None
 
+    def damped(self, s: Signals, p: Signals) -> Any | None:
+        """For a kinematic law that moves with a body, the force on the coupling by which its damper answers the rate of the change."""
+        return None
+
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         """The looks that the screen takes."""
         raise NotImplementedError

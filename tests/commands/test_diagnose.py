@@ -214,6 +214,14 @@ def test_a_users_own_model(motor_folder: Make) -> None:
     assert written(folder) == FILES
 
 
+def test_seeds_change_no_verdict(motor_folder: Make) -> None:
+    folder = motor_folder(dead_zone=0.4)
+    verdicts = [json.loads(diagnose(folder, "--json", "--seed", str(seed)).stdout) for seed in (0, 1, 2)]
+    assert [v["seed"] for v in verdicts] == [0, 1, 2]
+    for key in ("mismatch", "effects", "fit", "confidence"):
+        assert verdicts[0][key] == verdicts[1][key] == verdicts[2][key]
+
+
 def test_stopped(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     """On a clock by which the time is up at once: how far a real one lets the search get depends on the machine."""
     monkeypatch.setattr("greybox_torch.diagnose.run._Clock.seconds", property(lambda self: 10.0))

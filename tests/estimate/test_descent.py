@@ -28,7 +28,7 @@ class Oscillation(GreyBoxModel):
     inputs = [Input("torque", "N m")]
     outputs = [Output("position", "rad")]
     parameters = [
-        Parameter("frequency", 1.0, unit="rad/s", lower=0.0),
+        Parameter("frequency", 1.5, unit="rad/s", lower=0.0),
         Parameter("level", 1.0, unit="rad", lower=0.0),
     ]
 

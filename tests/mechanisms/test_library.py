@@ -123,11 +123,12 @@ def test_absent_at_zero_amplitude(mechanism: Mechanism, around, anywhere, law) -
     assert np.array_equal(value, expected)
 
 
-def reaction(mechanism: Mechanism, values: dict[str, float], signals: dict[str, np.ndarray]) -> np.ndarray:
+def beside(hook: str, mechanism: Mechanism, values: dict[str, float], signals: dict[str, np.ndarray]) -> np.ndarray:
+    """A force of a kinematic law beside its change of deflection."""
     as_tensors = (
         {n: torch.as_tensor(np.asarray(v, dtype=float)) for n, v in each.items()} for each in (signals, values)
     )
-    force = mechanism.reaction(*(Signals("given", each) for each in as_tensors))
+    force = getattr(mechanism, hook)(*(Signals("given", each) for each in as_tensors))
     assert force is not None
     return force.numpy()
 
@@ -149,8 +150,10 @@ def test_every_parameter_moves_the_law(mechanism: Mechanism, around, anywhere, l
         if memory:
             moved = rates(mechanism, other, memory, **signals) - rates(mechanism, values, memory, **signals)
             change = max(change, np.abs(moved).max())
-        if mechanism.kinematic and p.name == "reaction":
-            change = np.abs(reaction(mechanism, other, anywhere) - reaction(mechanism, values, anywhere)).max()
+        hook = {"reaction": "reaction", "damping": "damped"}.get(p.name) if mechanism.kinematic else None
+        if hook is not None:
+            forces = [beside(hook, mechanism, at, anywhere) for at in (other, values)]
+            change = np.abs(forces[0] - forces[1]).max()
         assert change > 1e-6, p.name
 
 

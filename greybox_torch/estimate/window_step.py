@@ -1,0 +1,86 @@
+"""The Gauss-Newton model of a windowed fit, and the step that it proposes, window starts eliminated."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from greybox_torch.estimate.bounded_step import bounded_step
+from greybox_torch.estimate.problem import Problem
+
+
+@dataclass(frozen=True)
+class Hold:
+    """How weakly the unknowns are held where they began: weights of squared distances, of start states (n_x,) and parameters (n_p,)."""
+
+    starts: np.ndarray
+    weights: np.ndarray
+    values: np.ndarray
+    value_weights: np.ndarray
+
+
+@dataclass(frozen=True)
+class WindowModel:
+    """Cost, gradient and Gauss-Newton Hessian over windows: of the parameters (``gp``, ``hpp``), of each window's open start states
+    (``gs``, ``hss``) and between the two (``hsp``); the mean squared error, the energy of every window (W,), and where the unknowns are.
+    """
+
+    cost: float
+    hpp: np.ndarray
+    gp: np.ndarray
+    hss: np.ndarray
+    hsp: np.ndarray
+    gs: np.ndarray
+    mean_square: float
+    energies: np.ndarray
+    open_states: np.ndarray
+    away: np.ndarray
+    moved: np.ndarray
+
+
+def held(found: WindowModel, hold: Hold) -> WindowModel:
+    """The pass with the weak holds added to cost, gradient and Hessian."""
+    weights = hold.weights[found.open_states]
+    away, moved = found.away - hold.starts[:, found.open_states], found.moved - hold.values
+    cost = float((weights * away**2).sum() + (hold.value_weights * moved**2).sum())
+    return replace(
+        found,
+        cost=found.cost + 0.5 * cost,
+        hpp=found.hpp + np.diag(hold.value_weights),
+        gp=found.gp + hold.value_weights * moved,
+        hss=found.hss + np.diag(weights),
+        gs=found.gs + weights * away,
+    )
+
+
+def stepped(
+    problem: Problem, here: WindowModel, states: np.ndarray, damping: float
+) -> tuple[Problem, np.ndarray, float]:
+    """The damped Gauss-Newton step within bounds, window starts eliminated, and how much it should lower the cost."""
+    diagonal = np.einsum("wii->wi", here.hss)
+    floor = 1e-12 * diagonal.max()
+    damped = here.hss + np.eye(diagonal.shape[1]) * (damping * (diagonal + floor))[:, :, None]
+    solved = np.linalg.solve(damped, np.concatenate([here.hsp, here.gs[..., None]], axis=2))
+    back, own = solved[..., :-1], solved[..., -1]
+    matrix = here.hpp - np.einsum("wsp,wsq->pq", here.hsp, back)
+    right = -(here.gp - np.einsum("wsp,ws->p", here.hsp, own))
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(here.hpp), 1e-14 * max(np.diag(here.hpp).max(initial=0.0), 1e-300)))
+    scaled = matrix * scale[:, None] * scale[None, :] + damping * np.eye(len(scale))
+    now = problem.values[problem.free]
+    low, high = ((bound[problem.free] - now) / scale for bound in (problem.lower, problem.upper))
+    taken = scale * bounded_step(scaled, right * scale, low, high)
+    values = problem.values.copy()
+    values[problem.free] = np.clip(now + taken, problem.lower[problem.free], problem.upper[problem.free])
+    away = -(own + back @ taken)
+    moved = states.copy()
+    moved[:, here.open_states] += away
+    return problem.with_values(values), moved, _predicted(here, taken, away)
+
+
+def _predicted(here: WindowModel, taken: np.ndarray, away: np.ndarray) -> float:
+    """How much the quadratic model falls by a step ``taken`` (n_p,) in the parameters and ``away`` (W, n_s) in the start states."""
+    slope = float(here.gp @ taken + (here.gs * away).sum())
+    bend = float(taken @ here.hpp @ taken + 2.0 * (away * (here.hsp @ taken)).sum())
+    bend += float(np.einsum("ws,wst,wt->", away, here.hss, away))
+    return -(slope + 0.5 * bend)

@@ -1,0 +1,77 @@
+"""Fits on windows with free start states: where they end, and that bounds do not stop the other unknowns."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greybox_torch.estimate.levenberg_marquardt import Settings
+from greybox_torch.estimate.problem import Problem, make_problem
+from greybox_torch.estimate.window_fit import WindowFit, fit_windows
+from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
+from greybox_torch.simulate.stepper import make_stepper
+
+UNITS = {"voltage": "V", "speed": "rad/s"}
+TIGHT = Settings(iterations=60, tolerance=1e-12, trials=10)
+
+
+class TwoGains(GreyBoxModel):
+    """dx/dt = gain u + extra u³ − decay x."""
+
+    states = [State("speed", "rad/s", initial="measured")]
+    inputs = [Input("voltage", "V")]
+    outputs = [Output("speed", "rad/s")]
+    parameters = [
+        Parameter("gain", 1.0, lower=0.0),
+        Parameter("extra", 0.5, lower=0.0),
+        Parameter("decay", 1.0, lower=0.0),
+    ]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return {"speed": p.gain * u.voltage + p.extra * u.voltage**3 - p.decay * x.speed}
+
+    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+        return {"speed": x.speed}
+
+
+def recorded(data_set: Any, extra: float) -> Problem:
+    """Steps of random height, simulated exactly: dx/dt = 2 u + extra u³ − 3 x, a little noise."""
+    draw = np.random.default_rng(4)
+    voltage = np.repeat(draw.uniform(-2, 2, 40), 25)
+    speed, decayed = np.zeros(1000), np.exp(-3.0 * 0.01)
+    for k in range(999):
+        level = (2.0 * voltage[k] + extra * voltage[k] ** 3) / 3.0
+        speed[k + 1] = level + (speed[k] - level) * decayed
+    data = data_set(UNITS, [{"voltage": voltage, "speed": speed + 0.001 * draw.normal(size=1000)}])
+    return make_problem(data, TwoGains(), data.estimation())
+
+
+def fitted(problem: Problem) -> WindowFit:
+    """Fitted three times over: each fit holds the unknowns, weakly, where it began."""
+    stepper = make_stepper(problem.model, problem.free_names)
+    found = None
+    for _ in range(3):
+        found = fit_windows(problem, stepper, 100, settings=TIGHT)
+        assert found is not None
+        problem = found.problem
+    assert found is not None
+    return found
+
+
+def test_finds_the_truth(data_set: Any) -> None:
+    assert fitted(recorded(data_set, 0.7)).problem.values == pytest.approx([2.0, 0.7, 3.0], rel=2e-3)
+
+
+def test_with_an_unknown_at_its_bound_the_others_reach_their_optimum(data_set: Any) -> None:
+    """The cubic gain wants to be negative; the rest must do as well as where it is not there at all, in a few steps."""
+    problem = recorded(data_set, -0.2)
+    bounded = fitted(problem)
+    without = problem.with_values(np.array([1.0, 0.0, 1.0]))
+    free = np.array([True, False, True])
+    alone = fitted(Problem(**{**without.__dict__, "free": free}))
+    assert bounded.problem.values[1] == 0.0
+    assert bounded.mean_square == pytest.approx(alone.mean_square, rel=1e-6)
+    assert bounded.problem.values == pytest.approx(alone.problem.values, rel=1e-3, abs=1e-12)
+    assert bounded.evaluations < 30
