@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from greybox_torch.checkpoint import Checkpoint, load_checkpoint
-    from greybox_torch.data import load_dataset
+    from greybox_torch.data import DataSet, load_dataset
     from greybox_torch.evaluation import Evaluation, evaluate
     from greybox_torch.mechanisms.friction_net import FrictionNet
     from greybox_torch.mechanisms.residual_net import ResidualNet
@@ -28,6 +28,7 @@ __all__ = [
     "Body",
     "Checkpoint",
     "Coupling",
+    "DataSet",
     "Evaluation",
     "FrictionNet",
     "GreyBoxModel",
@@ -51,6 +52,7 @@ _HOME_OF = {
     "Body": "greybox_torch.model",
     "Checkpoint": "greybox_torch.checkpoint",
     "Coupling": "greybox_torch.model",
+    "DataSet": "greybox_torch.data",
     "Evaluation": "greybox_torch.evaluation",
     "FrictionNet": "greybox_torch.mechanisms.friction_net",
     "GreyBoxModel": "greybox_torch.model",
