@@ -1,4 +1,5 @@
-# `make demo` shows what the tool does; `make test` checks that it still does it; `make bench` measures it beside other tools.
+# `make demo` shows what the tool does; `make test` checks that it still does it; `make bench` measures it beside other tools,
+# `make notebook` shows what the trained models in checkpoints/ are worth.
 # Everything runs in .venv, which is made once and refreshed when the dependencies change.
 
 PYTHON ?= python3
@@ -6,7 +7,7 @@ BIN := .venv/bin
 INSTALLED := .venv/.installed
 PEERS := .venv/.peers
 
-.PHONY: demo test lint bench clean
+.PHONY: demo test lint bench notebook clean
 
 demo: $(INSTALLED)
 	$(BIN)/greybox demo --out results/demo
@@ -21,6 +22,9 @@ lint: $(INSTALLED)
 
 bench: $(PEERS)
 	$(BIN)/python -m experiments.speed --out results/bench
+
+notebook: $(INSTALLED)
+	$(BIN)/python -m experiments.notebook --out results/notebook
 
 clean:
 	rm -rf .venv results build dist *.egg-info .pytest_cache .ruff_cache .hypothesis

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
     from greybox_torch.report.comparison import plot_comparison
     from greybox_torch.report.residuals import plot_residuals
+    from greybox_torch.restored import SavedModel, load_saved_model
     from greybox_torch.systems import load_model
     from greybox_torch.train import TrainingSettings, train_hybrid
 
@@ -36,12 +37,14 @@ __all__ = [
     "Output",
     "Parameter",
     "ResidualNet",
+    "SavedModel",
     "State",
     "TrainingSettings",
     "evaluate",
     "load_checkpoint",
     "load_dataset",
     "load_model",
+    "load_saved_model",
     "plot_comparison",
     "plot_residuals",
     "train_hybrid",
@@ -60,12 +63,14 @@ _HOME_OF = {
     "Output": "greybox_torch.model",
     "Parameter": "greybox_torch.model",
     "ResidualNet": "greybox_torch.mechanisms.residual_net",
+    "SavedModel": "greybox_torch.restored",
     "State": "greybox_torch.model",
     "TrainingSettings": "greybox_torch.train",
     "evaluate": "greybox_torch.evaluation",
     "load_checkpoint": "greybox_torch.checkpoint",
     "load_dataset": "greybox_torch.data",
     "load_model": "greybox_torch.systems",
+    "load_saved_model": "greybox_torch.restored",
     "plot_comparison": "greybox_torch.report.comparison",
     "plot_residuals": "greybox_torch.report.residuals",
     "train_hybrid": "greybox_torch.train",

@@ -6,20 +6,21 @@ This is `greybox compare` and `greybox residuals` from Python, and what those co
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
+from typing import Any
 
 import numpy as np
-import torch
 
 from greybox_torch.data import DataSet
-from greybox_torch.errors import UserError, did_you_mean
+from greybox_torch.errors import UserError
 from greybox_torch.estimate.comparison import Comparison, Score, compare
 from greybox_torch.estimate.overflow import avoidance, first_overflow, remedies
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.residuals import Residuals, residuals_of
-from greybox_torch.model import GreyBoxModel, Signals
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.rates import rates_at
 from greybox_torch.restored import restored
 from greybox_torch.simulate.stepper import make_stepper
 from greybox_torch.simulate.substeps import choose_substeps
@@ -67,32 +68,9 @@ class Evaluation:
                 found.append(residuals_of(recording, self.data.channels[output.name], simulated, inputs))
         return tuple(found)
 
-    def rates(
-        self, states: Mapping[str, np.ndarray], inputs: Mapping[str, np.ndarray] | None = None
-    ) -> dict[str, np.ndarray]:
-        """What the model says of the machine at given states: the rates of all states, in their units per second.
-
-        States and inputs that are not given are zero, and effects with a memory are as they would begin there. A static law is read off
-        so, in the same way from physics and network: the friction from what slows down a machine that turns as one piece, a spring from
-        what accelerates a machine at rest that is twisted.
-
-        Args:
-            states: values (M,) or numbers by state, in the states' units.
-            inputs: the same for inputs.
-
-        Raises:
-            UserError: a state or input that the model does not have.
-        """
-        model, tape = self.problem.model, self.problem.tape
-        rows = _rows(model, "state", [s.name for s in model.states], states)
-        driven = _rows(model, "input", [i.name for i in model.inputs], inputs or {})
-        count = max(rows.shape[1], driven.shape[1])
-        rows, driven = (np.broadcast_to(part, (len(part), count)) for part in (rows, driven))
-        begun = model.begun(rows.T.copy(), replace(tape, u=driven), np.arange(count), self.problem.values)
-        p = Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in self.values.items()})
-        with torch.no_grad():
-            found = model.rates(torch.as_tensor(begun.T.copy()), torch.as_tensor(driven.copy()), p)
-        return dict(zip((s.name for s in model.states), found.numpy(), strict=True))
+    def rates(self, states: Mapping[str, Any], inputs: Mapping[str, Any] | None = None) -> dict[str, np.ndarray]:
+        """The rates of all states at given states and inputs, see :func:`greybox_torch.rates.rates_at`."""
+        return rates_at(self.problem.model, self.values, states, inputs)
 
 
 def evaluate(
@@ -145,15 +123,3 @@ def evaluated(
             "try parameters and start states nearer to the truth, tighter bounds, or a smaller sample time"
         )
     return Evaluation(data, model_name, problem, comparison, substeps, overflow)
-
-
-def _rows(model: GreyBoxModel, kind: str, names: list[str], given: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Values (n, M) of all states or inputs, zero where nothing is given."""
-    for name in given:
-        if name not in names:
-            known = ", ".join(names)
-            raise UserError(
-                f"rates: model {model.title} has no {kind} '{name}'{did_you_mean(name, names)}; expected one of {known}"
-            )
-    arrays = [np.atleast_1d(np.asarray(given.get(name, 0.0), dtype=float)) for name in names]
-    return np.stack(np.broadcast_arrays(*arrays)) if arrays else np.zeros((0, 1))

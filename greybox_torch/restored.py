@@ -16,7 +16,39 @@ from greybox_torch.diagnose.restore import restored_model
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.rates import rates_at
 from greybox_torch.systems import load_model
+
+
+@dataclass(frozen=True)
+class SavedModel:
+    """A checkpoint's ``model``, effects included, without any recordings; ``base`` is the same without the effects."""
+
+    checkpoint: Checkpoint
+    base: GreyBoxModel
+    model: GreyBoxModel
+
+    def rates(self, states: Mapping[str, Any], inputs: Mapping[str, Any] | None = None) -> dict[str, np.ndarray]:
+        """The rates of all states at given states and inputs, see :func:`greybox_torch.rates.rates_at`."""
+        return rates_at(self.model, self.checkpoint.values, states, inputs)
+
+
+def load_saved_model(path: str | PathLike[str], model: GreyBoxModel | None = None) -> SavedModel:
+    """The model of the checkpoint at ``path``, with its effects.
+
+    Args:
+        model: the plain model, loaded already; by default the one that the checkpoint names.
+
+    Raises:
+        UserError: the checkpoint is damaged, or is not one of the model it names.
+    """
+    path = Path(path)
+    checkpoint = load_checkpoint(path)
+    base = load_model(checkpoint.model) if model is None else model
+    augmented = _with_effects(path, base, checkpoint.effects) if checkpoint.effects else base
+    check_same_parameters(path, checkpoint, base.title, [p.name for p in augmented.declared_parameters])
+    check_same_units(path, checkpoint, base.title, {p.name: p.unit for p in base.declared_parameters})
+    return SavedModel(checkpoint, base, augmented)
 
 
 @dataclass(frozen=True)
@@ -36,16 +68,12 @@ def restored(data: DataSet, path: str | PathLike[str], model: GreyBoxModel, mode
 
     Raises UserError where the checkpoint is damaged, or is not one of the model it names.
     """
-    path = Path(path)
-    checkpoint = load_checkpoint(path)
-    data, base, model_name = _own_model(data, checkpoint, model, model_name)
-    augmented = _with_effects(path, base, checkpoint.effects) if checkpoint.effects else base
-    check_same_parameters(path, checkpoint, base.title, [p.name for p in augmented.declared_parameters])
-    check_same_units(path, checkpoint, base.title, {p.name: p.unit for p in base.declared_parameters})
-    problem = make_problem(data, augmented, data.recordings)
-    problem = problem.with_values(np.array([checkpoint.values[name] for name in problem.names]))
-    _check_admissible(path, problem)
-    if checkpoint.free_starts:
+    data, base, model_name = _own_model(data, load_checkpoint(path), model, model_name)
+    saved = load_saved_model(path, base)
+    problem = make_problem(data, saved.model, data.recordings)
+    problem = problem.with_values(np.array([saved.checkpoint.values[name] for name in problem.names]))
+    _check_admissible(Path(path), problem)
+    if saved.checkpoint.free_starts:
         problem = all_starts_free(data, problem, base)
     return Restored(data, model_name, problem)
 

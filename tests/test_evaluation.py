@@ -13,8 +13,6 @@ from greybox_torch.checkpoint import Checkpoint, save_checkpoint
 from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.forces import AdditionalMode
-from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.mechanism import Mechanism, Range, Surroundings
 
 Make = Callable[..., Path]
@@ -39,6 +37,7 @@ def test_true_values_leave_the_noise(motor_folder: Make) -> None:
     assert found.overflow is None
     assert [score.experiment for score in found.scores] == ["Steps", "More steps", "Sweep"]
     assert [score.rmse for score in found.scores] == pytest.approx([0.02] * 3, rel=0.15)
+    assert found.rates({"speed": 1.0})["speed"] == pytest.approx([-0.05 / 0.02])
     assert list(found.simulated) == ["Steps", "More steps", "Sweep"]
     for recording, score, residuals in zip(data.recordings, found.scores, found.residuals, strict=True):
         errors = recording.signals["speed"] - found.simulated[recording.name][:, 0]
@@ -54,44 +53,6 @@ def test_start_values_miss_something_that_the_input_explains(motor_folder: Make)
     for residuals in found.residuals:
         assert residuals.whiteness.outside > 20
         assert residuals.inputs["voltage"].largest > residuals.inputs["voltage"].bound
-
-
-def test_rates_are_the_equations(motor_folder: Make) -> None:
-    folder = motor_folder()
-    found = evaluate(load_dataset(folder / "dataset.toml"), saved(folder))
-    speed = np.linspace(-5, 5, 11)
-    assert found.rates({"speed": speed}, {"voltage": 2.0})["speed"] == pytest.approx((0.2 - 0.05 * speed) / 0.02)
-    assert found.rates({})["speed"] == pytest.approx([0.0])
-
-
-def test_rates_with_an_effect(motor_folder: Make) -> None:
-    folder = motor_folder()
-    prefix = "rotor.coulomb_friction"
-    path = saved(folder, CoulombFriction(), **{f"{prefix}.F_c": 0.3, f"{prefix}.v_0": 0.2})
-    found = evaluate(load_dataset(folder / "dataset.toml"), path)
-    speed = np.linspace(-5, 5, 11)
-    lost = 0.05 * speed + 0.3 * np.tanh(speed / 0.2)
-    assert found.rates({"speed": speed})["speed"] == pytest.approx(-lost / 0.02, rel=1e-9)
-
-
-def test_memories_are_as_they_begin(motor_folder: Make) -> None:
-    """A mass on a spring that begins along with the rotor does not hold it back."""
-    folder = motor_folder()
-    prefix = "rotor.additional_mode"
-    mode = {f"{prefix}.mass": 0.004, f"{prefix}.omega": 30.0, f"{prefix}.zeta": 0.1}
-    found = evaluate(load_dataset(folder / "dataset.toml"), saved(folder, AdditionalMode(), **mode))
-    speed = np.array([-2.0, 1.0, 4.0])
-    rates = found.rates({"speed": speed})
-    assert rates["speed"] == pytest.approx(-0.05 * speed / 0.02)
-    assert rates[f"{prefix}.stretch"] == pytest.approx(np.zeros(3))
-
-
-def test_names_that_there_are_not(motor_folder: Make) -> None:
-    found = evaluate(load_dataset(motor_folder() / "dataset.toml"))
-    with pytest.raises(UserError, match=r"has no state 'sped' \(did you mean \"speed\"\?\); expected one of speed"):
-        found.rates({"sped": np.zeros(3)})
-    with pytest.raises(UserError, match=r"has no input 'current'; expected one of voltage"):
-        found.rates({}, {"current": np.zeros(3)})
 
 
 def test_which_model(motor_folder: Make, edit: Callable[[Path, str, str], None]) -> None:

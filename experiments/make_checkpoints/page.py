@@ -56,7 +56,15 @@ def page(
 def _model(name: str, checkpoint: Checkpoint, made: Made) -> str:
     ways = {"physics": "`greybox fit`", "named": "`greybox diagnose`", "hybrid": f"`greybox train`, {made.network}"}
     versions = ", ".join(checkpoint.versions[package] for package in ("greybox_torch", "torch"))
-    return f"| [{name}]({name}.json) | {ways[name]} | {len(checkpoint.values)} | {versions} | {commit(made.models[name])} | {checkpoint.created} |"
+    facts = (
+        f"[{name}]({name}.json)",
+        ways[name],
+        len(checkpoint.values),
+        versions,
+        commit(made.models[name]),
+        checkpoint.created,
+    )
+    return f"| {' | '.join(map(str, facts))} |"
 
 
 def _scores(runs: Mapping[str, Evaluation]) -> list[str]:
