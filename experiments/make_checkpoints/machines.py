@@ -54,6 +54,8 @@ MACHINES = (
             Network("friction", "gearbox", "speed"),
             Network("residual", "gear_spring", "deflection,rate"),
             Network("friction", "motor", "speed,load"),
+            Network("residual", "motor", "speed,load"),
+            Network("residual", "arm_spring", "deflection,rate"),
         ),
     ),
 )
