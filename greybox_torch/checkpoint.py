@@ -119,12 +119,7 @@ def _values(tensors: Path, card: Path, content: CheckpointCard) -> dict[str, flo
         )
     try:
         held = load(packed)
-    except (
-        SafetensorError,
-        KeyError,
-        TypeError,
-        ValueError,
-    ) as error:  # the last three: a kind of number that NumPy lacks
+    except (SafetensorError, KeyError, TypeError, ValueError) as error:  # all but the first: numbers that NumPy lacks
         raise UserError(f"checkpoint {tensors}: not a safetensors file of 64-bit numbers: {error}") from None
     lacking, extra = _apart(content.parameters, held)
     if lacking or extra:
