@@ -1,5 +1,6 @@
 # `make demo` shows what the tool does; `make test` checks that it still does it; `make bench` measures it beside other tools;
-# `make proof` conceals effects, seals the answers, lets it speak, and scores it.
+# `make notebook` shows what the trained models in checkpoints/ are worth; `make proof` conceals effects, seals the answers, lets it speak,
+# and scores it.
 # Everything runs in .venv, which is made once and refreshed when the dependencies change.
 
 PYTHON ?= python3
@@ -8,7 +9,7 @@ INSTALLED := .venv/.installed
 PEERS := .venv/.peers
 PROOF := .venv/.proof
 
-.PHONY: demo test lint bench proof proof-quick clean
+.PHONY: demo test lint bench notebook proof proof-quick clean
 
 demo: $(INSTALLED)
 	$(BIN)/greybox demo --out results/demo
@@ -23,6 +24,9 @@ lint: $(INSTALLED)
 
 bench: $(PEERS)
 	$(BIN)/python -m experiments.speed --out results/bench
+
+notebook: $(INSTALLED)
+	$(BIN)/python -m experiments.notebook --out results/notebook
 
 # Interrupted, it goes on where it was; a new draw needs another folder, or results/proof removed.
 proof: $(PROOF)

@@ -10,10 +10,15 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from greybox_torch.data import load_dataset
+    from greybox_torch.checkpoint import Checkpoint, load_checkpoint
+    from greybox_torch.data import DataSet, load_dataset
+    from greybox_torch.evaluation import Evaluation, evaluate
     from greybox_torch.mechanisms.friction_net import FrictionNet
     from greybox_torch.mechanisms.residual_net import ResidualNet
     from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
+    from greybox_torch.report.comparison import plot_comparison
+    from greybox_torch.report.residuals import plot_residuals
+    from greybox_torch.restored import SavedModel, load_saved_model
     from greybox_torch.systems import load_model
     from greybox_torch.train import TrainingSettings, train_hybrid
 
@@ -22,34 +27,52 @@ __version__ = "0.1.0"
 __all__ = [
     "Balance",
     "Body",
+    "Checkpoint",
     "Coupling",
+    "DataSet",
+    "Evaluation",
     "FrictionNet",
     "GreyBoxModel",
     "Input",
     "Output",
     "Parameter",
     "ResidualNet",
+    "SavedModel",
     "State",
     "TrainingSettings",
+    "evaluate",
+    "load_checkpoint",
     "load_dataset",
     "load_model",
+    "load_saved_model",
+    "plot_comparison",
+    "plot_residuals",
     "train_hybrid",
 ]
 
 _HOME_OF = {
     "Balance": "greybox_torch.model",
     "Body": "greybox_torch.model",
+    "Checkpoint": "greybox_torch.checkpoint",
     "Coupling": "greybox_torch.model",
+    "DataSet": "greybox_torch.data",
+    "Evaluation": "greybox_torch.evaluation",
     "FrictionNet": "greybox_torch.mechanisms.friction_net",
     "GreyBoxModel": "greybox_torch.model",
     "Input": "greybox_torch.model",
     "Output": "greybox_torch.model",
     "Parameter": "greybox_torch.model",
     "ResidualNet": "greybox_torch.mechanisms.residual_net",
+    "SavedModel": "greybox_torch.restored",
     "State": "greybox_torch.model",
     "TrainingSettings": "greybox_torch.train",
+    "evaluate": "greybox_torch.evaluation",
+    "load_checkpoint": "greybox_torch.checkpoint",
     "load_dataset": "greybox_torch.data",
     "load_model": "greybox_torch.systems",
+    "load_saved_model": "greybox_torch.restored",
+    "plot_comparison": "greybox_torch.report.comparison",
+    "plot_residuals": "greybox_torch.report.residuals",
     "train_hybrid": "greybox_torch.train",
 }
 

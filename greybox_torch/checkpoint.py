@@ -7,12 +7,11 @@ Nothing in either file is executed on loading.
 from __future__ import annotations
 
 import hashlib
-import json
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import version
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +19,11 @@ import numpy as np
 from safetensors import SafetensorError
 from safetensors.numpy import load, save
 
-from greybox_torch.errors import UserError
+from greybox_torch import __version__
+from greybox_torch.checkpoint_card import SCHEMA, CheckpointCard, read_checkpoint_card
+from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.files import json_text, write_all
 
-SCHEMA = "greybox-checkpoint/1"
 _SUFFIXES = (".safetensors", ".json")
 
 
@@ -52,7 +52,7 @@ class Checkpoint:
 def save_checkpoint(stem: Path, checkpoint: Checkpoint) -> tuple[Path, Path]:
     """Writes `stem`.safetensors and `stem`.json, and returns their paths.
 
-    Raises UserError where they cannot be written.
+    Raises UserError where they cannot be written, NumericalError where a value is not a finite number.
     """
     write_all(checkpoint_files(stem, checkpoint))
     return _halves(stem)
@@ -62,8 +62,19 @@ def checkpoint_files(stem: Path, checkpoint: Checkpoint) -> dict[Path, str | byt
     """The contents of `stem`.safetensors and `stem`.json, to be written together, perhaps with other results.
 
     The card carries the hash of the tensors, so that halves of different checkpoints are noticed.
+
+    What could not be loaded is not written: raises NumericalError where a value is not a finite number, UserError where a value has no
+    unit or a unit no value.
     """
     tensors, card = _halves(stem)
+    lacking, extra = _apart(checkpoint.values, checkpoint.units)
+    if lacking or extra:
+        raise UserError(f"checkpoint {card}: units: {_differences(lacking, extra)}; expected one for every value")
+    for name, value in checkpoint.values.items():
+        if not np.isfinite(value):
+            raise NumericalError(
+                f"checkpoint {tensors}: parameter {name} is {value}, not a finite number; nothing is written"
+            )
     packed = save({name: np.asarray(value, dtype=np.float64) for name, value in checkpoint.values.items()})
     content = asdict(checkpoint)
     del content["values"]
@@ -71,34 +82,61 @@ def checkpoint_files(stem: Path, checkpoint: Checkpoint) -> dict[Path, str | byt
     return {tensors: packed, card: json_text(content)}
 
 
-def load_checkpoint(path: Path) -> Checkpoint:
+def load_checkpoint(path: str | PathLike[str]) -> Checkpoint:
     """The checkpoint at `path`: either of its two files, or what their names have in common.
 
     Raises:
-        UserError: a file is missing or damaged, the two do not belong together, or a newer version has written them.
+        UserError: a file is missing or damaged, the two do not belong together, a newer version has written them, the card lacks a
+            field, there are tensors too many or too few, or a value is not a finite number.
     """
-    tensors, card = _halves(path)
+    tensors, card = _halves(Path(path))
     for half, other in ((tensors, card), (card, tensors)):
         if not half.is_file():
             what = f"its other half {other} is there" if other.is_file() else "nor is its other half"
             raise UserError(f"checkpoint {half}: no such file ({what}); expected {tensors.name} and {card.name}")
-    content = _read_card(card)
-    packed = tensors.read_bytes()
-    if hashlib.sha256(packed).hexdigest() != content["tensors"]:
-        raise UserError(f"checkpoint {tensors}: damaged, or not the file that {card.name} was written with")
+    content = read_checkpoint_card(card)
+    return Checkpoint(
+        values=_values(tensors, card, content),
+        **{name: getattr(content, name) for name in CheckpointCard.model_fields if name not in _OF_THE_FILES},
+    )
+
+
+_OF_THE_FILES = ("parameters", "tensors")
+"""Fields of the card that hold the two files together and say nothing of the model."""
+
+
+def _values(tensors: Path, card: Path, content: CheckpointCard) -> dict[str, float]:
+    """The values that the tensors hold, in the card's order."""
     try:
-        found = load(packed)
-    except SafetensorError as error:
-        raise UserError(f"checkpoint {tensors}: not a safetensors file: {error}") from None
-    names = content["parameters"]
-    if sorted(found) != sorted(names):
-        raise UserError(f"checkpoint {tensors}: holds {', '.join(found)}; {card.name} says {', '.join(names)}")
-    values = {name: float(found[name]) for name in names}
-    own = {
-        key: content[key]
-        for key in ("model", "title", "units", "effects", "free_starts", "dataset", "figures", "versions", "created")
-    }
-    return Checkpoint(values=values, **own)
+        packed = tensors.read_bytes()
+    except OSError as error:
+        raise UserError(f"checkpoint {tensors}: cannot be read: {error.strerror or error}") from None
+    found = hashlib.sha256(packed).hexdigest()
+    if found != content.tensors:
+        raise UserError(
+            f"checkpoint {tensors}: damaged, or not the file that {card.name} was written with: its SHA-256 is {found[:12]}…, "
+            f'expected {content.tensors[:12]}… as "tensors" in {card.name} says'
+        )
+    try:
+        held = load(packed)
+    except (SafetensorError, KeyError, TypeError, ValueError) as error:  # all but the first: numbers that NumPy lacks
+        raise UserError(f"checkpoint {tensors}: not a safetensors file of 64-bit numbers: {error}") from None
+    lacking, extra = _apart(content.parameters, held)
+    if lacking or extra:
+        raise UserError(
+            f'checkpoint {tensors}: {_differences(lacking, extra)}; expected the tensors under "parameters" in {card.name}'
+        )
+    return {name: _number(tensors, name, held[name]) for name in content.parameters}
+
+
+def _number(tensors: Path, name: str, held: np.ndarray) -> float:
+    if held.shape != () or held.dtype != np.float64:
+        raise UserError(
+            f"checkpoint {tensors}, tensor {name}: found {held.dtype} of shape {list(held.shape)}, expected one float64 number"
+        )
+    if not np.isfinite(held):
+        raise UserError(f"checkpoint {tensors}, tensor {name}: found {held}, expected a finite number")
+    return float(held)
 
 
 def checkpoint_name(path: Path) -> str:
@@ -108,45 +146,33 @@ def checkpoint_name(path: Path) -> str:
 
 def check_same_parameters(path: Path, checkpoint: Checkpoint, title: str, names: Sequence[str]) -> None:
     """Raises UserError unless the checkpoint at `path` holds the parameters `names` of the model called `title`."""
-    missing = [name for name in names if name not in checkpoint.values]
-    extra = [name for name in checkpoint.values if name not in names]
-    if missing or extra:
-        differences = [f"it lacks {', '.join(missing)}"] * bool(missing) + [f"it has {', '.join(extra)}"] * bool(extra)
+    lacking, extra = _apart(names, checkpoint.values)
+    if lacking or extra:
         raise UserError(
             f"checkpoint {path}: holds the parameters of model {checkpoint.title}, which are not those of {title}: "
-            + "; ".join(differences)
+            + _differences(lacking, extra)
         )
 
 
-_TYPES: dict[str, type] = {
-    "model": str,
-    "title": str,
-    "parameters": list,
-    "units": dict,
-    "effects": list,
-    "free_starts": bool,
-    "dataset": str,
-    "figures": list,
-    "versions": dict,
-    "created": str,
-    "tensors": str,
-}
+def check_same_units(path: Path, checkpoint: Checkpoint, title: str, units: Mapping[str, str]) -> None:
+    """Raises UserError where a parameter of `units` is in another unit in the checkpoint: a value in rev/min is none in rad/s."""
+    for name, unit in units.items():
+        found = checkpoint.units.get(name)
+        if found != unit:
+            raise UserError(
+                f'checkpoint {path}, "units": {name} is in "{found}", expected "{unit}" as model {title} has it; '
+                "the model has changed since the checkpoint was written"
+            )
 
 
-def _read_card(card: Path) -> dict[str, Any]:
-    try:
-        content = json.loads(card.read_text(encoding="utf-8"))
-    except (json.JSONDecodeError, UnicodeDecodeError) as error:
-        raise UserError(f"checkpoint {card}: not JSON: {error}") from None
-    schema = content.get("schema") if isinstance(content, dict) else None
-    if schema != SCHEMA:
-        newer = re.fullmatch(r"greybox-checkpoint/([2-9]|[1-9]\d+)", str(schema)) is not None
-        advice = "; a newer greybox_torch has written it: update to read it" if newer else ""
-        raise UserError(f'checkpoint {card}: schema is {json.dumps(schema)}, expected "{SCHEMA}"{advice}')
-    for key, kind in _TYPES.items():
-        if not isinstance(content.get(key), kind):
-            raise UserError(f'checkpoint {card}: "{key}" is {json.dumps(content.get(key))}, expected a {kind.__name__}')
-    return content
+def _apart(expected: Iterable[str], found: Iterable[str]) -> tuple[list[str], list[str]]:
+    """What is lacking in `found`, and what it has beside the names expected."""
+    wanted, held = list(expected), list(found)
+    return [name for name in wanted if name not in held], [name for name in held if name not in wanted]
+
+
+def _differences(lacking: Sequence[str], extra: Sequence[str]) -> str:
+    return "; ".join(f"it {what} {', '.join(names)}" for what, names in (("lacks", lacking), ("has", extra)) if names)
 
 
 def _halves(path: Path) -> tuple[Path, Path]:
@@ -155,10 +181,4 @@ def _halves(path: Path) -> tuple[Path, Path]:
 
 
 def _versions() -> dict[str, str]:
-    def of(package: str) -> str:
-        try:
-            return version(package)
-        except PackageNotFoundError:
-            return "unknown"
-
-    return {package: of(package) for package in ("greybox_torch", "torch")}
+    return {"greybox_torch": __version__, "torch": version("torch")}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -12,51 +12,30 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.commands.restored import restored
 from greybox_torch.commands.tables import print_table
 from greybox_torch.commands.task import Task
 from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError
-from greybox_torch.estimate.comparison import Comparison, Score, compare
-from greybox_torch.estimate.overflow import avoidance, first_overflow, remedies
+from greybox_torch.estimate.comparison import Score
+from greybox_torch.evaluation import Evaluation, evaluated
 from greybox_torch.files import replacing
-from greybox_torch.simulate.stepper import make_stepper
-from greybox_torch.simulate.substeps import LARGEST, choose_substeps
+from greybox_torch.simulate.substeps import LARGEST
 
 START = "start"
 """The name of the model with the card's values."""
 
 
 @dataclass(frozen=True)
-class ModelRun:
-    """A model's free runs: its name in results, how it is loaded, and what came of it.
+class ModelRun(Evaluation):
+    """A model's free runs, with its name in results."""
 
-    ``substeps`` is how many Runge-Kutta steps a sample took; ``overflow`` says where the simulation overflows and what avoids that, None
-    where it does not.
-    """
-
-    name: str
-    model: str
-    comparison: Comparison
-    substeps: int = 1
-    overflow: str | None = None
+    name: str = START
 
 
 def free_run(task: Task, checkpoint: Path | None = None, name: str = START) -> ModelRun:
     """Simulates all experiments with the card's values or those of a checkpoint; start states from the first tenth of each."""
-    task, problem = (task, task.problem()) if checkpoint is None else restored(task, checkpoint)
-    stepper = make_stepper(task.model, (), device=task.device, precision=task.precision)
-    substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
-    comparison = compare(problem, task.data.recordings, stepper, substeps=substeps)
-    found, overflow = first_overflow(problem, comparison.simulated), None
-    if found is not None:
-        time = next(r.time[found.sample] for r in task.data.recordings if r.name == found.experiment)
-        overflow = (
-            f"the simulation of '{found.experiment}' overflows at {time:.6g} s; "
-            f"{avoidance(remedies(problem, stepper, substeps))}; "
-            "try parameters and start states nearer to the truth, tighter bounds, or a smaller sample time"
-        )
-    return ModelRun(name, task.model_name, comparison, substeps, overflow)
+    found = evaluated(task.data, task.model, task.model_name, checkpoint, device=task.device, precision=task.precision)
+    return ModelRun(**{field.name: getattr(found, field.name) for field in fields(found)}, name=name)
 
 
 def refuse_overflow(task: Task, run: ModelRun) -> None:
@@ -97,7 +76,7 @@ def result_json(data: DataSet, runs: Sequence[ModelRun]) -> dict[str, Any]:
     models = [
         {
             "name": r.name,
-            "model": r.model,
+            "model": r.model_name,
             "fit": scores_json(r.comparison.scores),
             "substeps": r.substeps,
             "overflow": r.overflow,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,10 @@ from greybox_torch.checkpoint import checkpoint_name
 from greybox_torch.commands.free_runs import START, ModelRun, free_run, refuse_overflow
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.tables import print_table
-from greybox_torch.commands.task import Task, load_task
-from greybox_torch.estimate.residuals import Correlation, input_correlation, whiteness
+from greybox_torch.commands.task import load_task
+from greybox_torch.estimate.residuals import Correlation, Residuals
 from greybox_torch.files import replacing
-from greybox_torch.report.residuals import ResidualRow, plot_residuals
+from greybox_torch.report.residuals import plot_residuals
 
 _EXPLANATION = (
     "whiteness: largest autocorrelation at lags 1 to 25; correlation with an input: largest at lags 0 to 25.",
@@ -30,7 +31,7 @@ def run(dataset: Path, checkpoint: Path | None, options: Options) -> None:
     task = load_task(dataset, options)
     simulated = free_run(task, checkpoint, START if checkpoint is None else checkpoint_name(checkpoint))
     refuse_overflow(task, simulated)
-    rows = _rows(task, simulated)
+    rows = simulated.residuals
     figure = task.folder / "residuals.png"
     title = f"{task.data.name}: residuals of {task.model.title}, {simulated.name}"
     with replacing(figure) as temporary:
@@ -41,24 +42,14 @@ def run(dataset: Path, checkpoint: Path | None, options: Options) -> None:
         {
             "schema": "greybox-residuals/1",
             "dataset": task.data.name,
-            "model": {"name": simulated.name, "model": simulated.model},
+            "model": {"name": simulated.name, "model": simulated.model_name},
             "residuals": result,
             "figure": str(figure),
         }
     )
 
 
-def _rows(task: Task, simulated: ModelRun) -> list[ResidualRow]:
-    rows = []
-    for recording, values in zip(task.data.recordings, simulated.comparison.simulated, strict=True):
-        for k, output in enumerate(task.model.outputs):
-            errors = recording.signals[output.name] - values[:, k]
-            inputs = {i.name: input_correlation(errors, recording.signals[i.name]) for i in task.model.inputs}
-            rows.append(ResidualRow(recording, task.data.channels[output.name], errors, whiteness(errors), inputs))
-    return rows
-
-
-def _row_json(row: ResidualRow, simulated: ModelRun, index: int) -> dict[str, Any]:
+def _row_json(row: Residuals, simulated: ModelRun, index: int) -> dict[str, Any]:
     result = {
         "experiment": row.recording.name,
         "role": row.recording.role,
@@ -83,7 +74,7 @@ def _correlation_json(correlation: Correlation) -> dict[str, Any]:
     }
 
 
-def _print(options: Options, title: str, rows: list[ResidualRow], result: list[dict[str, Any]], figure: Path) -> None:
+def _print(options: Options, title: str, rows: Sequence[Residuals], result: list[dict[str, Any]], figure: Path) -> None:
     console = options.console()
     console.print(Text(title, style="bold"))
     inputs = list(rows[0].inputs)

@@ -5,10 +5,13 @@ Source: L. Ljung, "System Identification: Theory for the User", 2nd ed., section
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.signal import correlate
+
+from greybox_torch.data import Channel, Recording
 
 LAGS = 25
 ORDER = 50
@@ -50,6 +53,24 @@ class Correlation:
     @property
     def _tested(self) -> np.ndarray:
         return self.values[self.lags >= 0]
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """What is left of one output in one experiment: errors (N,), their whiteness, their correlation with each input."""
+
+    recording: Recording
+    output: Channel
+    errors: np.ndarray
+    whiteness: Correlation
+    inputs: Mapping[str, Correlation]
+
+
+def residuals_of(recording: Recording, output: Channel, simulated: np.ndarray, inputs: Sequence[str]) -> Residuals:
+    """Measured less ``simulated`` (N,), and what that says with regard to the ``inputs`` named."""
+    errors = recording.signals[output.name] - simulated
+    correlations = {name: input_correlation(errors, recording.signals[name]) for name in inputs}
+    return Residuals(recording, output, errors, whiteness(errors), correlations)
 
 
 def whiteness(errors: np.ndarray, lags: int = LAGS) -> Correlation:

@@ -2,31 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from greybox_torch.data import Channel, Recording
-from greybox_torch.estimate.residuals import Correlation
+from greybox_torch.estimate.residuals import Correlation, Residuals
 from greybox_torch.report.style import STYLE, dots_within, with_unit
 
 
-@dataclass(frozen=True)
-class ResidualRow:
-    """What is drawn of one output in one experiment: errors (N,), their whiteness, their correlation with each input."""
-
-    recording: Recording
-    output: Channel
-    errors: np.ndarray
-    whiteness: Correlation
-    inputs: Mapping[str, Correlation]
-
-
-def plot_residuals(rows: Sequence[ResidualRow], title: str) -> Figure:
+def plot_residuals(rows: Sequence[Residuals], title: str) -> Figure:
     """A row for each output of each experiment; the band is what 99 % of the values keep within if nothing is missing."""
     columns = 2 + max(len(row.inputs) for row in rows)
     height = 0.7 + 2.3 * len(rows)
@@ -43,7 +30,7 @@ def plot_residuals(rows: Sequence[ResidualRow], title: str) -> Figure:
     return figure
 
 
-def _plot_errors(axes: Axes, row: ResidualRow) -> None:
+def _plot_errors(axes: Axes, row: Residuals) -> None:
     axes.plot(row.recording.time, row.errors, linewidth=0.6)
     axes.margins(x=0)
     axes.set_title(f"{row.recording.name} ({row.recording.role})")

@@ -31,14 +31,14 @@ def of(command: str, folder: Path, *options: str) -> dict[str, Any]:
 
 
 def saved(folder: Path, stem: str, inertia: float = 0.02, damping: float = 0.05, **changes: Any) -> str:
-    values = {"J": inertia, "k": 0.1, "b": damping}
+    units = {"J": "kg m^2", "k": "N m/V", "b": "N m s/rad"}
     options = {
         "model": f"{folder.resolve()}/my_motor.py:Motor",
         "title": "Motor",
-        "values": values,
-        "units": {},
+        "values": {"J": inertia, "k": 0.1, "b": damping},
         **changes,
     }
+    options["units"] = {name: units.get(name, "kg m^2") for name in options["values"]}
     save_checkpoint(folder / stem, Checkpoint(**options))
     return str(folder / stem)
 

@@ -1,0 +1,125 @@
+"""A model judged on a data set: its free runs, what they miss, and the static laws that it contains.
+
+This is `greybox compare` and `greybox residuals` from Python, and what those commands compute.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from greybox_torch.data import DataSet
+from greybox_torch.errors import UserError
+from greybox_torch.estimate.comparison import Comparison, Score, compare
+from greybox_torch.estimate.overflow import avoidance, first_overflow, remedies
+from greybox_torch.estimate.problem import Problem, make_problem
+from greybox_torch.estimate.residuals import Residuals, residuals_of
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.rates import rates_at
+from greybox_torch.restored import restored
+from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulate.substeps import choose_substeps
+from greybox_torch.systems import load_model
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Free runs of a model on all experiments of ``data``, start states estimated on the first tenth of each.
+
+    ``model_name`` is how the model is loaded; ``problem`` has the model with its values; ``substeps`` is how many Runge-Kutta steps a
+    sample took; ``overflow`` says where the simulation overflows and what avoids that, None where it does not.
+    """
+
+    data: DataSet
+    model_name: str
+    problem: Problem
+    comparison: Comparison
+    substeps: int = 1
+    overflow: str | None = None
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The parameters' values by name, those of effects among them, in their units."""
+        return dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
+
+    @property
+    def scores(self) -> tuple[Score, ...]:
+        """Fit in % and root mean square error of every output in every experiment."""
+        return self.comparison.scores
+
+    @property
+    def simulated(self) -> dict[str, np.ndarray]:
+        """The simulated outputs (N, n_y), by experiment."""
+        return dict(zip(self.problem.tape.names, self.comparison.simulated, strict=True))
+
+    @cached_property
+    def residuals(self) -> tuple[Residuals, ...]:
+        """Errors of every output in every experiment, their whiteness, and their correlation with each input."""
+        model = self.problem.model
+        inputs, found = [i.name for i in model.inputs if i.name in self.data.channels], []
+        for recording in self.data.recordings:
+            for k, output in enumerate(model.outputs):
+                simulated = self.simulated[recording.name][:, k]
+                found.append(residuals_of(recording, self.data.channels[output.name], simulated, inputs))
+        return tuple(found)
+
+    def rates(self, states: Mapping[str, Any], inputs: Mapping[str, Any] | None = None) -> dict[str, np.ndarray]:
+        """The rates of all states at given states and inputs, see :func:`greybox_torch.rates.rates_at`."""
+        return rates_at(self.problem.model, self.values, states, inputs)
+
+
+def evaluate(
+    data: DataSet,
+    checkpoint: str | PathLike[str] | None = None,
+    *,
+    model: GreyBoxModel | None = None,
+    device: str = "cpu",
+    precision: str = "double",
+) -> Evaluation:
+    """Simulate all experiments of ``data`` with the card's values, or with the model of a checkpoint.
+
+    Args:
+        checkpoint: what `greybox fit`, `train` or `diagnose` have written: either of its two files, or what their names have in common.
+        model: wins over the model that the card names.
+
+    Raises:
+        UserError: neither card nor caller names a model, or the checkpoint is damaged or of another model.
+    """
+    if model is None and data.model is None:
+        raise UserError(f"{data.path}: [model] name is missing and no model is given; expected one of them")
+    name = data.model if model is None or data.model is None else ""
+    given = load_model(str(data.model)) if model is None else model
+    return evaluated(data, given, name or given.title, checkpoint, device=device, precision=precision)
+
+
+def evaluated(
+    data: DataSet,
+    model: GreyBoxModel,
+    model_name: str,
+    checkpoint: str | PathLike[str] | None = None,
+    *,
+    device: str = "cpu",
+    precision: str = "double",
+) -> Evaluation:
+    """:func:`evaluate` for a model that is loaded already."""
+    problem = make_problem(data, model, data.recordings)
+    if checkpoint is not None:
+        found = restored(data, checkpoint, model, model_name)
+        data, model_name, problem = found.data, found.model_name, found.problem
+    stepper = make_stepper(problem.model, (), device=device, precision=precision)
+    substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
+    comparison = compare(problem, data.recordings, stepper, substeps=substeps)
+    found, overflow = first_overflow(problem, comparison.simulated), None
+    if found is not None:
+        time = next(r.time[found.sample] for r in data.recordings if r.name == found.experiment)
+        overflow = (
+            f"the simulation of '{found.experiment}' overflows at {time:.6g} s; "
+            f"{avoidance(remedies(problem, stepper, substeps))}; "
+            "try parameters and start states nearer to the truth, tighter bounds, or a smaller sample time"
+        )
+    return Evaluation(data, model_name, problem, comparison, substeps, overflow)

@@ -1,0 +1,67 @@
+"""`evaluate`: what `greybox compare` and `residuals` compute, from Python, and the static laws of a model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greybox_torch import Evaluation, evaluate, load_dataset, load_model
+from greybox_torch.checkpoint import Checkpoint, save_checkpoint
+from greybox_torch.diagnose.restore import attachment_json
+from greybox_torch.errors import UserError
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.mechanism import Mechanism, Range, Surroundings
+
+Make = Callable[..., Path]
+UNITS = {"J": "kg m^2", "k": "N m/V", "b": "N m s/rad"}
+TRUE = {"J": 0.02, "k": 0.1, "b": 0.05}
+AROUND = Surroundings({"speed": Range(-6.0, 6.0, 3.0)}, {"speed": "rad/s"}, "N m", 0.01)
+
+
+def saved(folder: Path, mechanism: Mechanism | None = None, **more: float) -> Path:
+    effects = [] if mechanism is None else [attachment_json(Attachment("rotor", mechanism), AROUND)]
+    values = {**TRUE, **more}
+    units = {name: UNITS.get(name, "") for name in values}
+    save_checkpoint(folder / "model", Checkpoint(f"{folder}/my_motor.py:Motor", "Motor", values, units, effects))
+    return folder / "model"
+
+
+def test_true_values_leave_the_noise(motor_folder: Make) -> None:
+    folder = motor_folder()
+    data = load_dataset(folder / "dataset.toml")
+    found = evaluate(data, saved(folder))
+    assert found.values == TRUE
+    assert found.overflow is None
+    assert [score.experiment for score in found.scores] == ["Steps", "More steps", "Sweep"]
+    assert [score.rmse for score in found.scores] == pytest.approx([0.02] * 3, rel=0.15)
+    assert found.rates({"speed": 1.0})["speed"] == pytest.approx([-0.05 / 0.02])
+    assert list(found.simulated) == ["Steps", "More steps", "Sweep"]
+    for recording, score, residuals in zip(data.recordings, found.scores, found.residuals, strict=True):
+        errors = recording.signals["speed"] - found.simulated[recording.name][:, 0]
+        assert np.array_equal(residuals.errors, errors)
+        assert score.rmse == pytest.approx(np.sqrt(np.mean(errors**2)))
+        assert residuals.whiteness.largest < 1.6 * residuals.whiteness.bound  # the largest of 25 lags
+        assert list(residuals.inputs) == ["voltage"]
+
+
+def test_start_values_miss_something_that_the_input_explains(motor_folder: Make) -> None:
+    found = evaluate(load_dataset(motor_folder() / "dataset.toml"))
+    assert found.values == {"J": 0.03, "k": 0.1, "b": 0.08}
+    for residuals in found.residuals:
+        assert residuals.whiteness.outside > 20
+        assert residuals.inputs["voltage"].largest > residuals.inputs["voltage"].bound
+
+
+def test_which_model(motor_folder: Make, edit: Callable[[Path, str, str], None]) -> None:
+    folder = motor_folder()
+    card = folder / "dataset.toml"
+    edit(card, 'name = "my_motor.py:Motor"\n', "")
+    with pytest.raises(UserError, match=r"\[model\] name is missing and no model is given"):
+        evaluate(load_dataset(card))
+    given = evaluate(load_dataset(card), model=load_model(f"{folder}/my_motor.py:Motor"))
+    assert isinstance(given, Evaluation)
+    assert given.values["J"] == 0.03
+    assert evaluate(load_dataset(card), saved(folder), model=load_model(f"{folder}/my_motor.py:Motor")).values == TRUE
