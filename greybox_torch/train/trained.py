@@ -11,6 +11,7 @@ from greybox_torch.estimate.fit import FitResult
 from greybox_torch.mechanisms.attachment import AugmentedModel
 from greybox_torch.model import Signals
 from greybox_torch.train.hybrid import Hybrid
+from greybox_torch.train.lessons import Course
 from greybox_torch.train.polish import Polished
 from greybox_torch.train.settings import TrainingSettings
 from greybox_torch.train.state import Epoch
@@ -38,7 +39,7 @@ class Trained:
     """A trained hybrid.
 
     ``physics`` and ``result`` are the estimates of the plain model and of the hybrid; ``hybrid`` says what is attached;
-    ``polished`` which penalty the held-out stretches chose; ``history`` has the epochs.
+    ``polished`` which penalty the held-out stretches chose; ``history`` has the epochs; ``course`` what it was trained by.
     """
 
     physics: FitResult
@@ -48,6 +49,7 @@ class Trained:
     history: tuple[Epoch, ...]
     settings: TrainingSettings
     seconds: float
+    course: Course
 
     @property
     def physics_chosen(self) -> bool:
