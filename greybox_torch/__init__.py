@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from greybox_torch.mechanisms.residual_net import ResidualNet
     from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
     from greybox_torch.systems import load_model
-    from greybox_torch.train import TrainingSettings, train_hybrid
+    from greybox_torch.train import TrainingSettings, explain, physics_of, train_hybrid
 
 __version__ = "0.1.0"
 
@@ -31,8 +31,10 @@ __all__ = [
     "ResidualNet",
     "State",
     "TrainingSettings",
+    "explain",
     "load_dataset",
     "load_model",
+    "physics_of",
     "train_hybrid",
 ]
 
@@ -48,8 +50,10 @@ _HOME_OF = {
     "ResidualNet": "greybox_torch.mechanisms.residual_net",
     "State": "greybox_torch.model",
     "TrainingSettings": "greybox_torch.train",
+    "explain": "greybox_torch.train",
     "load_dataset": "greybox_torch.data",
     "load_model": "greybox_torch.systems",
+    "physics_of": "greybox_torch.train",
     "train_hybrid": "greybox_torch.train",
 }
 

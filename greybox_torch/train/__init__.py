@@ -1,5 +1,6 @@
 """The hybrid: a network at a port of a physical model, trained on sequences and polished by Gauss-Newton."""
 
+from greybox_torch.train.explain import Explanation, explain
 from greybox_torch.train.hybrid import Hybrid, attach_network, default_port
 from greybox_torch.train.physics import Physics, physics_of
 from greybox_torch.train.settings import TrainingSettings
@@ -7,6 +8,7 @@ from greybox_torch.train.trained import Report, Trained
 from greybox_torch.train.training import train_hybrid
 
 __all__ = [
+    "Explanation",
     "Hybrid",
     "Physics",
     "Report",
@@ -14,6 +16,7 @@ __all__ = [
     "TrainingSettings",
     "attach_network",
     "default_port",
+    "explain",
     "physics_of",
     "train_hybrid",
 ]

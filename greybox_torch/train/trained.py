@@ -12,6 +12,7 @@ from greybox_torch.mechanisms.attachment import AugmentedModel
 from greybox_torch.model import Signals
 from greybox_torch.train.hybrid import Hybrid
 from greybox_torch.train.lessons import Course
+from greybox_torch.train.physics import Physics
 from greybox_torch.train.polish import Polished
 from greybox_torch.train.settings import TrainingSettings
 from greybox_torch.train.state import Epoch
@@ -55,6 +56,12 @@ class Trained:
     def physics_chosen(self) -> bool:
         """Whether the network was left at zero, since physics alone predicts the held-out stretches better."""
         return self.polished.chosen.weight is None
+
+    @property
+    def shared_physics(self) -> Physics:
+        """The physics alone as other trainings can begin with it."""
+        begun = self.course.unknowns.hybrid.problem.values[: len(self.physics.problem.values)]
+        return Physics(self.physics, begun)
 
     def force(self, **signals: np.ndarray) -> np.ndarray:
         """The network's own force at given local signals (arrays of one shape, in their units), in the unit of the port's force."""

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 import torch
 
-from greybox_torch.diagnose.candidates import attach, candidates, periodic_candidates, shifted_state
+from greybox_torch.diagnose.candidates import attach, candidates, periodic_candidates
+from greybox_torch.estimate.shifted_states import shifted_state
 from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.library import LIBRARY
