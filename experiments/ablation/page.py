@@ -19,6 +19,10 @@ BELOW_NAMED, ABOVE_PHYSICS = 0.1, 0.3
 """Points of validation fit by which the hybrid may be behind the named model, and ought to be ahead of the re-estimated physics."""
 
 
+FACTOR = 10.0
+"""Relative change from which a drift is told as a factor: the re-estimated physics has that parameter next to zero."""
+
+
 def write(folder: Path, cases: Sequence[Case]) -> None:
     """results.md, and a figure NAME.png for every case, in ``folder``."""
     for case in cases:
@@ -82,7 +86,10 @@ def _drift(own: Sequence[Entry]) -> str:
         return ""
     mean = {name: float(np.mean([s[name] for s in sizes])) for name in sizes[0]}
     worst = max(mean, key=lambda name: mean[name])
-    return f"{100 * np.median(list(mean.values())):.0f} %, {worst} {100 * mean[worst]:.0f} %" if mean[worst] else "0"
+    if not mean[worst]:
+        return "none"
+    most = f"{100 * mean[worst]:.0f} %" if mean[worst] < FACTOR else f"× {1 + mean[worst]:.0f}"
+    return f"{100 * np.median(list(mean.values())):.0f} %, {worst} {most}"
 
 
 def _choice(case: Case) -> list[str]:
