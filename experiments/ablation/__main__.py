@@ -68,8 +68,8 @@ def _measured(card: Path, chosen: argparse.Namespace) -> Case:
     case = load_case(folder, name, {**about, "networks": [str(n) for n in networks]}, SAME)
     settings = TrainingSettings(epochs=5, factors=(1,)) if chosen.quick else TrainingSettings()
     diagnose = partial(diagnosis, data, folder / "diagnosis", chosen.verdict, chosen.time_limit)
-    tell = partial(_tell, name)
-    ladder = Ladder(data, model, case, diagnose, networks, settings, 0.02 if chosen.quick else 1.0, tell)
+    tell, effort, commit = partial(_tell, name), 0.02 if chosen.quick else 1.0, about["machine"]["commit"]
+    ladder = Ladder(data, model, case, diagnose, networks, settings, effort, commit, tell)
     for kind in chosen.models or MODELS:
         for seed in range(chosen.seeds) if kind in RANDOM else (None,):
             if case.find(kind, seed) is None:
@@ -89,7 +89,7 @@ def _tell(*text: str) -> None:
 
 
 def _parsed(arguments: list[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="python -m experiments.ablation", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(prog="python -m experiments.ablation", description=str(__doc__).splitlines()[0])
     parser.add_argument("cards", type=Path, nargs="*", help="data sets; by default the robot arm and concealed cases")
     parser.add_argument("--out", type=Path, required=True, help="folder for results")
     parser.add_argument("--seeds", type=int, default=5, help="of everything random")

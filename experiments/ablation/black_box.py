@@ -28,7 +28,7 @@ SAMPLES = 2500
 LENGTHS = ((50, 200), (200, 200), (600, 150))
 """Steps of a window, and passes over all windows of that length."""
 
-LEARNING_RATE = 3e-3
+LEARNING_RATE = 1e-2
 HELD_OUT = 0.2
 
 
@@ -59,8 +59,8 @@ class Scaling:
             np.concatenate([np.stack([r.signals[n] for n in names], axis=1) for r in data.estimation()])
             for names in (inputs, outputs)
         )
-        spreads = [(v.mean(axis=0), np.maximum(v.std(axis=0), 1e-12)) for v in (u, _without_gaps(y))]
-        return Scaling(max(1, round(longest / SAMPLES)), inputs, outputs, *spreads)
+        of_u, of_y = _mean_and_spread(u), _mean_and_spread(_without_gaps(y))
+        return Scaling(max(1, round(longest / SAMPLES)), inputs, outputs, of_u, of_y)
 
     def series(self, recording: Recording) -> Series:
         """A recording step by step."""
@@ -68,14 +68,18 @@ class Scaling:
         steps = len(u) // self.stride
         means = u[: steps * self.stride].reshape(steps, self.stride, -1).mean(axis=1)
         sampled = y[: steps * self.stride : self.stride]
-        scaled = [(v - mean) / spread for v, (mean, spread) in ((means, self.u), (_without_gaps(sampled), self.y))]
-        return Series(*(torch.as_tensor(v) for v in scaled), torch.as_tensor(~np.isnan(sampled)))
+        scaled_u, scaled_y = (means - self.u[0]) / self.u[1], (_without_gaps(sampled) - self.y[0]) / self.y[1]
+        return Series(torch.as_tensor(scaled_u), torch.as_tensor(scaled_y), torch.as_tensor(~np.isnan(sampled)))
 
     def outputs_of(self, recording: Recording, y: torch.Tensor) -> np.ndarray:
         """Scaled outputs step by step (N, n_y), brought back to the samples of a recording and to their units."""
-        values, mean, spread = y.numpy(), *self.y
+        values, (mean, spread) = y.numpy(), self.y
         at, samples = np.arange(len(values)) * self.stride, np.arange(len(recording.time))
         return np.stack([np.interp(samples, at, column) for column in (values * spread + mean).T], axis=1)
+
+
+def _mean_and_spread(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return values.mean(axis=0), np.maximum(values.std(axis=0), 1e-12)
 
 
 def _without_gaps(y: np.ndarray) -> np.ndarray:
@@ -106,9 +110,9 @@ class BlackBox(torch.nn.Module):
             past = _newest_first(one.y)[:-1].flatten(1)
             rows.append(torch.cat([past, _newest_first(one.u)[:-1].flatten(1)], dim=1))
             changes.append(one.y[MEMORY:] - one.y[MEMORY - 1 : -1])
-        found = torch.linalg.lstsq(torch.cat(rows), torch.cat(changes)).solution
+        found = np.linalg.lstsq(torch.cat(rows).numpy(), torch.cat(changes).numpy(), rcond=1e-10)[0]
         with torch.no_grad():
-            self.linear.copy_(found.T)
+            self.linear.copy_(torch.as_tensor(found.T))
 
     def forward(self, begun: torch.Tensor, u: torch.Tensor) -> torch.Tensor:
         """Simulated outputs (B, T, n_y) after ``begun`` (B, m, n_y) measured ones, with the inputs ``u`` (B, m + T, n_u) from there on."""

@@ -24,7 +24,7 @@ MODELS = {
     "published": "physics with the card's values",
     "physics": "physics re-estimated",
     "named": "physics + named mechanisms",
-    "diagnosed": "what the diagnosis attached, its free curve included",
+    "diagnosed": "the diagnosis with its free curve",
     "hybrid": "hybrid: physics + network",
     "hybrid_named": "hybrid + named mechanisms",
     "black_box": "network alone",
@@ -39,7 +39,8 @@ RANDOM = ("hybrid", "hybrid_named", "black_box")
 class Ladder:
     """The models of one case; what they share is computed when it is first needed, once.
 
-    ``diagnose`` gives the diagnosis; ``networks`` are the candidates for the hybrid; ``effort`` is a factor on all training.
+    ``diagnose`` gives the diagnosis; ``networks`` are the candidates for the hybrid; ``effort`` is a factor on
+    the training of the network alone, ``commit`` the code's.
     """
 
     data: DataSet
@@ -49,6 +50,7 @@ class Ladder:
     networks: list[NetworkChoice]
     settings: TrainingSettings
     effort: float = 1.0
+    commit: str = "unknown"
     told: Callable[[str], None] = lambda text: None
 
     @cached_property
@@ -167,5 +169,5 @@ class Ladder:
         **detail: Any,
     ) -> Entry:
         moved = drift(self._physics[0].result.problem, values) if values else {}
-        own = {"fit": fits.by_experiment(), "parameters": dict(values), **detail}
+        own = {"commit": self.commit, "fit": fits.by_experiment(), "parameters": dict(values), **detail}
         return Entry(name, seed, fits.estimation, fits.validation, drift=moved, detail=own, **took)

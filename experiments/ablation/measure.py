@@ -28,8 +28,8 @@ class Fits:
 
     @staticmethod
     def of(scores: tuple[Score, ...]) -> Fits:
-        roles = (float(np.mean([s.fit for s in scores if s.role == role])) for role in ("estimation", "validation"))
-        return Fits(*roles, scores)
+        mean = {r: float(np.mean([s.fit for s in scores if s.role == r])) for r in ("estimation", "validation")}
+        return Fits(mean["estimation"], mean["validation"], scores)
 
     def by_experiment(self) -> dict[str, float]:
         return {f"{s.experiment}: {s.output}": s.fit for s in self.scores}

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from experiments.ablation.ladder import MODELS
@@ -18,6 +19,9 @@ FACTS = ("date", "commit", "processor", "cores", "torch")
 BELOW_NAMED, ABOVE_PHYSICS = 0.1, 0.3
 """Points of validation fit by which the hybrid may be behind the named model, and ought to be ahead of the re-estimated physics."""
 
+
+ROLES = {"estimation": "#8a8a8a", "validation": "#0b6e99"}
+"""With their colours."""
 
 FACTOR = 10.0
 """Relative change from which a drift is told as a factor: the re-estimated physics has that parameter next to zero."""
@@ -47,7 +51,7 @@ def markdown(cases: Sequence[Case]) -> str:
             lines += ["**Shrunk to see that it works; the numbers mean nothing.**", ""]
         lines += _table(case) + _choice(case) + _diagnosis(case) + _wanted(case)
         lines += ["", f"![Fits of {case.name}]({case.name}.png)", "", "| | |", "|---|---|"]
-        machine = case.about.get("machine", {})
+        machine = {**case.about.get("machine", {}), **_commits(case)}
         lines += [f"| {name} | {machine[name]} |" for name in FACTS if name in machine]
     return "\n".join(lines) + "\n"
 
@@ -69,14 +73,14 @@ def _table(case: Case) -> list[str]:
 
 def spread(values: Sequence[float]) -> str:
     """Mean and standard deviation, of one value that alone; a run that overflowed has no fit."""
-    finite = [v for v in values if v is not None and np.isfinite(v)]
+    finite = [v for v in values if np.isfinite(v)]
     if len(finite) < len(values):
         return f"{len(values) - len(finite)} of {len(values)} overflow"
     return f"{np.mean(finite):.2f}" + (f" ± {np.std(finite, ddof=1):.2f}" if len(finite) > 1 else "")
 
 
-def _seconds(values: Sequence[float | None]) -> str:
-    known = [v for v in values if v]
+def _seconds(values: Sequence[float]) -> str:
+    known = [v for v in values if v > 0]
     return f"{np.mean(known):.0f} s" if known else ""
 
 
@@ -90,6 +94,20 @@ def _drift(own: Sequence[Entry]) -> str:
         return "none"
     most = f"{100 * mean[worst]:.0f} %" if mean[worst] < FACTOR else f"× {1 + mean[worst]:.0f}"
     return f"{100 * np.median(list(mean.values())):.0f} %, {worst} {most}"
+
+
+def _commits(case: Case) -> dict[str, str]:
+    """The commits that the entries were measured with, where they say so: an interrupted run may have gone on with another."""
+    models: dict[str, list[str]] = {}
+    for entry in case.entries:
+        if "commit" in entry.detail:
+            models.setdefault(entry.detail["commit"], []).append(entry.model)
+    told = [f"{commit} ({', '.join(dict.fromkeys(names))})" for commit, names in models.items()]
+    return (
+        {"commit": "; ".join(told)}
+        if len(models) > 1
+        else dict.fromkeys(["commit"] * len(models), next(iter(models), ""))
+    )
 
 
 def _choice(case: Case) -> list[str]:
@@ -115,6 +133,7 @@ def _diagnosis(case: Case) -> list[str]:
 def _wanted(case: Case) -> list[str]:
     """Whether the hybrid reaches what was asked of it, in figures."""
     mean = {name: float(np.mean([e.validation for e in case.of(name)])) for name in MODELS if case.of(name)}
+    mean = {name: value for name, value in mean.items() if np.isfinite(value)}
     lines = []
     for rival, margin in (("named", -BELOW_NAMED), ("physics", ABOVE_PHYSICS)):
         for hybrid in ("hybrid", "hybrid_named"):
@@ -128,27 +147,32 @@ def _wanted(case: Case) -> list[str]:
 
 
 def figure_of(case: Case) -> Figure:
-    """Estimation and validation fits by model, a dot for every seed, a line at the mean."""
-    names = [name for name in MODELS if case.of(name)]
+    """Estimation and validation fits by model, a dot for every seed, a line at the mean; runs that overflowed are left out."""
+    fits = {
+        (name, role): [v for e in case.of(name) if np.isfinite(v := getattr(e, role))]
+        for name in MODELS
+        for role in ROLES
+    }
+    names = [name for name in MODELS if all(fits[name, role] for role in ROLES)]
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(7.2, 1.1 + 0.42 * len(names)), dpi=120, layout="constrained")
+        figure = Figure(figsize=(8.4, 1.2 + 0.42 * len(names)), dpi=120, layout="constrained")
+        figure.suptitle(f"{case.about.get('title', case.name)}: what each part brings", fontweight="bold")
         axes = figure.subplots()
-        axes.set_title(f"{case.about.get('title', case.name)}: what each part brings", fontweight="bold", loc="left")
-        for shift, role, colour in ((-0.14, "estimation", "#8a8a8a"), (0.14, "validation", "#0b6e99")):
-            for row, name in enumerate(names):
-                fits = [getattr(e, role) for e in case.of(name)]
-                axes.plot(fits, [row + shift] * len(fits), "o", color=colour, markersize=5, alpha=0.7, clip_on=False)
-                axes.plot([np.mean(fits)], [row + shift], "|", color=colour, markersize=13, markeredgewidth=2)
-                axes.annotate(
-                    f"{np.mean(fits):.2f}", (max(fits), row + shift), xytext=(7, 0), textcoords="offset points",
-                    va="center", fontsize=7, color=colour,
-                )  # fmt: skip
+        for shift, (role, colour) in zip((-0.14, 0.14), ROLES.items(), strict=True):
             axes.plot([], [], "o", color=colour, label=role)
+            for row, name in enumerate(names):
+                _draw_fits(axes, fits[name, role], row + shift, colour)
         axes.set_yticks(range(len(names)), [MODELS[name] for name in names])
         axes.invert_yaxis()
-        low = min(e.validation for e in case.entries if e.model in names)
-        axes.set_xlim(max(0.0, min(low, *(e.estimation for e in case.entries)) - 2.0), None)
-        axes.margins(x=0.08)
+        axes.margins(x=0.1)
         axes.set_xlabel("fit of free runs [%]")
-        axes.legend(loc="lower left", fontsize=8)
+        axes.legend(loc="best", fontsize=8)
     return figure
+
+
+def _draw_fits(axes: Axes, fits: Sequence[float], height: float, colour: str) -> None:
+    mean = float(np.mean(fits))
+    axes.plot(fits, [height] * len(fits), "o", color=colour, markersize=5, alpha=0.7)
+    axes.plot([mean], [height], "|", color=colour, markersize=13, markeredgewidth=2)
+    place = {"xytext": (7, 0), "textcoords": "offset points", "va": "center"}
+    axes.annotate(f"{mean:.2f}", (max(fits), height), fontsize=7, color=colour, **place)

@@ -79,7 +79,14 @@ def read_case(path: Path) -> Case:
         content = json.loads(path.read_text(encoding="utf-8"))
         if content["schema"] != SCHEMA:
             raise UserError(f'{path}: schema is {json.dumps(content["schema"])}, expected "{SCHEMA}"')
-        entries = [Entry(**entry) for entry in content["entries"]]
+        entries = [_entry(entry) for entry in content["entries"]]
         return Case(content["name"], content["about"], entries, content["notes"])
     except (json.JSONDecodeError, KeyError, TypeError) as error:
         raise UserError(f"{path}: damaged ({type(error).__name__}: {error}); remove it to measure anew") from None
+
+
+def _entry(kept: dict[str, Any]) -> Entry:
+    """An entry from JSON, where null stands for what is not finite: the fit of a run that overflowed, a time that is not known."""
+    fits = {role: float("-inf") if kept[role] is None else kept[role] for role in ("estimation", "validation")}
+    times = {name: float("nan") if kept[name] is None else kept[name] for name in ("seconds", "processor_seconds")}
+    return Entry(**{**kept, **fits, **times})
