@@ -103,11 +103,7 @@ def _commits(case: Case) -> dict[str, str]:
         if "commit" in entry.detail:
             models.setdefault(entry.detail["commit"], []).append(entry.model)
     told = [f"{commit} ({', '.join(dict.fromkeys(names))})" for commit, names in models.items()]
-    return (
-        {"commit": "; ".join(told)}
-        if len(models) > 1
-        else dict.fromkeys(["commit"] * len(models), next(iter(models), ""))
-    )
+    return {"commit": "; ".join(told)} if len(models) > 1 else {}
 
 
 def _choice(case: Case) -> list[str]:
