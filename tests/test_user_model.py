@@ -77,7 +77,7 @@ def test_the_readme(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None
     (folder / "my_motor.py").write_text(code)
     (folder / "dataset.toml").write_text(card.split("[model]")[0] + section)
     monkeypatch.chdir(folder)
-    wanted = ("inspect", "diagnose", "simulate", "fit", "compare", "residuals")
+    wanted = ("inspect", "diagnose", "simulate", "fit", "compare", "residuals", "train")
     commands = [line.split("#")[0].split() for line in readme.splitlines() if line.startswith("greybox ")]
     commands = [command for command in commands if command[1] in wanted]
     assert {command[1] for command in commands} == set(wanted)

@@ -25,6 +25,9 @@ def main() -> int:
     parser.add_argument("--out", type=Path, required=True, help="folder for gradients.md, .png and .json")
     parser.add_argument("--quick", action="store_true", help="shrink everything to see that it works")
     parser.add_argument("--repeats", type=int, default=3, help="gradients of which the median time counts")
+    parser.add_argument(
+        "--redraw", action="store_true", help="write the page anew from gradients.json, without measuring"
+    )
     arguments = parser.parse_args()
     for name in ("OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ[name] = "1"  # processor seconds of one core, which jobs beside this one change little
@@ -32,6 +35,9 @@ def main() -> int:
     from experiments.gradients.page import write
     from experiments.gradients.task import WAYS
 
+    if arguments.redraw:
+        write(arguments.out, json.loads((arguments.out / "gradients.json").read_text()))
+        return 0
     rows: list[dict[str, Any]] = []
     for length in QUICK_LENGTHS if arguments.quick else LENGTHS:
         for way in WAYS:
