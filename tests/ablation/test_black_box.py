@@ -51,12 +51,9 @@ def test_a_linear_machine_is_begun_exactly(series: Series) -> None:
 
 
 def test_training_lowers_the_error_of_the_simulation(series: Series) -> None:
-    begun = BlackBox(1, 1, 16, seed=0)
-    begun.begin([series])
-    before = float(((begun.simulated(series) - series.y) ** 2).mean())
-    network, held_out = train_black_box([series], seed=0, passes=1.0)
-    after = float(((network.simulated(series) - series.y) ** 2).mean())
-    assert after < 0.7 * before and held_out < before
+    """Over the held-out windows, on which no step is taken."""
+    hardly, fully = (train_black_box([series], seed=0, passes=passes)[1] for passes in (0.001, 1.0))
+    assert fully < 0.8 * hardly
 
 
 def test_the_same_seed_gives_the_same_network(series: Series) -> None:
