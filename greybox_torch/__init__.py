@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from greybox_torch.report.residuals import plot_residuals
     from greybox_torch.restored import SavedModel, load_saved_model
     from greybox_torch.systems import load_model
-    from greybox_torch.train import TrainingSettings, train_hybrid
+    from greybox_torch.train import TrainingSettings, explain, physics_of, train_hybrid
 
 __version__ = "0.1.0"
 
@@ -41,10 +41,12 @@ __all__ = [
     "State",
     "TrainingSettings",
     "evaluate",
+    "explain",
     "load_checkpoint",
     "load_dataset",
     "load_model",
     "load_saved_model",
+    "physics_of",
     "plot_comparison",
     "plot_residuals",
     "train_hybrid",
@@ -67,10 +69,12 @@ _HOME_OF = {
     "State": "greybox_torch.model",
     "TrainingSettings": "greybox_torch.train",
     "evaluate": "greybox_torch.evaluation",
+    "explain": "greybox_torch.train",
     "load_checkpoint": "greybox_torch.checkpoint",
     "load_dataset": "greybox_torch.data",
     "load_model": "greybox_torch.systems",
     "load_saved_model": "greybox_torch.restored",
+    "physics_of": "greybox_torch.train",
     "plot_comparison": "greybox_torch.report.comparison",
     "plot_residuals": "greybox_torch.report.residuals",
     "train_hybrid": "greybox_torch.train",

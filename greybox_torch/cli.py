@@ -223,6 +223,13 @@ def train(
     ] = False,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the training that DIR holds.")] = False,
     tensorboard: Annotated[bool, typer.Option("--tensorboard", help="Log the course to DIR/tensorboard.")] = False,
+    explain: Annotated[
+        bool, typer.Option(help="Compare what was learned with every law, and put the nearest in its place.")
+    ] = True,
+    ensemble: Annotated[
+        int,
+        typer.Option(min=1, metavar="N", help="Trainings, with seeds from --seed on, that the curve's band is from."),
+    ] = 1,
     model: Model = None,
     out: Out = None,
     seed: Seed = 0,
@@ -241,6 +248,8 @@ def train(
         training={"epochs": epochs, "gradient": gradient, "freeze_physics": freeze_physics},
         resume=resume,
         tensorboard=tensorboard,
+        explain=explain,
+        ensemble=ensemble,
     )
     train.run(dataset, Options(model, out, seed, device, json), choices)
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,18 +16,31 @@ from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.progress import training
 from greybox_torch.commands.task import Task, check_estimation, load_task
+from greybox_torch.commands.train_figure import figure_file
 from greybox_torch.commands.train_json import Scores, result_json
 from greybox_torch.commands.train_summary import print_summary
 from greybox_torch.diagnose.restore import attachment_json
-from greybox_torch.estimate.comparison import compare
-from greybox_torch.estimate.problem import all_starts_free, problem_for
+from greybox_torch.estimate.comparison import Score, compare
+from greybox_torch.estimate.fit import FitResult
+from greybox_torch.estimate.problem import Problem, all_starts_free, problem_for
 from greybox_torch.files import json_text, write_all
+from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.simulate.stepper import make_stepper
 from greybox_torch.simulate.substeps import choose_substeps
-from greybox_torch.train import Report, Trained, TrainingSettings, train_hybrid
+from greybox_torch.train import (
+    Explanation,
+    Hybrid,
+    Report,
+    Trained,
+    TrainingSettings,
+    explain,
+    train_hybrid,
+)
 from greybox_torch.train.tensorboard import tensorboard_log
 
 RESULT, MODEL, SNAPSHOT, LOG = "train.json", "model", "training.safetensors", "tensorboard"
+NAMED, FIGURE = "named", "learned.png"
+"""The model with a law in the network's place, and what the network has learned."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +54,8 @@ class Choices:
     training: Mapping[str, Any] = field(default_factory=dict)
     resume: bool = False
     tensorboard: bool = False
+    explain: bool = True
+    ensemble: int = 1
 
 
 def run(dataset: Path, options: Options, choices: Choices) -> None:
@@ -62,30 +78,45 @@ def run(dataset: Path, options: Options, choices: Choices) -> None:
             if log is not None and report.last is not None:
                 log(report.last)
 
-        found = train_hybrid(
+        train = partial(
+            train_hybrid,
             task.data,
             task.model,
             net=choices.net,
             port=choices.port,
             signals=choices.signals,
             network=dict(choices.network),
-            settings=settings,
             device=task.device,
             progress=progress,
-            snapshot=task.folder / SNAPSHOT,
-            resume=choices.resume,
         )
+        found = train(settings=settings, snapshot=task.folder / SNAPSHOT, resume=choices.resume)
+        explained = _explained(found, choices, train, lambda what: tell(what, 1.0, ""), task.device)
         tell("scoring", 1.0, "")
-        scores = _scores(task, found)
-    result = result_json(task, found, scores)
-    write_all(
-        {
-            task.folder / RESULT: json_text(result),
-            **checkpoint_files(task.folder / MODEL, _checkpoint(task, found, result["fit"])),
-        }
-    )
-    print_summary(options.console(), task, found, scores)
+        scores = _scores(task, found, explained)
+    result = result_json(task, found, scores, explained)
+    with figure_file(task.folder / FIGURE, found, explained):
+        write_all(
+            {
+                task.folder / RESULT: json_text(result),
+                **checkpoint_files(task.folder / MODEL, _checkpoint(task, found, result["fit"])),
+                **_named_files(task, found, explained, result["fit"]),
+            }
+        )
+    print_summary(options.console(), task, found, scores, explained)
     options.print_json(result)
+
+
+def _explained(
+    found: Trained, choices: Choices, train: Callable[..., Trained], told: Callable[[str], None], device: str
+) -> Explanation | None:
+    """What the network stands for; the trainings of an ensemble share the physics."""
+    if not choices.explain:
+        return None
+    others = []
+    for seed in range(found.settings.seed + 1, found.settings.seed + choices.ensemble):
+        told(f"training with seed {seed}")
+        others.append(train(settings=replace(found.settings, seed=seed), physics=found.shared_physics))
+    return explain(found, others, device=device, told=told)
 
 
 @contextmanager
@@ -101,34 +132,62 @@ def _interruptible(snapshot: Path) -> Iterator[None]:
         raise
 
 
-def _scores(task: Task, found: Trained) -> Scores:
-    """Start values, physics and hybrid on all experiments, start states from the first tenth of each."""
+def _scores(task: Task, found: Trained, explained: Explanation | None) -> Scores:
+    """Start values, physics, hybrid and the law that replaces its network, if one does, on all experiments; start states from the first
+    tenth of each.
+    """
     start = task.problem()
     plain = make_stepper(task.model, (), device=task.device)
     substeps = choose_substeps(start.driving_tape, plain, start.values, start.initial) or 1
     free = all_starts_free(task.data, start)
     refit = free.with_values(found.physics.problem.values)
-    model = found.result.problem.model
-    hybrid = all_starts_free(task.data, problem_for(start, model, {}), task.model)
-    hybrid = hybrid.with_values(found.result.problem.values)
     recordings = task.data.recordings
-    return {
+    result = {
         "start": compare(start, recordings, plain, substeps=substeps).scores,
         "refit": compare(refit, recordings, plain, substeps=found.physics.substeps).scores,
-        "augmented": compare(
-            hybrid, recordings, make_stepper(model, (), device=task.device), substeps=found.result.substeps
-        ).scores,
+        "augmented": _scores_of(task, start, found.result),
     }
+    named = None if explained is None else explained.result
+    return result if named is None else {**result, "named": _scores_of(task, start, named)}
+
+
+def _scores_of(task: Task, start: Problem, found: FitResult) -> tuple[Score, ...]:
+    model = found.problem.model
+    problem = all_starts_free(task.data, problem_for(start, model, {}), task.model).with_values(found.problem.values)
+    stepper = make_stepper(model, (), device=task.device)
+    return compare(problem, task.data.recordings, stepper, substeps=found.substeps).scores
+
+
+def _named_files(
+    task: Task, found: Trained, explained: Explanation | None, figures: list[dict[str, Any]]
+) -> dict[Path, str | bytes]:
+    """The checkpoint of the model with the law instead of the network, where one was recommended."""
+    if explained is None or explained.term is None or explained.result is None:
+        return {}
+    attachments = (*found.hybrid.attachments[:-1], explained.term.attachment)
+    return checkpoint_files(
+        task.folder / NAMED, _checkpoint_of(task, explained.result, found.hybrid, attachments, figures)
+    )
 
 
 def _checkpoint(task: Task, found: Trained, figures: list[dict[str, Any]]) -> Checkpoint:
-    problem, hybrid = found.result.problem, found.hybrid
+    return _checkpoint_of(task, found.result, found.hybrid, found.hybrid.attachments, figures)
+
+
+def _checkpoint_of(
+    task: Task,
+    result: FitResult,
+    hybrid: Hybrid,
+    attachments: Sequence[Attachment],
+    figures: list[dict[str, Any]],
+) -> Checkpoint:
+    problem = result.problem
     return Checkpoint(
         model=task.model_name,
         title=task.model.title,
         values=dict(zip(problem.names, np.asarray(problem.values, dtype=float).tolist(), strict=True)),
         units={p.name: p.unit for p in problem.model.declared_parameters},
-        effects=[attachment_json(a, hybrid.surroundings[a.port]) for a in hybrid.attachments],
+        effects=[attachment_json(a, hybrid.surroundings[a.port]) for a in attachments],
         free_starts=True,
         dataset=task.data.sha256,
         figures=figures,

@@ -8,16 +8,18 @@ from typing import Any
 from greybox_torch.commands.fit_json import Scores, initial_json, parameters_json, status
 from greybox_torch.commands.free_runs import scores_json
 from greybox_torch.commands.task import Task
-from greybox_torch.train import Trained
+from greybox_torch.commands.train_explained import explanation_json
+from greybox_torch.train import Explanation, Trained
 from greybox_torch.train.polish import Choice
 
 MODELS = ("start", "refit", "augmented")
-"""As in `verdict.json`: the card's values, the physics alone, and the hybrid."""
+"""As in `verdict.json`: the card's values, the physics alone, and the hybrid; `named` is the law that replaces the network, if one does."""
 
 
-def result_json(task: Task, found: Trained, scores: Scores) -> dict[str, Any]:
+def result_json(task: Task, found: Trained, scores: Scores, explained: Explanation | None = None) -> dict[str, Any]:
     """The result as `train --json` prints it."""
     problem, network = found.result.problem, found.hybrid.network
+    explanation = {} if explained is None else {"explanation": explanation_json(found, explained)}
     return {
         "schema": "greybox-train/1",
         "seconds": found.seconds,
@@ -34,6 +36,7 @@ def result_json(task: Task, found: Trained, scores: Scores) -> dict[str, Any]:
             "held_out": [_choice_json(choice) for choice in found.polished.choices],
             "penalty": found.polished.chosen.weight,
         },
+        **explanation,
         "network": {"port": network.port, "mechanism": network.mechanism.name, **network.mechanism.options()},
         "settings": found.settings.as_json(),
         "history": [asdict(epoch) for epoch in found.history],
@@ -46,10 +49,11 @@ def result_json(task: Task, found: Trained, scores: Scores) -> dict[str, Any]:
 
 def _fit_json(scores: Scores) -> list[dict[str, Any]]:
     rows = []
-    for together in zip(*(scores_json(scores[name]) for name in MODELS), strict=True):
+    models = [name for name in (*MODELS, "named") if name in scores]
+    for together in zip(*(scores_json(scores[name]) for name in models), strict=True):
         place = {k: v for k, v in together[0].items() if k not in ("fit", "rmse")}
         numbers = [{"fit": row["fit"], "rmse": row["rmse"]} for row in together]
-        rows.append(place | dict(zip(MODELS, numbers, strict=True)))
+        rows.append(place | dict(zip(models, numbers, strict=True)))
     return rows
 
 

@@ -9,10 +9,11 @@ from greybox_torch.commands.fit_json import Scores
 from greybox_torch.commands.free_runs import print_scores, print_substeps
 from greybox_torch.commands.tables import print_table
 from greybox_torch.commands.task import Task
-from greybox_torch.train import Trained
+from greybox_torch.commands.train_explained import print_explanation
+from greybox_torch.train import Explanation, Trained
 
 
-def print_summary(console: Console, task: Task, found: Trained, scores: Scores) -> None:
+def print_summary(console: Console, task: Task, found: Trained, scores: Scores, explained: Explanation | None) -> None:
     """What the network is and what it adds, how the physics moved, and fit and error of every experiment before and after."""
     network = found.hybrid.network
     console.print(Text(f"{task.data.name}: {task.model.title}", style="bold"))
@@ -21,12 +22,21 @@ def print_summary(console: Console, task: Task, found: Trained, scores: Scores) 
     console.print(Text(f"{network.mechanism.name} at {network.port}: {options}"), soft_wrap=True)
     _print_parameters(console, found)
     _print_choices(console, found)
+    if explained is not None:
+        print_explanation(console, explained)
     print_substeps(console, found.result.substeps)
     console.print()
     print_scores(console, task.data, dict(scores))
     console.print(Text(f"{found.seconds:.1f} s, {len(found.history)} epochs, seed {found.settings.seed}"))
-    files = "train.json, model.safetensors, model.json, training.safetensors"
-    console.print(Text(f"Written to {task.folder}: {files}"), soft_wrap=True)
+    console.print(Text(f"Written to {task.folder}: {', '.join(_files(explained))}"), soft_wrap=True)
+
+
+def _files(explained: Explanation | None) -> list[str]:
+    files = ["train.json", "model.safetensors", "model.json", "training.safetensors"]
+    if explained is not None:
+        files += ["learned.png"] * bool(explained.curves)
+        files += ["named.safetensors", "named.json"] if explained.term is not None else []
+    return files
 
 
 def _sentence(found: Trained) -> str:

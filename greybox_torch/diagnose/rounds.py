@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from greybox_torch.diagnose.candidates import candidates, periodic_candidates, shifted_states
+from greybox_torch.diagnose.candidates import candidates, periodic_candidates
 from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS, chosen
 from greybox_torch.diagnose.curve import finer
 from greybox_torch.diagnose.leaders import Leader, leaders
@@ -18,6 +18,7 @@ from greybox_torch.diagnose.refit import POLISH_SETTINGS, WINDOW_SETTINGS, Hypot
 from greybox_torch.diagnose.screen import Look, Screen
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.shifted_states import shifted_states
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Surroundings

@@ -30,8 +30,12 @@ class Uncertainty:
         return result
 
 
-def uncertainty(run: FreeRun, z: np.ndarray) -> Uncertainty:
+def uncertainty(run: FreeRun, z: np.ndarray, penalty: np.ndarray | None = None) -> Uncertainty:
     """Covariance of the estimates at the optimum ``z`` (d,).
+
+    Args:
+        penalty: half the second derivative (d,) of what was added to the sum of squares, where something was: an unknown that the data
+            leave open then varies as far as the penalty lets it.
 
     Source: L. Ljung, "System Identification: Theory for the User", 2nd ed., ch. 9; R. M. Bell and D. F. McCaffrey, "Bias reduction in
     standard errors for linear regression with multi-stage samples", 2002 (leverage of a stretch); W. K. Newey and K. D. West, 1987, and
@@ -45,6 +49,7 @@ def uncertainty(run: FreeRun, z: np.ndarray) -> Uncertainty:
     hessian = np.zeros((size, size))
     for index, stretches in zip(columns, normals, strict=True):
         hessian[np.ix_(index, index)] += stretches[:, :-1, :-1].sum(axis=0)
+    hessian += 0.0 if penalty is None else np.diag(penalty)
     root, undetermined = _root_of_inverse(hessian)
     meat = np.zeros((root.shape[1], root.shape[1]))
     for index, stretches in zip(columns, normals, strict=True):

@@ -157,7 +157,9 @@ class AugmentedModel(GreyBoxModel):
         u = Signals("input", {s.name: torch.as_tensor(tape.u[i, samples]) for i, s in enumerate(self.inputs)})
         pairs = zip(self.declared_parameters, values, strict=True)
         p = Signals("parameter", {q.name: torch.tensor(float(v), dtype=torch.float64) for q, v in pairs})
+        own = len(self.base.states), len(self.base.declared_parameters)
         result = states.copy()
+        result[:, : own[0]] = self.base.begun(states[:, : own[0]], tape, samples, values[: own[1]])
         for a in self.attachments:
             for name, value in a.mechanism.starts(self._local(a, x, u, p)[0]).items():
                 result[:, names.index(f"{a.prefix}.{name}")] = np.asarray(value)

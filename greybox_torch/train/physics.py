@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from greybox_torch.errors import NumericalError
+from greybox_torch.data import DataSet
+from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.fit import FitResult, fit
 from greybox_torch.estimate.levenberg_marquardt import Settings
-from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
-from greybox_torch.simulate.stepper import Stepper
+from greybox_torch.mechanisms.attachment import AugmentedModel
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulate.stepper import Stepper, make_stepper
 from greybox_torch.simulate.substeps import choose_substeps
+from greybox_torch.train.course import window_lengths
+from greybox_torch.train.settings import TrainingSettings
 
 SETTINGS = Settings(iterations=25, tolerance=1e-3, trials=6)
 
@@ -26,6 +31,42 @@ class Physics:
 
     result: FitResult
     values: np.ndarray
+
+
+def physics_of(
+    data: DataSet,
+    model: GreyBoxModel,
+    *,
+    values: Mapping[str, float] | None = None,
+    settings: TrainingSettings | None = None,
+    device: str = "cpu",
+) -> Physics:
+    """``model`` estimated on the experiments of role "estimation", for hybrids of several seeds or networks to share.
+
+    Args:
+        values: parameter values that replace the start values, such as those of a diagnosis for its model.
+
+    Raises:
+        UserError: no estimation experiment, or records that are too short to train on.
+        NumericalError: the simulation overflows from the start values.
+    """
+    settings = settings or TrainingSettings()
+    problem = training_problem(data, model, values)
+    stepper = make_stepper(model, problem.free_names, device=device)
+    return estimate_physics(problem, stepper, window_lengths(problem.tape, settings), settings.seed)
+
+
+def training_problem(data: DataSet, model: GreyBoxModel, values: Mapping[str, float] | None = None) -> Problem:
+    """``model``, perhaps with effects attached, on the experiments of role "estimation", every start state free that the card leaves open.
+
+    Raises:
+        UserError: there is no such experiment.
+    """
+    if not data.estimation():
+        raise UserError(f'{data.path}: no experiment has the role "estimation"; expected at least one to train on')
+    base = model.base if isinstance(model, AugmentedModel) else model
+    problem = all_starts_free(data, make_problem(data, base, data.estimation()))
+    return problem_for(problem, model, values or {}) if values or base is not model else problem
 
 
 def estimate_physics(problem: Problem, stepper: Stepper, lengths: Sequence[int], seed: int = 0) -> Physics:

@@ -66,14 +66,18 @@ class PenalisedRun:
     unknowns: Unknowns
     weight: float
 
+    @property
+    def stiffness(self) -> np.ndarray:
+        """What the penalty adds to the diagonal of the Hessian (d,)."""
+        own = self.weight * self.unknowns.stiffness()
+        return np.concatenate([own, np.zeros(len(self.run.start) - len(own))])
+
     def quadratic(self, z: np.ndarray) -> Quadratic[None] | None:
         """Cost, gradient and Gauss-Newton Hessian, see :meth:`FreeRun.quadratic`."""
         found = self.run.quadratic(z)
         if found is None:
             return None
-        count = self.run.n_parameters
-        stiffness = np.zeros(len(z))
-        stiffness[:count] = self.weight * self.unknowns.stiffness()
+        count, stiffness = self.run.n_parameters, self.stiffness
         away = np.zeros(len(z))
         away[:count] = z[:count] - self.unknowns.rest * self.unknowns.scale
         cost = found.cost + 0.5 * float(stiffness @ away**2)
@@ -146,16 +150,12 @@ def _trial(course: Course, start: Problem, weight: float) -> tuple[Choice, Probl
     if optimum is None:
         return None
     at = run.at(optimum.point)
-    return Choice(weight, held_out_error(course.unknowns.hybrid.problem, at, course)), at
+    return Choice(weight, held_out_error(course.unknowns.hybrid.problem, at, course.stepper, course)), at
 
 
-def held_out_error(complete: Problem, at: Problem, course: Course) -> float:
+def held_out_error(complete: Problem, at: Problem, stepper: Stepper, course: Course) -> float:
     """Mean squared weighted error of the free run of ``at`` on the held-out samples of ``complete``; infinite where it overflows."""
-    simulated = np.concatenate(simulate(at, course.stepper, substeps=course.substeps)).T
-    return _error(complete, simulated, course.mask)
-
-
-def _error(complete: Problem, simulated: np.ndarray, mask: np.ndarray) -> float:
+    simulated, mask = np.concatenate(simulate(at, stepper, substeps=course.substeps)).T, course.mask
     with np.errstate(all="ignore"):
         errors = ((complete.tape.y - simulated) * complete.weights[:, None])[:, mask]
         value = float(np.nanmean(errors**2)) if np.isfinite(simulated).all() else float("inf")
@@ -171,8 +171,7 @@ def _physics_alone(course: Course, physics: Problem, plain: Stepper) -> Choice:
         else minimise(run.quadratic, run.start, *run.bounds, settings=RECORD_SETTINGS, admissible=run.admissible)
     )
     at = run.problem if optimum is None else run.at(optimum.point)
-    simulated = np.concatenate(simulate(at, plain, substeps=course.substeps)).T
-    return Choice(None, _error(physics, simulated, course.mask))
+    return Choice(None, held_out_error(physics, at, plain, course))
 
 
 def _at_rest(unknowns: Unknowns, hybrid: Problem, physics: Problem) -> Problem:

@@ -11,6 +11,8 @@ from greybox_torch.estimate.fit import FitResult
 from greybox_torch.mechanisms.attachment import AugmentedModel
 from greybox_torch.model import Signals
 from greybox_torch.train.hybrid import Hybrid
+from greybox_torch.train.lessons import Course
+from greybox_torch.train.physics import Physics
 from greybox_torch.train.polish import Polished
 from greybox_torch.train.settings import TrainingSettings
 from greybox_torch.train.state import Epoch
@@ -38,7 +40,7 @@ class Trained:
     """A trained hybrid.
 
     ``physics`` and ``result`` are the estimates of the plain model and of the hybrid; ``hybrid`` says what is attached;
-    ``polished`` which penalty the held-out stretches chose; ``history`` has the epochs.
+    ``polished`` which penalty the held-out stretches chose; ``history`` has the epochs; ``course`` what it was trained by.
     """
 
     physics: FitResult
@@ -48,11 +50,18 @@ class Trained:
     history: tuple[Epoch, ...]
     settings: TrainingSettings
     seconds: float
+    course: Course
 
     @property
     def physics_chosen(self) -> bool:
         """Whether the network was left at zero, since physics alone predicts the held-out stretches better."""
         return self.polished.chosen.weight is None
+
+    @property
+    def shared_physics(self) -> Physics:
+        """The physics alone as other trainings can begin with it."""
+        begun = self.course.unknowns.hybrid.problem.values[: len(self.physics.problem.values)]
+        return Physics(self.physics, begun)
 
     def force(self, **signals: np.ndarray) -> np.ndarray:
         """The network's own force at given local signals (arrays of one shape, in their units), in the unit of the port's force."""

@@ -14,7 +14,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.fit import FitResult
 from greybox_torch.estimate.free_run import FreeRun
-from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
+from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.estimate.termination import Termination
 from greybox_torch.estimate.uncertainty import uncertainty
@@ -26,7 +26,7 @@ from greybox_torch.train.gradients.tangents import TangentsGradient
 from greybox_torch.train.hybrid import Hybrid, attach_network, default_port, make_network, port_named
 from greybox_torch.train.keeper import Keeper
 from greybox_torch.train.lessons import Course, descend
-from greybox_torch.train.physics import estimate_physics, with_physics
+from greybox_torch.train.physics import Physics, estimate_physics, training_problem, with_physics
 from greybox_torch.train.polish import Polished, polish
 from greybox_torch.train.settings import TrainingSettings
 from greybox_torch.train.snapshot import Snapshot, check_snapshot, load_snapshot
@@ -44,6 +44,7 @@ def train_hybrid(
     signals: Sequence[str] = (),
     network: dict[str, Any] | None = None,
     settings: TrainingSettings | None = None,
+    physics: Physics | None = None,
     device: str = "cpu",
     progress: Callable[[Report], None] | None = None,
     snapshot: Path | None = None,
@@ -56,6 +57,7 @@ def train_hybrid(
         port: where; the driving body by default.
         signals: what it reads, by their names at the port.
         network: further arguments of :class:`FrictionNet` or :class:`ResidualNet`: units, seed, odd, dissipative.
+        physics: ``model`` as :func:`physics_of` has estimated it before, so that several trainings share that; estimated here otherwise.
         progress: is called with what is being done, and at the end of every epoch.
         snapshot: a file that the training can be taken up from; it is written at most every half a second.
         resume: take it up from there.
@@ -68,9 +70,7 @@ def train_hybrid(
     began, settings, tell = time.perf_counter(), settings or TrainingSettings(), progress or (lambda report: None)
     site = port_named(model, port or default_port(model, net))
     learner = make_network(net, site, signals, **{"seed": settings.seed, **(network or {})})
-    if not data.estimation():
-        raise UserError(f'{data.path}: no experiment has the role "estimation"; expected at least one to train on')
-    problem = all_starts_free(data, make_problem(data, model, data.estimation()))
+    problem = training_problem(data, model) if physics is None else physics.result.problem
     lengths = tuple(window_lengths(problem.tape, settings))
     about = {
         "data": data.sha256,
@@ -85,15 +85,15 @@ def train_hybrid(
         check_snapshot(_path(snapshot), about)
     tell(Report("estimating the physics"))
     plain = make_stepper(model, problem.free_names, device=device)
-    alone = estimate_physics(problem, plain, lengths, settings.seed)
+    alone = physics or estimate_physics(problem, plain, lengths, settings.seed)
     before = load_snapshot(_path(snapshot), about, alone) if resume else None
     alone = alone if before is None else before.physics
-    physics = alone.result
-    surroundings = survey(model, physics.problem, plain, physics.substeps)
-    hybrid = attach_network(physics.problem, site.name, learner, surroundings)
+    result = alone.result
+    surroundings = survey(model, result.problem, plain, result.substeps)
+    hybrid = attach_network(result.problem, site.name, learner, surroundings)
     hybrid = _frozen(hybrid) if settings.freeze_physics else _begun(hybrid, alone.values)
     stepper = make_stepper(hybrid.problem.model, hybrid.problem.free_names, device=device)
-    course = _course(hybrid, stepper, settings, lengths, physics, device, before)
+    course = _course(hybrid, stepper, settings, lengths, result, device, before)
     state = TrainingState.new(course.unknowns.start, settings.seed) if before is None else before.state
     kept = Keeper(snapshot, about, alone, course)
 
@@ -106,10 +106,10 @@ def train_hybrid(
         descend(course, state, on_epoch)
     finally:
         kept.last()
-    polished = polish(course, state.z, physics.problem, plain, lambda what: tell(Report(what, 1.0)))
-    result = _result(polished, stepper, physics)
+    polished = polish(course, state.z, result.problem, plain, lambda what: tell(Report(what, 1.0)))
+    augmented = _result(polished, stepper, result)
     seconds = time.perf_counter() - began
-    return Trained(physics, result, hybrid, polished, tuple(state.history), settings, seconds)
+    return Trained(result, augmented, hybrid, polished, tuple(state.history), settings, seconds, course)
 
 
 def _path(snapshot: Path | None) -> Path:

@@ -21,6 +21,7 @@ from greybox_torch.cli import app
 Make = Callable[..., Path]
 QUICK = ("--net", "residual", "--port", "actuator", "--units", "4", "--epochs", "5")
 FILES = ["model.json", "model.safetensors", "train.json", "training.safetensors"]
+EXPLAINED = sorted([*FILES, "learned.png", "named.json", "named.safetensors"])
 
 
 def train(folder: Path, *options: str) -> Result:
@@ -35,10 +36,10 @@ def written(folder: Path) -> list[str]:
 def test_json_and_checkpoint(motor_folder: Make) -> None:
     """A dead zone that the model does not know, learned as a change of the input."""
     folder = motor_folder(dead_zone=0.4)
-    result = train(folder, *QUICK, "--json")
+    result = train(folder, *QUICK, "--json", "--no-explain")
     assert result.exit_code == 0, result.stderr
     found = json.loads(result.stdout)
-    assert written(folder) == FILES
+    assert written(folder) == FILES and "explanation" not in found
     assert found == json.loads((folder / "out" / "train.json").read_text())
     assert found["schema"] == "greybox-train/1"
     assert found["network"] == {
@@ -67,10 +68,44 @@ def test_json_and_checkpoint(motor_folder: Make) -> None:
         assert after["fit"] == pytest.approx(row["augmented"]["fit"], abs=1e-6)
 
 
+def test_explained(motor_folder: Make) -> None:
+    """What the network has learned of the dead zone is named, and the model with that law is kept beside the hybrid."""
+    folder = motor_folder(dead_zone=0.4)
+    result = train(folder, *QUICK, "--json", "--ensemble", "2")
+    assert result.exit_code == 0, result.stderr
+    found = json.loads(result.stdout)
+    assert written(folder) == EXPLAINED
+    said = found["explanation"]
+    assert said["drop_network"] and said["sentence"].startswith("actuator.actuator_deadzone does what the network does")
+    assert said["members"] == 2 and "differences of 2 seeds" in said["band"]
+    (curve,) = said["curves"]
+    assert (curve["signal"], curve["unit"], curve["force_unit"]) == ("input", "V", "V")
+    assert len(curve["values"]) == len(curve["force"]) == len(curve["std"]) == 40
+    assert all(std > 0 for std in curve["std"]) and curve["share"] > 0.9
+    (half_gap,) = said["term"]["parameters"].values()
+    assert half_gap["value"] == pytest.approx(0.4, rel=0.1) and half_gap["unit"] == "V"
+    assert said["terms"][0]["lost"] < 0.02
+    for row in found["fit"]:
+        assert row["named"]["fit"] > row["augmented"]["fit"] - 0.5
+
+    named = str(folder / "out" / "named")
+    assert load_checkpoint(Path(named)).effects[0]["mechanism"] == "actuator_deadzone"
+    compared = CliRunner().invoke(
+        app, ["compare", str(folder / "dataset.toml"), named, "--json", "--out", str(folder / "cmp")]
+    )
+    assert compared.exit_code == 0, compared.stderr
+    _, restored = json.loads(compared.stdout)["models"]
+    for row, after in zip(found["fit"], restored["fit"], strict=True):
+        assert after["fit"] == pytest.approx(row["named"]["fit"], abs=1e-6)
+
+
 def test_summary(motor_folder: Make) -> None:
     folder = motor_folder(dead_zone=0.4)
     result = train(folder, *QUICK)
     assert result.exit_code == 0, result.stderr
+    assert "actuator.actuator_deadzone does what the network does" in result.stdout
+    assert "Share of the learned force that each signal alone explains: input" in result.stdout
+    assert "learned.png, named.safetensors, named.json" in result.stdout
     assert "With a network at actuator the mean squared error of the estimation experiments falls from" in result.stdout
     assert "residual_net at actuator: inputs input, units 4, seed 0" in result.stdout
     assert "physics alone" in result.stdout
@@ -109,7 +144,7 @@ def test_tensorboard_that_is_not_there(motor_folder: Make, monkeypatch: pytest.M
 def test_tensorboard(motor_folder: Make) -> None:
     pytest.importorskip("tensorboard", reason="the extra tensorboard is not installed")
     folder = motor_folder()
-    assert train(folder, *QUICK, "--tensorboard").exit_code == 0
+    assert train(folder, *QUICK, "--tensorboard", "--no-explain").exit_code == 0
     from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
     events = EventAccumulator(str(folder / "out" / "tensorboard"))
@@ -139,6 +174,7 @@ def test_killed_and_resumed(motor_folder: Make) -> None:
         str(folder / "dataset.toml"),
         *QUICK[:-1],
         "40",
+        "--no-explain",
         "--json",
     ]
 

@@ -108,7 +108,8 @@ def test_a_row_says_what_it_lacks(key: str, monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_a_hundred_columns_are_offered() -> None:
-    from greybox_torch.diagnose.candidates import candidates, shifted_states
+    from greybox_torch.diagnose.candidates import candidates
+    from greybox_torch.estimate.shifted_states import shifted_states
     from greybox_torch.estimate.surroundings import survey
     from greybox_torch.simulate.stepper import make_stepper
 

@@ -35,22 +35,39 @@ def true_friction(speed: np.ndarray) -> np.ndarray:
     return -0.15 * np.exp(-0.5 * ((np.abs(speed) - 4.0) / 1.2) ** 2) * np.tanh(speed / 0.3)
 
 
-def recorded(torque: np.ndarray, rng: np.random.Generator, inertia: float = 0.02, b: float = 0.05) -> np.ndarray:
+def drag(speed: np.ndarray) -> np.ndarray:
+    """Quadratic drag of 0.01 N m s^2/rad^2: one of the library's laws."""
+    return -0.01 * speed * np.abs(speed)
+
+
+def recorded(
+    torque: np.ndarray, rng: np.random.Generator, inertia: float = 0.02, b: float = 0.05, friction=true_friction
+) -> np.ndarray:
     """Speeds of the machine at samples 10 ms apart, ten Euler steps in each, with noise of 0.02 rad/s."""
     speeds, w = [], 0.5
     for u in torque:
         speeds.append(w)
         for _ in range(10):
-            w += 1e-3 * (u - b * w + true_friction(np.array(w))) / inertia
+            w += 1e-3 * (u - b * w + friction(np.array(w))) / inertia
     return np.array(speeds) + rng.normal(0.0, 0.02, len(torque))
 
 
 @pytest.fixture(scope="session")
 def table_data(data_set) -> DataSet:
     """Two estimation experiments and a validation experiment of the machine."""
+    return _table_data(data_set, true_friction)
+
+
+@pytest.fixture(scope="session")
+def drag_data(data_set) -> DataSet:
+    """The same of a machine whose missing friction has a name."""
+    return _table_data(data_set, drag)
+
+
+def _table_data(data_set, friction) -> DataSet:
     rng = np.random.default_rng(0)
     torques = [np.repeat(rng.uniform(-0.45, 0.45, n // 20), 20) for n in (1600, 1000, 800)]
-    experiments = [{"torque": u, "speed": recorded(u, rng)} for u in torques]
+    experiments = [{"torque": u, "speed": recorded(u, rng, friction=friction)} for u in torques]
     roles = ["estimation", "estimation", "validation"]
     return data_set({"torque": "N m", "speed": "rad/s"}, experiments, roles=roles)
 

@@ -14,9 +14,10 @@ from experiments.speed.row import Entry, Row, Target, apart
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import Settings
 from experiments.speed.timing import interleaved, once
-from greybox_torch.diagnose.candidates import candidates, shifted_states
+from greybox_torch.diagnose.candidates import candidates
 from greybox_torch.diagnose.screen import Screen
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.shifted_states import shifted_states
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment

@@ -1,0 +1,104 @@
+"""From a learned curve to the named laws that could have drawn it: the verdict `unknown` asks this, and so does a trained network."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+
+from greybox_torch.mechanisms.library import LIBRARY
+from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
+from greybox_torch.model import Signals
+
+LEAST_MATCH = 0.5
+"""Share of the curve's mean square that a law must match to be worth a refit."""
+
+MOST_LAWS = 3
+
+
+@dataclass(frozen=True)
+class Match:
+    """A law, the share of the learned force's weighted mean square that it matches, and its parameters by name, in their units."""
+
+    law: Mechanism
+    share: float
+    values: dict[str, float]
+
+
+def matching_laws(
+    kind: str,
+    around: Surroundings,
+    signals: Mapping[str, torch.Tensor],
+    force: np.ndarray,
+    weight: np.ndarray,
+    but: Collection[str] = (),
+) -> list[Match]:
+    """Every law without memory that depends on no other signals, least-squares fitted to a learned force, best matches first.
+
+    Args:
+        kind: of the port.
+        signals: the local signals (N,) that the learned force is a function of.
+        force: the learned force (N,) there, and ``weight`` (N,) what each point counts.
+        but: names of laws that are left out, since they are there already.
+    """
+    found = []
+    for law in (m() for name, m in LIBRARY.items() if name not in but):
+        fits_port = kind in law.kinds and set(law.needs) <= set(signals)
+        if fits_port and not law.kinematic and not law.states(around):
+            trials = _trials(law, around, signals, force, weight)
+            if trials:
+                found.append(max(trials, key=lambda match: match.share))
+    return sorted(found, key=lambda match: -match.share)
+
+
+def worth_a_refit(matches: Collection[Match]) -> list[Match]:
+    """The few of ``matches``, best first, that come near to the curve."""
+    return [match for match in matches if match.share > LEAST_MATCH][:MOST_LAWS]
+
+
+def kinematic_laws(around: Surroundings, signals: Collection[str]) -> list[tuple[Mechanism, list[dict[str, float]]]]:
+    """Laws that change a coupling's deflection and depend on no other ``signals``, with sizes to begin with.
+
+    What they do to the force depends on the spring, so their size is to be tried, not fitted to a curve.
+    """
+    laws = [law for law in (m() for m in LIBRARY.values()) if law.kinematic and set(law.needs) <= set(signals)]
+    return [(law, [dict(probe.values) for probe in law.probes(around) if probe.values]) for law in laws]
+
+
+def _trials(
+    law: Mechanism, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
+) -> list[Match]:
+    """The law fitted in its linear parameters, at every shape that it is looked for with."""
+    results, bounds = [], {p.name: p.bounds for p in law.parameters(around)}
+    root, total = np.sqrt(weight), max(float((weight * force**2).sum()), 1e-300)
+    for probe in law.probes(around):
+        if SHARE in probe.directions:
+            continue
+        columns = np.stack([force_column(law, around, signals, probe, name) for name in probe.directions], axis=1)
+        size = np.linalg.lstsq(columns * root[:, None], force * root, rcond=1e-10)[0]
+        size = np.array([np.clip(v, *bounds[n]) for n, v in zip(probe.directions, size, strict=True)])
+        share = 1.0 - float((weight * (force - columns @ size) ** 2).sum()) / total
+        results.append(
+            Match(law, share, {**probe.values, **dict(zip(probe.directions, map(float, size), strict=True))})
+        )
+    return results
+
+
+def force_column(
+    law: Mechanism, around: Surroundings, signals: Mapping[str, torch.Tensor], probe: Probe, name: str
+) -> np.ndarray:
+    """The law's force (N,) per unit of one of its linear parameters, at local signals (N,)."""
+    others = {other: 1.0 if other == name else 0.0 for other in probe.directions}
+    return law_force(law, around, signals, {**probe.values, **others})
+
+
+def law_force(
+    law: Mechanism, around: Surroundings, signals: Mapping[str, torch.Tensor], values: Mapping[str, float]
+) -> np.ndarray:
+    """The force (N,) of a law without memory at local signals (N,); parameters that ``values`` do not mention are as declared."""
+    complete = {p.name: p.value for p in law.parameters(around)} | dict(values)
+    p = Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in complete.items()})
+    force = law.force(Signals("signal", signals), p, Signals("memory", {}))
+    return np.broadcast_to(np.asarray(force), next(iter(signals.values())).shape).astype(float)

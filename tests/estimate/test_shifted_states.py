@@ -1,0 +1,74 @@
+"""The state through which a change of a coupling's deflection acts, where there is one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+import torch
+
+from greybox_torch.estimate.shifted_states import shifted_state
+from greybox_torch.model import Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
+
+
+class TwoMasses(GreyBoxModel):
+    """Two masses with positions of their own; the coupling's deflection is a function of both."""
+
+    states = [State(name) for name in ("q", "r", "v", "w")]
+    inputs = [Input("force", "N")]
+    outputs = [Output("v")]
+    parameters = [Parameter("k", 50.0), Parameter("g_q", 0.0), Parameter("g_r", 0.0)]
+    sign = 1.0
+
+    def __init__(self, sign: float = 1.0, scale: float = 1.0) -> None:
+        self.sign, self.scale = sign, scale
+        self.ports = [
+            Body("first", speed="v", position="q"),
+            Coupling(
+                "spring",
+                deflection=lambda x, u, p: scale * sign * (x.q - x.r),
+                rate=lambda x, u, p: scale * sign * (x.v - x.w),
+            ),
+        ]
+        super().__init__()
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        spring = p.k * (x.q - x.r) + 0.1 * (x.v - x.w) + self.sign * port.spring
+        fall = p.g_q * torch.sin(x.q)
+        return {"q": x.v, "r": x.w, "v": u.force - spring - fall + port.first, "w": spring - p.g_r * torch.sin(x.r)}
+
+    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+        return {"v": x.v}
+
+
+@pytest.mark.parametrize(
+    ("sign", "gravity", "expected"),
+    [
+        (1.0, (0.0, 0.0), "+q"),
+        (-1.0, (0.0, 0.0), "-q"),
+        (1.0, (2.0, 0.0), "-r"),  # moving q would change the weight too
+        (-1.0, (2.0, 0.0), "+r"),
+        (1.0, (2.0, 2.0), ""),
+    ],
+)
+def test_shifted_state_of_a_deflection_that_is_a_function(problem_of, sign, gravity, expected) -> None:
+    model = TwoMasses(sign)
+    problem = problem_of(model, g_q=gravity[0], g_r=gravity[1])
+    assert shifted_state(model, problem, model.ports[1]) == expected
+
+
+def test_no_shifted_state_where_the_deflection_is_geared(problem_of) -> None:
+    model = TwoMasses(scale=3.0)
+    assert shifted_state(model, problem_of(model), model.ports[1]) == ""
+
+
+@pytest.fixture
+def problem_of(data_set):
+    from greybox_torch.estimate.problem import make_problem
+
+    def make(model: GreyBoxModel, **values: float):
+        t = torch.arange(50).numpy() * 0.01
+        dataset = data_set({"force": "N", "v": ""}, [{"force": t, "v": 0 * t}])
+        return make_problem(dataset, model, dataset.recordings, values=values)
+
+    return make

@@ -1,0 +1,80 @@
+"""Which laws could have drawn a learned curve."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+
+from greybox_torch.mechanisms.library import LIBRARY
+from greybox_torch.mechanisms.matching import (
+    LEAST_MATCH,
+    MOST_LAWS,
+    kinematic_laws,
+    law_force,
+    matching_laws,
+    worth_a_refit,
+)
+from greybox_torch.mechanisms.mechanism import Range, Surroundings
+
+AROUND = Surroundings(
+    {name: Range(-5.0, 5.0, 2.5) for name in ("speed", "load", "position", "deflection", "rate")},
+    {"speed": "rad/s", "position": "rad", "deflection": "rad", "rate": "rad/s"},
+    "N m",
+    0.01,
+)
+SPEED = torch.linspace(-5, 5, 201, dtype=torch.float64)
+EVENLY = np.ones(201)
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [("quadratic_drag", {"c": 0.3}), ("viscous_friction", {"c": 0.2}), ("constant_bias", {"bias": -0.4})],
+)
+def test_the_law_that_drew_the_curve_matches_it(name: str, values: dict[str, float]) -> None:
+    force = law_force(LIBRARY[name](), AROUND, {"speed": SPEED}, values)
+    found = {m.law.name: m for m in matching_laws("body", AROUND, {"speed": SPEED}, force, EVENLY)}
+    assert found[name].share == pytest.approx(1.0, abs=1e-9)
+    assert {n: found[name].values[n] for n in values} == pytest.approx(values)
+    assert max(m.share for m in found.values()) <= 1.0 + 1e-12
+
+
+def test_best_first_and_few_of_them() -> None:
+    force = law_force(LIBRARY["quadratic_drag"](), AROUND, {"speed": SPEED}, {"c": 0.3})
+    matches = matching_laws("body", AROUND, {"speed": SPEED}, force, EVENLY)
+    assert [m.share for m in matches] == sorted((m.share for m in matches), reverse=True)
+    assert len({m.law.name for m in matches}) == len(matches)
+    few = worth_a_refit(matches)
+    assert few == matches[: len(few)] and 0 < len(few) <= MOST_LAWS
+    assert all(m.share > LEAST_MATCH for m in few)
+
+
+def test_laws_that_need_more_are_left_out() -> None:
+    """Laws of other signals, laws with memory, laws that are there already, and laws of other ports."""
+    force = -np.abs(np.linspace(-3, 3, 201)) * np.tanh(10 * SPEED.numpy())
+    alone = {m.law.name for m in matching_laws("body", AROUND, {"speed": SPEED}, force, EVENLY, {"quadratic_drag"})}
+    both = {"speed": SPEED, "load": torch.linspace(-3, 3, 201, dtype=torch.float64)}
+    loaded = matching_laws("body", AROUND, both, force, EVENLY)
+    assert not alone & {"load_dependent_friction", "presliding_hysteresis", "quadratic_drag", "nonlinear_stiffness"}
+    assert loaded[0].law.name == "load_dependent_friction" and loaded[0].share > 0.95
+
+
+def test_a_size_of_the_wrong_sign_is_none() -> None:
+    """A force that drives is no friction: the coefficient stays at zero, and nothing is matched."""
+    driving = 0.2 * SPEED.numpy()
+    found = {m.law.name: m for m in matching_laws("body", AROUND, {"speed": SPEED}, driving, EVENLY)}
+    assert found["quadratic_drag"].values["c"] == 0.0 and found["quadratic_drag"].share == pytest.approx(0.0)
+
+
+def test_weights_count() -> None:
+    force = np.where(SPEED.numpy() > 0, 1.0, -3.0)
+    right = np.where(SPEED.numpy() > 0, 1.0, 0.0)
+    found = {m.law.name: m for m in matching_laws("body", AROUND, {"speed": SPEED}, force, right)}
+    assert found["constant_bias"].values["bias"] == pytest.approx(1.0)
+    assert found["constant_bias"].share == pytest.approx(1.0)
+
+
+def test_kinematic_laws() -> None:
+    found = {law.name: sizes for law, sizes in kinematic_laws(AROUND, {"deflection", "rate"})}
+    assert list(found) == ["backlash"]
+    assert len(found["backlash"]) == 3 and all(0 < values["half_gap"] < 5.0 for values in found["backlash"])
