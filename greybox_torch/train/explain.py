@@ -45,7 +45,8 @@ class Explanation:
             return "There is nothing to explain: the network was left at zero."
         if self.term is not None:
             return (
-                f"{self.term.attachment.prefix} does what the network does: on the held-out stretches {_told(self.term.lost)}. "
+                f"{self.term.attachment.prefix} does what the network does: its mean squared error on the held-out stretches is "
+                f"{_told(self.term.lost)}. "
                 "Drop the network."
             )
         if self.terms:
