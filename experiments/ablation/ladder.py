@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
 
-from experiments.ablation.black_box import Scaling, train_black_box
+from experiments.ablation.black_box import train_black_box
 from experiments.ablation.diagnosis import Diagnosed
 from experiments.ablation.measure import Fits, drift, fits_of, timed, values_of
 from experiments.ablation.networks import NetworkChoice, judged
 from experiments.ablation.results import Case, Entry
+from experiments.ablation.series import Scaling
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.estimate.metrics import fit_percent, root_mean_square

@@ -23,6 +23,9 @@ BELOW_NAMED, ABOVE_PHYSICS = 0.1, 0.3
 ROLES = {"estimation": "#8a8a8a", "validation": "#0b6e99"}
 """With their colours."""
 
+LOWEST = 40.0
+"""Fit below which a figure has an arrow and the number, so that one poor model does not flatten the others."""
+
 FACTOR = 10.0
 """Relative change from which a drift is told as a factor: the re-estimated physics has that parameter next to zero."""
 
@@ -167,8 +170,9 @@ def figure_of(case: Case) -> Figure:
 
 
 def _draw_fits(axes: Axes, fits: Sequence[float], height: float, colour: str) -> None:
-    mean = float(np.mean(fits))
-    axes.plot(fits, [height] * len(fits), "o", color=colour, markersize=5, alpha=0.7)
-    axes.plot([mean], [height], "|", color=colour, markersize=13, markeredgewidth=2)
+    mean, shown = float(np.mean(fits)), np.maximum(fits, LOWEST)
+    axes.plot(shown, [height] * len(fits), "o" if min(fits) >= LOWEST else "<", color=colour, markersize=5, alpha=0.7)
+    if mean >= LOWEST:
+        axes.plot([mean], [height], "|", color=colour, markersize=13, markeredgewidth=2)
     place = {"xytext": (7, 0), "textcoords": "offset points", "va": "center"}
-    axes.annotate(f"{mean:.2f}", (max(fits), height), fontsize=7, color=colour, **place)
+    axes.annotate(f"{mean:.2f}", (max(shown), height), fontsize=7, color=colour, **place)

@@ -11,7 +11,7 @@ import torch
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.fit import FitResult
 from greybox_torch.estimate.shifted_states import shifted_state
-from greybox_torch.mechanisms.attachment import AugmentedModel, attach
+from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel, attach
 from greybox_torch.mechanisms.matching import Match, kinematic_laws, matching_laws, worth_a_refit
 from greybox_torch.model import Coupling
 from greybox_torch.train.hybrid import port_named
@@ -45,7 +45,8 @@ class Explanation:
             return "There is nothing to explain: the network was left at zero."
         if self.term is not None:
             return (
-                f"{self.term.attachment.prefix} does what the network does: on the held-out stretches {_told(self.term.lost)}. "
+                f"{self.term.attachment.prefix} does what the network does: its mean squared error on the held-out stretches is "
+                f"{_told(self.term.lost)}. "
                 "Drop the network."
             )
         if self.terms:
@@ -142,7 +143,7 @@ def _terms(found: Trained, matches: Sequence[Match], device: str, told: Callable
     return tuple(sorted(terms, key=lambda term: term.held_out))
 
 
-def _kinematic(found: Trained):
+def _kinematic(found: Trained) -> list[tuple[Attachment, list[dict[str, float]]]]:
     """Attachments of the kinematic laws of the network's signals, with sizes to begin with, where a state carries their change."""
     physics, network = found.physics.problem, found.hybrid.network
     site = port_named(physics.model, network.port)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import torch
 
-from experiments.ablation.black_box import MEMORY, BlackBox, Scaling, Series, train_black_box
+from experiments.ablation.black_box import MEMORY, BlackBox, train_black_box
+from experiments.ablation.series import Scaling, Series
 
 from ..machines.motor import Motor
 
