@@ -72,4 +72,5 @@ def _plain(model: GreyBoxModel, tape: Tape, values: np.ndarray) -> Problem:
         initial_free=np.ones(count, dtype=bool),
         weights=np.ones(1),
         carried=np.zeros(count, dtype=bool),
+        expected=values,
     )

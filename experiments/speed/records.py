@@ -96,6 +96,7 @@ def simulated_problem(experiments: int, samples: int) -> Problem:
         initial_free=np.ones(5, dtype=bool),
         weights=np.ones(1),
         carried=np.zeros(5, dtype=bool),
+        expected=arm_values(),
     )
 
 

@@ -21,7 +21,8 @@ class Problem:
 
     ``values`` (n_p,) and ``lower``, ``upper`` in physical units, in the order of the model's parameters; ``free`` (n_p,) says which
     are estimated. ``initial`` (E, n_x) start states per experiment, ``initial_free`` (n_x,) which are estimated. ``weights`` (n_y,)
-    multiply the errors of the outputs. ``carried`` (n_x,) marks states (integrated positions, time, memories) that are never free in
+    multiply the errors of the outputs. ``expected`` (n_p,) are the values that parameters are weakly held at where data say nothing:
+    those that the user began with. ``carried`` (n_x,) marks states (integrated positions, time, memories) that are never free in
     a window but carried into it from the one before.
     """
 
@@ -36,6 +37,7 @@ class Problem:
     initial_free: np.ndarray
     weights: np.ndarray
     carried: np.ndarray
+    expected: np.ndarray
 
     @property
     def free_names(self) -> tuple[str, ...]:
@@ -109,6 +111,7 @@ def make_problem(
         initial_free=np.array([not _initial_fixed(s, dataset) for s in model.states], dtype=bool),
         weights=_weights(tape),
         carried=np.zeros(len(model.states), dtype=bool),
+        expected=np.array([p.value for p in parameters], dtype=float),
     )
     if not problem.admissible(problem.values):
         broken = ", ".join(model.admissible(_tensors(problem)))
@@ -150,8 +153,11 @@ def problem_for(problem: Problem, model: GreyBoxModel, values: Mapping[str, floa
         initial_free=np.concatenate([problem.initial_free, [not s.fixed for s in model.states[count:]]]).astype(bool),
         weights=problem.weights,
         carried=np.isin([s.name for s in model.states], model.carried_states()),
+        expected=np.zeros(len(declared)),
     )
-    fresh = replace(fresh, values=np.clip(fresh.values, fresh.lower, fresh.upper))
+    begun = np.clip(fresh.values, fresh.lower, fresh.upper)
+    expected = [problem.expected[own[p.name]] if p.name in own else v for p, v in zip(declared, begun, strict=True)]
+    fresh = replace(fresh, values=begun, expected=np.array(expected))
     return replace(fresh, initial=model.begun(fresh.initial, fresh.driving_tape, fresh.tape.first, fresh.values))
 
 

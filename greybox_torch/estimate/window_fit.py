@@ -150,7 +150,8 @@ def carried_starts(
 
 def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: int, size: float | None) -> Hold:
     """Holds that matter only where the data say nothing: start states within several times their spread, parameters within several
-    times their start value (without which a friction law's shape can wander off where no speed is visited).
+    times what is expected of them (without which a friction law's shape can wander off where no speed is visited; held where each fit
+    of many begins, it would still get there by and by).
     """
     measured = problem.tape.y * problem.weights[:, None]
     mean_square = min(
@@ -158,12 +159,12 @@ def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: 
     )  # start values that explode must not freeze all
     spread = np.nanstd(states, axis=0)
     spread = np.where(spread > 1e-9, spread, max(float(np.nanstd(problem.tape.y)), 1e-6))
-    values = problem.values[problem.free]
+    values = problem.expected[problem.free]
     value_weights = np.where(values != 0.0, 10.0 * mean_square / np.where(values != 0.0, values, 1.0) ** 2, 0.0)
     declared = {p.name: p.shrunk for p in problem.model.declared_parameters}
     shrunk = np.array([declared[n] for n in problem.free_names], dtype=bool)
     if shrunk.any():
-        size = max(float(np.abs(values[shrunk]).max()) if size is None else size, 1e-12)
+        size = max(float(np.abs(problem.values[problem.free][shrunk]).max()) if size is None else size, 1e-12)
         value_weights = np.where(shrunk, SHRINKING * mean_square / size**2, value_weights)
         values = np.where(shrunk, 0.0, values)
     return Hold(states, 1e-4 * mean_square * steps / spread**2, values, value_weights)

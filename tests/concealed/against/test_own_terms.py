@@ -28,7 +28,7 @@ def problem() -> Problem:
     unbounded = np.full(size, np.inf)
     return Problem(
         model, tape, tuple(p.name for p in parameters), values, -unbounded, unbounded, free, np.zeros((1, 5)),
-        np.ones(5, dtype=bool), np.ones(1), np.zeros(5, dtype=bool),
+        np.ones(5, dtype=bool), np.ones(1), np.zeros(5, dtype=bool), values,
     )  # fmt: skip
 
 
