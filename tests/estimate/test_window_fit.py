@@ -49,7 +49,7 @@ def recorded(data_set: Any, extra: float) -> Problem:
 
 
 def fitted(problem: Problem) -> WindowFit:
-    """Fitted three times over: each fit holds the unknowns, weakly, where it began."""
+    """Fitted three times over: each fit holds the start states, weakly, where it began."""
     stepper = make_stepper(problem.model, problem.free_names)
     found = None
     for _ in range(3):
@@ -72,6 +72,23 @@ def test_with_an_unknown_at_its_bound_the_others_reach_their_optimum(data_set: A
     free = np.array([True, False, True])
     alone = fitted(Problem(**{**without.__dict__, "free": free}))
     assert bounded.problem.values[1] == 0.0
-    assert bounded.mean_square == pytest.approx(alone.mean_square, rel=1e-6)
-    assert bounded.problem.values == pytest.approx(alone.problem.values, rel=1e-3, abs=1e-12)
+    assert bounded.mean_square == pytest.approx(alone.mean_square, rel=1e-4)
+    assert bounded.problem.values == pytest.approx(alone.problem.values, rel=5e-3, abs=1e-12)
     assert bounded.evaluations < 30
+
+
+class WithSpare(TwoGains):
+    """One parameter more, on which nothing depends."""
+
+    parameters = [*TwoGains.declared_parameters, Parameter("spare", 1.0, lower=0.0)]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return {"speed": super().derivative(x, u, p, port)["speed"] + 0.0 * p.spare}
+
+
+def test_what_the_recordings_do_not_determine_returns_to_what_was_expected(data_set: Any) -> None:
+    known = recorded(data_set, 0.7)
+    data = data_set(UNITS, [{"voltage": known.tape.u[0], "speed": known.tape.y[0]}])
+    problem = make_problem(data, WithSpare(), data.estimation())
+    found = fitted(problem.with_values(np.array([2.0, 0.7, 3.0, 50.0])))
+    assert found.problem.values == pytest.approx([2.0, 0.7, 3.0, 1.0], rel=5e-3)
