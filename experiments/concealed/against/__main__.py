@@ -27,7 +27,7 @@ def run(cases: Path, out: Path, methods: Sequence[str], names: Sequence[str]) ->
     """Run the methods on the named cases, all where none is named; the number of cases that could not be run.
 
     Raises:
-        UserError: there is no such case.
+        UserError: there is no such case, or pysindy is wanted and not installed.
     """
     there = sorted(card.parent.name for card in cases.glob("*/dataset.toml"))
     if not there:
@@ -35,6 +35,8 @@ def run(cases: Path, out: Path, methods: Sequence[str], names: Sequence[str]) ->
     for name in names:
         if name not in there:
             raise UserError(f"--only: {cases} has no case {name}{did_you_mean(name, there)}")
+    if "sindy" in methods and find_spec("pysindy") is None:
+        raise UserError("--methods sindy: pysindy is not installed; expected the extra [proof], or other methods")
     return sum(not _run_case(cases / name, out / name, methods) for name in names or there)
 
 
@@ -64,8 +66,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parsed(arguments)
     try:
         methods = _listed(options.methods, METHOD_NAMES)
-        if "sindy" in methods and find_spec("pysindy") is None:
-            raise UserError("--methods sindy: pysindy is not installed; expected the extra [proof], or other methods")
         failed = run(options.cases, options.out, methods, _listed(options.only))
         rows = compared(options.keys or options.cases, options.out, options.verdicts)
     except UserError as error:
