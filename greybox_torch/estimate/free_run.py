@@ -22,6 +22,20 @@ def simulate(problem: Problem, stepper: Stepper, *, substeps: int = 1) -> list[n
     return [np.array(run.y[e, :n]) for e, n in enumerate(problem.tape.lengths)]
 
 
+def visited_states(problem: Problem, stepper: Stepper, *, substeps: int = 1) -> list[np.ndarray]:
+    """States (N_e, n_x) that every experiment runs through from its start state."""
+    run = stepper.run(
+        problem.driving_tape,
+        whole_records(problem.tape),
+        problem.values,
+        problem.initial,
+        substeps=substeps,
+        keep_states=True,
+    )
+    assert run.states is not None
+    return [run.states[e, :n] for e, n in enumerate(problem.tape.lengths)]
+
+
 @dataclass(frozen=True)
 class FreeRun:
     """Unknowns of a problem as one vector z: free parameters, then free start states experiment by experiment."""

@@ -5,26 +5,18 @@ from __future__ import annotations
 import numpy as np
 import torch
 
+from greybox_torch.estimate.free_run import visited_states
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.attachment import position_unit
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
-from greybox_torch.simulate.stepper import Stepper, whole_records
+from greybox_torch.simulate.stepper import Stepper
 
 
 def survey(model: GreyBoxModel, problem: Problem, stepper: Stepper, substeps: int) -> dict[str, Surroundings]:
     """Ranges of the signals around every port of ``model``, along the free run of ``problem`` (of that model, or of it augmented)."""
-    run = stepper.run(
-        problem.driving_tape,
-        whole_records(problem.tape),
-        problem.values,
-        problem.initial,
-        substeps=substeps,
-        keep_states=True,
-    )
-    assert run.states is not None
-    pieces = [run.states[e, :n] for e, n in enumerate(problem.tape.lengths)]
+    pieces = visited_states(problem, stepper, substeps=substeps)
     states = np.concatenate(pieces)[:, : len(model.states)]
     index = np.concatenate(
         [np.arange(problem.tape.span(e).start, problem.tape.span(e).stop) for e in range(len(pieces))]

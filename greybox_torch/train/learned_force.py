@@ -8,11 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
-from greybox_torch.estimate.free_run import FreeRun
+from greybox_torch.estimate.free_run import FreeRun, visited_states
 from greybox_torch.estimate.uncertainty import uncertainty
 from greybox_torch.mechanisms.attachment import AugmentedModel
 from greybox_torch.model import Signals
-from greybox_torch.simulate.stepper import whole_records
 from greybox_torch.train.polish import PenalisedRun
 from greybox_torch.train.trained import Trained
 
@@ -62,16 +61,7 @@ def visited_signals(found: Trained) -> dict[str, np.ndarray]:
     problem, model = found.result.problem, found.result.problem.model
     assert isinstance(model, AugmentedModel)
     tape = problem.driving_tape
-    run = found.course.stepper.run(
-        tape,
-        whole_records(tape),
-        problem.values,
-        problem.initial,
-        substeps=found.result.substeps,
-        keep_states=True,
-    )
-    assert run.states is not None
-    states = np.concatenate([run.states[e, :n] for e, n in enumerate(tape.lengths)])
+    states = np.concatenate(visited_states(problem, found.course.stepper, substeps=found.result.substeps))
     spans = [tape.span(e) for e in range(len(tape.lengths))]
     index = np.concatenate([np.arange(span.start, span.stop) for span in spans])
     kept = slice(None, None, max(1, -(-len(index) // MOST_SAMPLES)))

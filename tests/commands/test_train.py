@@ -33,6 +33,17 @@ def written(folder: Path) -> list[str]:
     return sorted(p.name for p in out.iterdir()) if out.exists() else []
 
 
+def assert_restored(folder: Path, checkpoint: str, fits: list[float]) -> None:
+    """`greybox compare` finds of a checkpoint what `train` reported."""
+    compared = CliRunner().invoke(
+        app, ["compare", str(folder / "dataset.toml"), checkpoint, "--json", "--out", str(folder / "cmp")]
+    )
+    assert compared.exit_code == 0, compared.stderr
+    _, restored = json.loads(compared.stdout)["models"]
+    for row, fit in zip(restored["fit"], fits, strict=True):
+        assert row["fit"] == pytest.approx(fit, abs=1e-6)
+
+
 def test_json_and_checkpoint(motor_folder: Make) -> None:
     """A dead zone that the model does not know, learned as a change of the input."""
     folder = motor_folder(dead_zone=0.4)
@@ -59,13 +70,7 @@ def test_json_and_checkpoint(motor_folder: Make) -> None:
 
     checkpoint = str(folder / "out" / "model")
     assert load_checkpoint(Path(checkpoint)).effects[0]["mechanism"] == "residual_net"
-    compared = CliRunner().invoke(
-        app, ["compare", str(folder / "dataset.toml"), checkpoint, "--json", "--out", str(folder / "cmp")]
-    )
-    assert compared.exit_code == 0, compared.stderr
-    _, restored = json.loads(compared.stdout)["models"]
-    for row, after in zip(found["fit"], restored["fit"], strict=True):
-        assert after["fit"] == pytest.approx(row["augmented"]["fit"], abs=1e-6)
+    assert_restored(folder, checkpoint, [row["augmented"]["fit"] for row in found["fit"]])
 
 
 def test_explained(motor_folder: Make) -> None:
@@ -90,13 +95,7 @@ def test_explained(motor_folder: Make) -> None:
 
     named = str(folder / "out" / "named")
     assert load_checkpoint(Path(named)).effects[0]["mechanism"] == "actuator_deadzone"
-    compared = CliRunner().invoke(
-        app, ["compare", str(folder / "dataset.toml"), named, "--json", "--out", str(folder / "cmp")]
-    )
-    assert compared.exit_code == 0, compared.stderr
-    _, restored = json.loads(compared.stdout)["models"]
-    for row, after in zip(found["fit"], restored["fit"], strict=True):
-        assert after["fit"] == pytest.approx(row["named"]["fit"], abs=1e-6)
+    assert_restored(folder, named, [row["named"]["fit"] for row in found["fit"]])
 
 
 def test_summary(motor_folder: Make) -> None:

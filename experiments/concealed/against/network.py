@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import torch
 
+from greybox_torch.estimate.free_run import visited_states
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.model import Body, GreyBoxModel, Parameter, Signals
-from greybox_torch.simulate.stepper import Stepper, whole_records
+from greybox_torch.simulate.stepper import Stepper
 
 
 class NetworkModel(GreyBoxModel):
@@ -80,16 +81,7 @@ def network_model(
     base: GreyBoxModel, problem: Problem, stepper: Stepper, width: int, *, substeps: int, seed: int
 ) -> NetworkModel:
     """A network scaled to where the signals of ``problem`` move in free run and to the forces that act there."""
-    run = stepper.run(
-        problem.driving_tape,
-        whole_records(problem.tape),
-        problem.values,
-        problem.initial,
-        substeps=substeps,
-        keep_states=True,
-    )
-    assert run.states is not None
-    states = np.concatenate([run.states[e, :n] for e, n in enumerate(problem.tape.lengths)])
+    states = np.concatenate(visited_states(problem, stepper, substeps=substeps))
     both = np.concatenate([states, problem.tape.u.T], axis=1)
     spread = np.sqrt(np.mean(both**2, axis=0))
     values = dict(zip(problem.names, problem.values, strict=True))
