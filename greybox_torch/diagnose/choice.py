@@ -5,15 +5,27 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from greybox_torch.diagnose.name import Ranked, sureness
+from greybox_torch.diagnose.noise import times_noise
+from greybox_torch.diagnose.refit import Hypothesis
 
 LEAST_GAIN = 0.01
 """Improvement of the mean squared error (as a share, averaged over window lengths) below which nothing is claimed."""
+
+FAR_ABOVE_NOISE, LEAST_GAIN_THERE = 3.0, 0.05
+"""How many times the noise an error is far above it, and the least improvement where a hypothesis leaves so much: a real machine differs
+from its model in many small ways, to which some law of the library will always bend a little."""
 
 LEAST_SURENESS = 3.0
 """Standard errors (over windows) by which an effect must improve the prediction."""
 
 CURVE_MARGIN = 0.1
 """How much better, in the logarithm of the mean squared error, a free curve must be than every named mechanism to be preferred."""
+
+
+def least_gain(fitted: Hypothesis) -> float:
+    """The improvement that an effect of ``fitted`` has to bring to be claimed."""
+    far = times_noise(fitted.problem, fitted) > FAR_ABOVE_NOISE
+    return LEAST_GAIN_THERE if far else LEAST_GAIN
 
 
 def chosen(ranked: Sequence[Ranked]) -> Ranked | None:

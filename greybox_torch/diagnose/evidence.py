@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from greybox_torch.data import DataSet
-from greybox_torch.diagnose.choice import LEAST_GAIN
+from greybox_torch.diagnose.choice import least_gain
 from greybox_torch.diagnose.noise import ABOVE_NOISE, floor_known, times_noise
 from greybox_torch.diagnose.select import Search
 from greybox_torch.mechanisms.attachment import Attachment
@@ -50,7 +50,7 @@ def sentences(
         elif best is not None:
             lines.append(
                 f"The best further candidate, {_name(best.leader.attachment)}, would lower it by {100 * (1 - np.exp(-best.gain)):.2g} % "
-                f"({best.surely:.1f} standard errors); claimed is what exceeds {100 * LEAST_GAIN:.0f} % and chance."
+                f"({best.surely:.1f} standard errors); claimed is what exceeds {100 * least_gain(best.fitted):.0f} % and chance."
             )
         else:
             lines.append("No candidate explains any of the remaining error.")

@@ -10,6 +10,7 @@ import numpy as np
 
 from greybox_torch.diagnose.curve import laws_on_curve
 from greybox_torch.diagnose.leaders import Leader
+from greybox_torch.diagnose.noise import floor_known, times_noise
 from greybox_torch.diagnose.refit import (
     POLISH_SETTINGS,
     Hypothesis,
@@ -37,7 +38,10 @@ TIE, MOST_TIED = 0.03, 6
 TRIAL_SETTINGS = Settings(iterations=14, tolerance=1e-3, trials=5)
 TRIAL_STARTS = 2
 PARSIMONY = 0.003
-"""Improvement of the logarithm of the mean squared error that a further parameter has to bring."""
+"""Improvement of the logarithm of the mean squared error that a further parameter has to bring where more than noise is left."""
+
+NOISE_REACHED = 1.05
+"""How many times the noise the root mean square error of hypotheses may be, for likelihood to count them."""
 
 LEAST_RATIO_SPREAD = 0.02
 """Scatter of the log ratio of window energies below which differences between windows mean nothing."""
@@ -65,10 +69,31 @@ class Ranked:
         start = f"{self.leader.attachment.prefix}."
         return sum(name.startswith(start) for name in self.fitted.problem.free_names)
 
-    @property
-    def cost(self) -> float:
-        """The score, with a little for every parameter: of laws that fit alike, the simpler one is meant."""
-        return self.fitted.score + PARSIMONY * self.size
+
+def in_order(ranked: Sequence[Ranked]) -> list[Ranked]:
+    """Best first: by score, with a price for every parameter: of laws that fit alike, the simpler one is meant.
+
+    Where the best leaves white noise alone the price is log(N) / N for N samples, by which a law is likelier. Where more is left, errors
+    are neither white nor only the lacking effect's, and the samples say less than their number.
+
+    Source: G. Schwarz, "Estimating the dimension of a model", Annals of Statistics 6, 1978.
+    """
+    best = min((r.fitted for r in ranked), key=lambda h: h.score, default=None)
+    samples = 0 if best is None else white_samples(best)
+    price = min(PARSIMONY, float(np.log(samples)) / samples) if samples else PARSIMONY
+    return sorted(ranked, key=lambda r: r.fitted.score + price * r.size)
+
+
+def likelihood_ratio(worse: Hypothesis, better: Hypothesis) -> float:
+    """Standard errors by which the likelihood of white noise puts ``worse`` behind; zero where more than that is left."""
+    return float(np.sqrt(max(0.0, white_samples(better) * (worse.score - better.score))))
+
+
+def white_samples(fitted: Hypothesis) -> int:
+    """How many samples tell hypotheses apart by likelihood: all of them where this one leaves white noise alone, else none."""
+    if not floor_known(fitted.problem) or times_noise(fitted.problem, fitted) > NOISE_REACHED:
+        return 0
+    return int(np.sum(~np.isnan(fitted.problem.tape.y)))
 
 
 def rank(
@@ -109,7 +134,7 @@ def rank(
     hopeless = score_of(at_middle, current.floor) + HOPELESS
     first = sorted((entry for entry in first if entry[0] < hopeless), key=lambda entry: entry[0])
     final = [r for r in side_by_side(partial(in_full, *entry[1:]) for entry in _finalists(first)) if r is not None]
-    return sorted([*final, *_distilled(refit, current, final, surroundings, progress)], key=lambda r: r.cost)
+    return in_order([*final, *_distilled(refit, current, final, surroundings, progress)])
 
 
 def judged(leader: Leader, before: Hypothesis, fitted: Hypothesis) -> Ranked:

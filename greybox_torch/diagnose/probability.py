@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from greybox_torch.diagnose.name import Ranked, sureness
+from greybox_torch.diagnose.name import Ranked, likelihood_ratio, sureness
 from greybox_torch.diagnose.noise import ABOVE_NOISE, times_noise
 from greybox_torch.diagnose.verdict import Alternative
 
@@ -61,7 +61,7 @@ def shared(chosen: Ranked, ranked: Sequence[Ranked]) -> tuple[float, tuple[Alter
 def _weight(chosen: Ranked, rival: Ranked) -> float:
     if rival.gain <= 0:
         return 0.0
-    behind = sureness(rival.fitted, chosen.fitted)
+    behind = max(sureness(rival.fitted, chosen.fitted), likelihood_ratio(rival.fitted, chosen.fitted))
     share = min(1.0, rival.gain / max(chosen.gain, 1e-12))
     simpler = np.exp(-max(0, rival.size - chosen.size))
     return float(np.exp(-0.5 * (behind / TEMPERATURE) ** 2) * share * simpler)

@@ -9,10 +9,10 @@ from functools import partial
 import numpy as np
 
 from greybox_torch.diagnose.candidates import candidates, periodic_candidates
-from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS, chosen
+from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS, chosen, least_gain
 from greybox_torch.diagnose.curve import finer
-from greybox_torch.diagnose.leaders import Leader, leaders
-from greybox_torch.diagnose.name import Ranked, judged, polished, rank
+from greybox_torch.diagnose.leaders import Leader, identity_of, leaders
+from greybox_torch.diagnose.name import MOST_TIED, TIE, Ranked, in_order, judged, polished, rank
 from greybox_torch.diagnose.orders import scan_orders
 from greybox_torch.diagnose.refit import POLISH_SETTINGS, WINDOW_SETTINGS, Hypothesis, hypothesis
 from greybox_torch.diagnose.screen import Look, Screen
@@ -36,6 +36,9 @@ CLOSE = 0.7
 
 FRONT_RUNNERS = 3
 MOST_SHAPES = 3
+SHAPES_TIE = 0.9
+"""Share of what the best shape of a mechanism explains from which another shape of it may be as good."""
+
 
 ORDER_SHIFTS = (-2, -1, 1, 2)
 """Quarter periods over the travel by which orders are tried anew."""
@@ -130,8 +133,8 @@ class Rounds:
 
     def _take(self, looks: Sequence[Sequence[Look]], ranked: Sequence[Ranked]) -> bool:
         """End a round: compare what was refitted fairly, and take the best if it pays. Whether one was taken."""
-        ranked = self._fairly(ranked)
-        paying = (r for r in ranked if r.gain > LEAST_GAIN and r.surely > LEAST_SURENESS)
+        ranked = self._fairly(looks, ranked)
+        paying = (r for r in ranked if r.gain > least_gain(r.fitted) and r.surely > LEAST_SURENESS)
         taken = chosen([r for r in paying if not r.unknown or self._substantial(r)])
         self.rounds.append(Round(tuple(tuple(at) for at in looks), self.current, tuple(ranked), taken))
         if taken is not None:
@@ -144,9 +147,14 @@ class Rounds:
         return curve.explained * max(left) > HOPE * LEAST_PART
 
     def _substantial(self, curve: Ranked) -> bool:
-        """Whether a free curve explains a part of the whole mismatch that counts, and not what a named law lacks to be the machine's."""
+        """Whether a free curve explains a part of the whole mismatch that counts, and not what a named law lacks to be the machine's.
+
+        By less than the margin it would give way to names, or to nothing where no name pays.
+        """
         fits = zip(self.plain.fits, self.current.fits, curve.fitted.fits, strict=True)
-        return any(b.mean_square - a.mean_square > LEAST_PART * p.mean_square for p, b, a in fits)
+        return curve.gain > CURVE_MARGIN and any(
+            b.mean_square - a.mean_square > LEAST_PART * p.mean_square for p, b, a in fits
+        )
 
     def _detailed(self, taken: Ranked) -> Hypothesis:
         """The hypothesis with its new curve drawn more and more finely, as long as that pays."""
@@ -201,7 +209,7 @@ class Rounds:
             *(candidates(model, self.shifts, self.surroundings, flexible=True) if self._may_be_a_curve() else []),
         ]
 
-    def _fairly(self, ranked: Sequence[Ranked]) -> list[Ranked]:
+    def _fairly(self, looks: Sequence[Sequence[Look]], ranked: Sequence[Ranked]) -> list[Ranked]:
         """The front runners polished, and compared with their parent refitted from the best one's values.
 
         Without the first, the order among close rivals would be the luck of their start values; without the second, an effect of next
@@ -209,8 +217,9 @@ class Rounds:
         """
         if not ranked or ranked[0].gain < LEAST_GAIN:
             return list(ranked)
-        front = [r for r in ranked if r.gain > CLOSE * ranked[0].gain][:FRONT_RUNNERS]
-        polish = side_by_side(partial(self._polished, r.fitted, self._shapes(r)) for r in front)
+        tied = sum(not r.unknown and r.gain > ranked[0].gain - TIE for r in ranked)
+        front = [r for r in ranked if r.gain > CLOSE * ranked[0].gain][: max(FRONT_RUNNERS, min(tied, MOST_TIED))]
+        polish = side_by_side(partial(self._polished, r.fitted, self._shapes(looks, r)) for r in front)
         best = min(polish, key=lambda fitted: fitted.score)
         parent = self._polished(self.current, [best.values(), {**best.values(), **self._card()}])
         if parent.score < self.current.score:
@@ -219,22 +228,27 @@ class Rounds:
                 self.plain = parent
         rest = [r.fitted for r in ranked[len(front) :]]
         again = [judged(r.leader, self.current, fitted) for r, fitted in zip(ranked, polish + rest, strict=True)]
-        return sorted(again, key=lambda r: r.cost)
+        return in_order(again)
 
     def _polished(self, fitted: Hypothesis, starts: Sequence[dict[str, float]]) -> Hypothesis:
         self.progress(f"polishing {' + '.join(e.prefix for e in fitted.effects) or 'the model as it stands'}")
         return polished(self.problem, fitted, self.surroundings, starts, substeps=self.substeps, device=self.device)
 
-    def _shapes(self, ranked: Ranked) -> list[dict[str, float]]:
-        """Start values against local minima: the newest effect's shape as each probe of the screen has it, the base's from the card."""
-        effect, values = ranked.leader.attachment, ranked.fitted.values()
-        card = self._card()
-        probes = effect.mechanism.probes(self.surroundings[effect.port])
-        shapes = {
-            tuple(sorted((f"{effect.prefix}.{n}", v) for n, v in probe.values.items() if n != "order"))
-            for probe in probes
-        }
-        restarts = [{**values, **card, **dict(shape)} for shape in sorted(shapes)[:MOST_SHAPES]]
+    def _shapes(self, looks: Sequence[Sequence[Look]], ranked: Ranked) -> list[dict[str, float]]:
+        """Start values against local minima, the base's from the card, the newest effect's shape as probes of the screen had it.
+
+        Of the shapes that explain about as much, some from end to end: between them the optimum may be narrower than the probes' grid.
+        """
+        effect, values, card = ranked.leader.attachment, ranked.fitted.values(), self._card()
+        explained: dict[tuple[tuple[str, float], ...], float] = {}
+        for look in (k for at in looks for k in at if identity_of(k.attachment) == identity_of(effect)):
+            shape = tuple(sorted((f"{effect.prefix}.{n}", v) for n, v in look.probe.values.items() if n != "order"))
+            explained[shape] = max(explained.get(shape, 0.0), look.explained)
+        best = sorted(explained, key=lambda shape: -explained[shape])
+        tied = [s for s in best if explained[s] > SHAPES_TIE * explained[best[0]]]
+        ends = sorted(tied) if len(tied) > MOST_SHAPES else best
+        spread = np.unique(np.linspace(0, min(len(ends), max(len(tied), MOST_SHAPES)) - 1, MOST_SHAPES).round())
+        restarts = [{**values, **card, **dict(ends[int(k)])} for k in spread]
         return restarts + self._neighbouring_orders(effect, values)
 
     def _neighbouring_orders(self, effect: Attachment, values: dict[str, float]) -> list[dict[str, float]]:

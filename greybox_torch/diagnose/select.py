@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
-from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS
+from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS, least_gain
 from greybox_torch.diagnose.leaders import Leader, leaders
 from greybox_torch.diagnose.name import PARSIMONY, Ranked, sureness
 from greybox_torch.diagnose.noise import ABOVE_NOISE, only_noise, times_noise
+from greybox_torch.diagnose.probability import shared
 from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.rounds import Round, Rounds
 from greybox_torch.diagnose.screen import Look
@@ -18,6 +19,9 @@ from greybox_torch.simulate.side_by_side import side_by_side
 
 MOST_EFFECTS = 4
 MOST_REVISIONS = 2
+
+BEYOND_DOUBT = 0.95
+"""Probability from which an effect is not chosen once more when others have been found."""
 
 NAMED_SHARE = 0.85
 """Share of a free curve's gain (in the logarithm of the mean squared error) from which named effects stand for it: real friction is
@@ -125,9 +129,9 @@ class Search(Rounds):
                     break  # what is there already comes as far as the curve, and no name goes farther
 
     def _step_with_fine_curves(self) -> bool:
-        """Where nothing pays and yet more than noise is left: one round with curves fine enough for a narrow law."""
+        """Where nothing has paid at all and yet more than noise is left: one round with curves fine enough for a narrow law."""
         more = times_noise(self.problem, self.current) > ABOVE_NOISE
-        return self._may_be_a_curve() and more and self.step(fine=True)
+        return not self.current.effects and self._may_be_a_curve() and more and self.step(fine=True)
 
     def _named_instead(self, done: Round, rounds: list[Round]) -> None:
         """Where a free curve was taken: the search without curves from where that round began, kept if named effects come as far.
@@ -177,11 +181,13 @@ class Search(Rounds):
         self.prune()
 
     def _revised(self) -> bool:
-        """Choose every effect but the newest once more, beside the others: an early choice was made while those were still missing.
+        """Choose doubtful effects but the newest once more, beside the others: an early choice was made while those were still missing.
 
         Whether one was replaced; the rest is then left as it is.
         """
         for effect in self.current.effects[:-1]:
+            if self._beyond_doubt(effect):
+                continue
             whole, rounds = self.current, list(self.rounds)
             self.progress(f"choosing {effect.prefix} once more")
             self.current = self.without[effect.prefix]
@@ -197,6 +203,11 @@ class Search(Rounds):
                 return True
         return False
 
+    def _beyond_doubt(self, effect: Attachment) -> bool:
+        """Whether no rival came near an effect in the round that took it."""
+        done = self.round_of(effect.prefix)
+        return done is not None and done.taken is not None and shared(done.taken, done.ranked)[0] > BEYOND_DOUBT
+
     def prune(self) -> None:
         """Drop every effect whose loss the rest make up for, until none can go; ``without`` keeps what was compared with."""
         dropped = True
@@ -207,7 +218,7 @@ class Search(Rounds):
             for effect, rest in zip(effects, side_by_side(partial(self._without, e) for e in effects), strict=True):
                 gain = rest.score - self.current.score
                 if len(self.current.effects) > 1 and (
-                    gain < LEAST_GAIN or sureness(rest, self.current) < LEAST_SURENESS
+                    gain < least_gain(self.current) or sureness(rest, self.current) < LEAST_SURENESS
                 ):
                     self.current, dropped = rest, True
                     break

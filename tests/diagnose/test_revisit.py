@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnose.candidates import attach
-from greybox_torch.diagnose.leaders import MOST_TIED, NAMED_PER_LENGTH, _with_ties
-from greybox_torch.diagnose.name import polished
+from greybox_torch.diagnose.leaders import MOST_TIED, NAMED_PER_LENGTH, Leader, _with_ties
+from greybox_torch.diagnose.name import judged, polished
 from greybox_torch.diagnose.noise import only_noise
 from greybox_torch.diagnose.refit import hypothesis
 from greybox_torch.diagnose.rounds import Round
 from greybox_torch.diagnose.screen import Look
-from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.friction import QuadraticDrag
 from greybox_torch.mechanisms.mechanism import Probe
 from greybox_torch.mechanisms.unknown import Unknown
@@ -86,3 +86,29 @@ def test_noise_is_not_known_where_the_motion_is_rough(motor_data, motor, begun) 
     search = begun(motor_data(noise=1e-6), motor)
     tiny = tuple(replace(f, mean_square=1e-12) for f in search.plain.fits)
     assert not only_noise(search.problem, replace(search.plain, fits=tiny))
+
+
+def test_what_no_rival_came_near_is_not_chosen_once_more(motor_data, motor, begun, monkeypatch) -> None:
+    search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v) + 0.05), motor)
+    while search.step():
+        pass
+    first = search.current.effects[0]
+    search.prune()
+    assert len(search.current.effects) == 2
+    monkeypatch.setattr("greybox_torch.diagnose.select.shared", lambda chosen, ranked: (0.96, ()))
+    assert search._beyond_doubt(first) and not search._revised()
+    monkeypatch.setattr("greybox_torch.diagnose.select.shared", lambda chosen, ranked: (0.6, ()))
+    assert not search._beyond_doubt(first)
+
+
+def test_shapes_that_explain_alike_are_tried_from_end_to_end(motor_data, motor, begun) -> None:
+    """Seen: a mode whose own frequency lay between two probes; all above it explained as much, as mere inertia."""
+    search = begun(motor_data(noise=0.1), motor)
+    mode = attach(motor, "rotor", AdditionalMode())
+    shares = {1.0: 0.1, 2.0: 0.2, 4.0: 0.44, 8.0: 0.443, 16.0: 0.442, 32.0: 0.442, 64.0: 0.442}
+    looks = [[Look(mode, Probe(("mass",), {"omega": w}), 31, share, np.ones(1)) for w, share in shares.items()]]
+    ranked = judged(Leader(mode, (), 0.443), search.plain, search.plain)
+    tried = [start[f"{mode.prefix}.omega"] for start in search._shapes(looks, ranked)]
+    assert tried == [4.0, 16.0, 64.0]
+    looks[0][3] = Look(mode, Probe(("mass",), {"omega": 8.0}), 31, 0.9, np.ones(1))
+    assert search._shapes(looks, ranked)[0][f"{mode.prefix}.omega"] == 8.0

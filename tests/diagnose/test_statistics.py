@@ -7,24 +7,31 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from greybox_torch.diagnose.choice import LEAST_GAIN, LEAST_GAIN_THERE, least_gain
 from greybox_torch.diagnose.held_out import Gain, gain
 from greybox_torch.diagnose.leaders import Leader
-from greybox_torch.diagnose.name import Ranked, sureness
+from greybox_torch.diagnose.name import Ranked, in_order, likelihood_ratio, sureness
 from greybox_torch.diagnose.probability import CEILING, of_a_stopped_search, shared
 from greybox_torch.diagnose.verdict import Effect
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction
 
+SAMPLES = 20_000
+
 
 @pytest.fixture
 def fitted(stub):
     """A hypothesis of which only window energies are known."""
-    return lambda *energies, free=(): stub(
-        fits=tuple(stub(energies=np.asarray(e, dtype=float)) for e in energies),
-        problem=stub(free_names=free),
-        score=float(np.log(np.mean(energies[0]))),
-    )
+
+    def make(*energies, free=(), noise=0.0):
+        fits = tuple(stub(energies=np.asarray(e, dtype=float), mean_square=float(np.mean(e))) for e in energies)
+        y = noise * np.random.default_rng(5).normal(size=(1, SAMPLES))
+        tape = stub(y=y, first=np.array([0]), span=lambda e: slice(0, SAMPLES))
+        problem = stub(free_names=free, tape=tape, weights=np.ones(1))
+        return stub(fits=fits, problem=problem, score=float(np.log(np.mean(energies[0]))))
+
+    return make
 
 
 def energies(seed: int, count: int = 64, samples: int = 100) -> np.ndarray:
@@ -102,10 +109,10 @@ def test_length_that_is_surest_counts(fitted) -> None:
     assert both == gain(fitted(clear[0]).fits, fitted(clear[1]).fits)
 
 
-def ranked(mechanism, fitted, gained: float, window_energies, port="rotor") -> Ranked:
+def ranked(mechanism, fitted, gained: float, window_energies, port="rotor", size=1, noise=0.0) -> Ranked:
     attachment = Attachment(port, mechanism)
-    free = (f"{attachment.prefix}.size",)
-    return Ranked(Leader(attachment, (), 0.5), fitted(window_energies, free=free), gained, 10.0)
+    free = tuple(f"{attachment.prefix}.size_{k}" for k in range(size))
+    return Ranked(Leader(attachment, (), 0.5), fitted(window_energies, free=free, noise=noise), gained, 10.0)
 
 
 def test_equal_rivals_share_equally(fitted) -> None:
@@ -146,3 +153,22 @@ def test_a_stopped_search_is_not_sure_of_a_curve() -> None:
     named = replace(curve, mechanism="backlash", port="gear_spring")
     less, same = of_a_stopped_search((curve, named))
     assert less.probability == 0.5 and same == named
+
+
+@pytest.mark.parametrize(("noise", "first"), [(1.0, "coulomb_asymmetry"), (0.1, "constant_bias")])
+def test_at_the_noise_likelihood_tells_laws_apart_that_windows_do_not(fitted, noise, first) -> None:
+    """Seen: an asymmetry of friction taken for a bias, 90 in twice the log likelihood behind for one parameter less."""
+    level = noise**2 if noise == 1.0 else 1.0  # of the error; the second is far above its noise
+    same, jitter = level * energies(0), np.random.default_rng(1).normal(1.0, 0.02, 64)
+    less = same * jitter * 0.9975 * same.mean() / (same * jitter).mean()
+    small = ranked(ConstantBias(), fitted, 1.0, same, noise=noise)
+    large = ranked(CoulombAsymmetry(), fitted, 1.0, less, size=2, noise=noise)
+    assert in_order([small, large])[0].leader.attachment.mechanism.name == first
+    away = likelihood_ratio(small.fitted, large.fitted)
+    assert away == pytest.approx(np.sqrt(-SAMPLES * np.log(0.9975)) if noise == 1.0 else 0.0)
+    assert (shared(large, [large, small])[0] > 0.9) == (noise == 1.0)
+
+
+def test_where_much_is_left_more_has_to_be_gained(fitted) -> None:
+    assert least_gain(fitted(energies(0), noise=1.0)) == LEAST_GAIN
+    assert least_gain(fitted(16.0 * energies(0), noise=1.0)) == LEAST_GAIN_THERE
