@@ -41,7 +41,7 @@ class Final:
 
 
 def finish(hypothesis: Hypothesis, substeps: int, *, device: str = "cpu") -> Final:
-    """Fit whole records by simulation error, from the values of every window length; the best of the results.
+    """Fit whole records by simulation error, from the values of every window length and from the card's; the best of the results.
 
     Where no whole record can be simulated, the values of the longest windows stand. The heights of free curves stay as the windows have
     them, where they are held small: what the records do not determine must not run away.
@@ -51,7 +51,8 @@ def finish(hypothesis: Hypothesis, substeps: int, *, device: str = "cpu") -> Fin
     stepper = hypothesis.stepper
     if shrunk:
         stepper = make_stepper(model, [n for n in hypothesis.problem.free_names if n not in shrunk], device=device)
-    runs = [_free_run(fit, shrunk, stepper, substeps) for fit in reversed(hypothesis.fits)]
+    runs = [_free_run(_from_windows(fit), shrunk, stepper, substeps) for fit in reversed(hypothesis.fits)]
+    runs.append(_free_run(_from_the_card(hypothesis), shrunk, stepper, substeps))
     begun = side_by_side(partial(_descended, run, run.start, BEGINNING) for run in runs)
     best, cost = None, np.inf
     for run, optimum in zip(runs, begun, strict=True):
@@ -65,8 +66,7 @@ def finish(hypothesis: Hypothesis, substeps: int, *, device: str = "cpu") -> Fin
     return Final(run.at(point), uncertainty(run, point))
 
 
-def _free_run(fit: WindowFit, kept: list[str], stepper: Stepper, substeps: int) -> FreeRun:
-    problem = _from_windows(fit)
+def _free_run(problem: Problem, kept: list[str], stepper: Stepper, substeps: int) -> FreeRun:
     return FreeRun(replace(problem, free=problem.free & ~np.isin(problem.names, kept)), stepper, substeps)
 
 
@@ -82,3 +82,10 @@ def _from_windows(fit: WindowFit) -> Problem:
     free = problem.initial_free
     initial[:, free] = fit.starts[index][:, free]
     return replace(problem, initial=initial)
+
+
+def _from_the_card(hypothesis: Hypothesis) -> Problem:
+    """The problem of the longest windows with the machine's own parameters as the card has them: windows may lead to another valley."""
+    problem = _from_windows(hypothesis.fits[-1])
+    added = [any(name.startswith(f"{e.prefix}.") for e in hypothesis.effects) for name in problem.names]
+    return problem.with_values(np.where(added, problem.values, problem.expected))
