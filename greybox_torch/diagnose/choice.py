@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from greybox_torch.diagnose.name import Ranked, sureness
-from greybox_torch.diagnose.noise import times_noise
+from greybox_torch.diagnose.name import Ranked, surely_better
+from greybox_torch.diagnose.noise import far_above_noise
 from greybox_torch.diagnose.refit import Hypothesis
 
 LEAST_GAIN = 0.01
 """Improvement of the mean squared error (as a share, averaged over window lengths) below which nothing is claimed."""
 
-FAR_ABOVE_NOISE, LEAST_GAIN_THERE = 3.0, 0.05
-"""How many times the noise an error is far above it, and the least improvement where a hypothesis leaves so much: a real machine differs
-from its model in many small ways, to which some law of the library will always bend a little."""
+LEAST_GAIN_FAR_ABOVE_NOISE = 0.05
+"""The same where a hypothesis leaves much more than noise: a real machine differs from its model in many small ways, to which some law of
+the library will always bend a little."""
 
 LEAST_SURENESS = 3.0
 """Standard errors (over windows) by which an effect must improve the prediction."""
@@ -24,8 +24,7 @@ CURVE_MARGIN = 0.1
 
 def least_gain(fitted: Hypothesis) -> float:
     """The improvement that an effect of ``fitted`` has to bring to be claimed."""
-    far = times_noise(fitted.problem, fitted) > FAR_ABOVE_NOISE
-    return LEAST_GAIN_THERE if far else LEAST_GAIN
+    return LEAST_GAIN_FAR_ABOVE_NOISE if far_above_noise(fitted) else LEAST_GAIN
 
 
 def chosen(ranked: Sequence[Ranked]) -> Ranked | None:
@@ -48,4 +47,4 @@ def simplest(ranked: Sequence[Ranked]) -> Ranked | None:
         for r in ranked
         if r.leader.attachment.mechanism.name in contained and r.leader.attachment.port == best.leader.attachment.port
     )
-    return next((r for r in simpler if sureness(r.fitted, best.fitted) < LEAST_SURENESS), best)
+    return next((r for r in simpler if surely_better(r.fitted, best.fitted) < LEAST_SURENESS), best)

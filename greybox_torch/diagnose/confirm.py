@@ -7,7 +7,9 @@ from dataclasses import replace
 from functools import partial
 
 from greybox_torch.data import DataSet
+from greybox_torch.diagnose.choice import LEAST_SURENESS
 from greybox_torch.diagnose.held_out import Gain, gain, held_out_fits, timelines
+from greybox_torch.diagnose.name import likelihood_ratio
 from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.select import Search
 from greybox_torch.estimate.problem import all_starts_free, make_problem
@@ -18,7 +20,7 @@ LEAST_HELD_OUT = 1.0
 """Standard errors by which an effect must lower the error on held-out experiments to be kept."""
 
 BEYOND_CHANCE = 3.0
-"""Standard errors by which a free curve must beat named effects on held-out experiments, to be preferred to them."""
+"""Standard errors by which a free curve must beat named effects on held-out experiments, or a law one that it contains, to be preferred."""
 
 UNEXERCISED = 2e-3
 """Share of the held-out error below which, either way, those experiments do not exercise an effect: they cannot take it back."""
@@ -56,7 +58,8 @@ def _simplified(search: Search, on_others: Callable[[Hypothesis], tuple[WindowFi
     for effect in search.current.effects:
         for rival, simpler in search.contained(effect):
             before, after = side_by_side(partial(on_others, h) for h in (simpler, search.current))
-            if gain(before, after).errors_away < LEAST_HELD_OUT:
+            no_farther = gain(before, after).errors_away < BEYOND_CHANCE
+            if no_farther and likelihood_ratio(simpler, search.current) < LEAST_SURENESS:
                 search.settle_for(rival, simpler, effect)
                 break
 

@@ -11,7 +11,7 @@ import torch
 from greybox_torch.diagnose.leaders import Leader
 from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel, attach
-from greybox_torch.mechanisms.matching import force_column, kinematic_laws, matching_laws, worth_a_refit
+from greybox_torch.mechanisms.matching import force_column, kinematic_laws, law_force, matching_laws, worth_a_refit
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import GreyBoxModel, Signals
@@ -66,13 +66,32 @@ def finer(
     unknown, around = curve.mechanism, surroundings[curve.port]
     assert isinstance(unknown, Unknown)
     detailed = Unknown(unknown.signal, 2 * unknown.knots, unknown.factor)
+    attachment = replace(curve, mechanism=detailed)
+    return attachment, _without(fitted, curve) | _heights(attachment, around, *_drawn(fitted, curve, around))
+
+
+def absorbed(fitted: Hypothesis, law: Attachment, surroundings: Mapping[str, Surroundings]) -> dict[str, float] | None:
+    """The values without a law, its force handed to the free curve of the same signal at its port; None where there is no such curve."""
+    around, mechanism = surroundings[law.port], law.mechanism
+    same = (e for e in fitted.effects if e is not law and e.port == law.port and isinstance(e.mechanism, Unknown))
+    curve = next(same, None)
+    if curve is None or mechanism.kinematic or mechanism.states(around):
+        return None
+    if mechanism.signals() != curve.mechanism.signals():
+        return None
     grid, target = _drawn(fitted, curve, around)
-    probe = detailed.probes(around)[0]
-    columns = [force_column(detailed, around, {unknown.signal: grid}, probe, name) for name in probe.directions]
-    heights = np.linalg.lstsq(np.stack(columns, axis=1), target, rcond=1e-6)[0]
-    values = _without(fitted, curve)
-    values |= {f"{curve.prefix}.{n}": float(h) for n, h in zip(probe.directions, heights, strict=True)}
-    return replace(curve, mechanism=detailed), values
+    own = {n.removeprefix(f"{law.prefix}."): v for n, v in fitted.values().items() if n.startswith(f"{law.prefix}.")}
+    (signal,) = curve.mechanism.signals()
+    whole = target + law_force(mechanism, around, {signal: grid}, own)
+    return _without(fitted, law) | _heights(curve, around, grid, whole)
+
+
+def _heights(curve: Attachment, around: Surroundings, grid: torch.Tensor, force: np.ndarray) -> dict[str, float]:
+    """The heights with which a curve draws a force (N,) over its signal (N,), by least squares."""
+    (signal,), probe = curve.mechanism.signals(), curve.mechanism.probes(around)[0]
+    columns = [force_column(curve.mechanism, around, {signal: grid}, probe, name) for name in probe.directions]
+    heights = np.linalg.lstsq(np.stack(columns, axis=1), force, rcond=1e-6)[0]
+    return {f"{curve.prefix}.{n}": float(h) for n, h in zip(probe.directions, heights, strict=True)}
 
 
 def _drawn(fitted: Hypothesis, curve: Attachment, around: Surroundings) -> tuple[torch.Tensor, np.ndarray]:

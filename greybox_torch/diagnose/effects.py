@@ -10,12 +10,13 @@ import numpy as np
 from greybox_torch.diagnose.final import Final
 from greybox_torch.diagnose.held_out import Gain
 from greybox_torch.diagnose.locate import explained_energy, law_curve, local_signals, most_of, profile
-from greybox_torch.diagnose.probability import shared
+from greybox_torch.diagnose.probability import for_all_that_is_left, shared
 from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.rounds import Round
 from greybox_torch.diagnose.select import Search
 from greybox_torch.diagnose.verdict import Effect, Profile, Timeline
 from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
+from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.ports import Port
 
@@ -68,6 +69,8 @@ def _effect(
     taken = search.round_of(attachment.prefix)
     probability, alternatives = (0.5, ()) if taken is None or taken.taken is None else shared(taken.taken, taken.ranked)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
+    if not isinstance(attachment.mechanism, Unknown):
+        probability = for_all_that_is_left(probability, search.current)
     profiles = _profiles(search, hypothesis, model, attachment, site, substeps)
     timelines = () if gain is None else gain.timelines
     mechanism = attachment.mechanism

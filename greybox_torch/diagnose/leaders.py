@@ -19,7 +19,7 @@ TIE, MOST_TIED = 0.97, 8
 """Share of the best look's from which a look ties with it, and how many of those are followed."""
 
 LEAST_SHARE = 0.008
-CAUTIOUS = 0.3
+CAUTIOUS = 0.1
 """Part of a suggested curve that a refit also begins with."""
 
 

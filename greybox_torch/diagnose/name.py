@@ -84,6 +84,11 @@ def in_order(ranked: Sequence[Ranked]) -> list[Ranked]:
     return sorted(ranked, key=lambda r: r.fitted.score + price * r.size)
 
 
+def surely_better(worse: Hypothesis, better: Hypothesis) -> float:
+    """How many standard errors ``better`` is better: by windows or, at the noise, by likelihood."""
+    return max(sureness(worse, better), likelihood_ratio(worse, better))
+
+
 def likelihood_ratio(worse: Hypothesis, better: Hypothesis) -> float:
     """Standard errors by which the likelihood of white noise puts ``worse`` behind; zero where more than that is left."""
     return float(np.sqrt(max(0.0, white_samples(better) * (worse.score - better.score))))

@@ -20,10 +20,18 @@ which the differences count and a model explains: the floor is a few per cent hi
 ABOVE_NOISE = 1.3
 """How many times the noise an error must be to count as more than noise."""
 
+FAR_ABOVE_NOISE = 3.0
+"""How many times the noise an error is far above it: laws that leave so much are not the whole story."""
+
 
 def times_noise(problem: Problem, fitted: Hypothesis) -> float:
     """Root mean square error in units of the noise, over the windows where it is largest: long ones show what is slow."""
     return float(np.sqrt(max(f.mean_square for f in fitted.fits) / max(noise_floor(problem), 1e-300)))
+
+
+def far_above_noise(fitted: Hypothesis) -> bool:
+    """Whether a hypothesis leaves much more than the noise."""
+    return times_noise(fitted.problem, fitted) > FAR_ABOVE_NOISE
 
 
 def only_noise(problem: Problem, fitted: Hypothesis) -> bool:

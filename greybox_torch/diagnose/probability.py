@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from greybox_torch.diagnose.name import Ranked, likelihood_ratio, sureness
-from greybox_torch.diagnose.noise import ABOVE_NOISE, times_noise
+from greybox_torch.diagnose.name import Ranked, surely_better
+from greybox_torch.diagnose.noise import ABOVE_NOISE, far_above_noise, times_noise
+from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.verdict import Alternative
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ UNEXPLAINED = 0.6
 CEILING = 0.97
 """The most that is ever claimed."""
 
+CEILING_FAR_ABOVE_NOISE = 0.85
+"""The most that is claimed for a name where the laws together leave much more than noise: one of them may stand for what has none."""
 
 UNNAMED_SO_FAR = 0.5
 """The most that is claimed for a free curve where the search was stopped: names may not have been tried in its place."""
@@ -35,6 +38,11 @@ def of_a_stopped_search(effects: Sequence[Effect]) -> tuple[Effect, ...]:
     return tuple(
         replace(e, probability=min(e.probability, UNNAMED_SO_FAR)) if e.mechanism == "unknown" else e for e in effects
     )
+
+
+def for_all_that_is_left(probability: float, left: Hypothesis) -> float:
+    """The probability of a name, given what all findings together leave."""
+    return min(probability, CEILING_FAR_ABOVE_NOISE) if far_above_noise(left) else probability
 
 
 def shared(chosen: Ranked, ranked: Sequence[Ranked]) -> tuple[float, tuple[Alternative, ...]]:
@@ -61,7 +69,7 @@ def shared(chosen: Ranked, ranked: Sequence[Ranked]) -> tuple[float, tuple[Alter
 def _weight(chosen: Ranked, rival: Ranked) -> float:
     if rival.gain <= 0:
         return 0.0
-    behind = max(sureness(rival.fitted, chosen.fitted), likelihood_ratio(rival.fitted, chosen.fitted))
+    behind = surely_better(rival.fitted, chosen.fitted)
     share = min(1.0, rival.gain / max(chosen.gain, 1e-12))
     simpler = np.exp(-max(0, rival.size - chosen.size))
     return float(np.exp(-0.5 * (behind / TEMPERATURE) ** 2) * share * simpler)

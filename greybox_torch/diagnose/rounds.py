@@ -49,6 +49,9 @@ LEAST_PART = 0.02
 HOPE = 0.5
 """Share of that which a curve must promise in the screen to be refitted at all."""
 
+LEAST_BY_FINE_CURVE = 0.3
+"""Share of what named effects leave that a fine curve has to promise in the screen: forty knots always take up something."""
+
 LEAST_BESIDE_CURVE = 0.1
 """Share of what a free curve leaves from which a further effect is worth refits, which are slow beside it."""
 
@@ -117,8 +120,10 @@ class Rounds:
         """
         looks = self._screened(fine=fine)
         found = leaders(looks, self.current.fits, self.surroundings, self._card())
-        if self._has_curve():
-            found = [k for k in found if k.explained > LEAST_BESIDE_CURVE]
+        least = (
+            LEAST_BY_FINE_CURVE if fine and self.current.effects else LEAST_BESIDE_CURVE if self._has_curve() else 0.0
+        )
+        found = [k for k in found if k.explained >= least]
         found = [k for k in found if not k.unknown or self._promising(k)]
         ranked = rank(
             self.problem,
@@ -191,7 +196,9 @@ class Rounds:
         offered = self._fine_curves() if fine else self._offered()
         model, at, free = self.problem.model, self.current, self.current.problem.free_names
         there = {(e.port, e.mechanism.name) for e in at.effects}
-        offered = [a for a in offered if (a.port, a.mechanism.name) not in there]
+        offered = [
+            a for a in offered if not there & {(a.port, n) for n in (a.mechanism.name, *a.mechanism.generalises)}
+        ]
         screen = Screen.of(model, at.effects, offered, self.surroundings, free, device=self.device)
         return side_by_side(partial(screen.look, fit, self.substeps) for fit in at.fits)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 
 from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS, least_gain
+from greybox_torch.diagnose.curve import absorbed
 from greybox_torch.diagnose.leaders import Leader, leaders
 from greybox_torch.diagnose.name import PARSIMONY, Ranked, sureness
 from greybox_torch.diagnose.noise import ABOVE_NOISE, only_noise, times_noise
@@ -129,9 +130,9 @@ class Search(Rounds):
                     break  # what is there already comes as far as the curve, and no name goes farther
 
     def _step_with_fine_curves(self) -> bool:
-        """Where nothing has paid at all and yet more than noise is left: one round with curves fine enough for a narrow law."""
+        """Where nothing pays and yet more than noise is left: one round with curves fine enough for a narrow law."""
         more = times_noise(self.problem, self.current) > ABOVE_NOISE
-        return not self.current.effects and self._may_be_a_curve() and more and self.step(fine=True)
+        return self._may_be_a_curve() and more and self.step(fine=True)
 
     def _named_instead(self, done: Round, rounds: list[Round]) -> None:
         """Where a free curve was taken: the search without curves from where that round began, kept if named effects come as far.
@@ -235,7 +236,8 @@ class Search(Rounds):
         if not rest:
             return self.plain
         self.progress(f"trying without {effect.prefix}")
-        return self._refitted(rest, self.current) or self.plain
+        handed_over = absorbed(self.current, effect, self.surroundings)
+        return self._refitted(rest, self.current, [] if handed_over is None else [handed_over]) or self.plain
 
 
 def _explained(looks: Sequence[Look], attachment: Attachment) -> float:

@@ -117,6 +117,7 @@ class CoulombAsymmetry(Mechanism):
     name = "coulomb_asymmetry"
     kinds = ("body",)
     needs = ("speed",)
+    generalises = ("constant_bias",)
     explanation = (
         "The Coulomb level differs between the two directions of motion (preloaded bearings, seals, gear flanks)."
     )

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnose.candidates import attach
+from greybox_torch.diagnose.curve import absorbed
 from greybox_torch.diagnose.leaders import MOST_TIED, NAMED_PER_LENGTH, Leader, _with_ties
 from greybox_torch.diagnose.name import judged, polished
 from greybox_torch.diagnose.noise import only_noise
@@ -112,3 +113,40 @@ def test_shapes_that_explain_alike_are_tried_from_end_to_end(motor_data, motor, 
     assert tried == [4.0, 16.0, 64.0]
     looks[0][3] = Look(mode, Probe(("mass",), {"omega": 8.0}), 31, 0.9, np.ones(1))
     assert search._shapes(looks, ranked)[0][f"{mode.prefix}.omega"] == 8.0
+
+
+def test_a_law_that_contains_what_is_there_is_chosen_in_its_place_not_beside_it(motor_data, motor, begun) -> None:
+    """Seen: a bias, then an asymmetry of friction beside it, then the bias taken back, and the fit worse than with either."""
+    search = begun(motor_data(torque=lambda q, v: 0.05), motor)
+    search.current = search._refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
+    offered = {(k.attachment.port, k.attachment.mechanism.name) for at in search._screened(fine=False) for k in at}
+    assert not offered & {("rotor", "constant_bias"), ("rotor", "coulomb_asymmetry")}
+    assert ("rotor", "stribeck_friction") in offered
+
+
+def test_a_law_hands_its_force_to_the_curve_beside_it(motor_data, motor, begun) -> None:
+    """Without this, a law that only began what the curve completed could not be taken back: the curve alone begins too far away."""
+    search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v)), motor)
+    drag, curve = attach(motor, "rotor", QuadraticDrag()), attach(motor, "rotor", Unknown("speed", 12))
+    start = {
+        **search.plain.values(),
+        "rotor.quadratic_drag.c": 0.004,
+        **{f"{curve.prefix}.w_{k}": 0.0 for k in range(12)},
+    }
+    both = hypothesis(search.problem, (drag, curve), search.surroundings, [start], substeps=1)
+    assert both is not None
+    alone = absorbed(both, drag, search.surroundings)
+    assert alone is not None and not any(n.startswith(drag.prefix) for n in alone)
+    handed = hypothesis(
+        search.problem,
+        (curve,),
+        search.surroundings,
+        [alone],
+        substeps=1,
+        frozen=frozenset(n for n in alone if "w_" in n),
+    )
+    assert handed is not None and handed.score < both.score + 0.05 < search.plain.score - 0.5
+    assert absorbed(both, curve, search.surroundings) is None
+    at_position = attach(motor, "rotor", Unknown("position", 12))
+    elsewhere = hypothesis(search.problem, (drag, at_position), search.surroundings, [start], substeps=1)
+    assert elsewhere is not None and absorbed(elsewhere, drag, search.surroundings) is None

@@ -103,5 +103,9 @@ def test_what_a_law_lacks_is_not_a_curve_of_its_own(dead_zone_search, ranked) ->
     now = tuple(replace(f, mean_square=0.1) for f in search.plain.fits)
     rounds = replace(search)
     rounds.plain, rounds.current = replace(search.plain, fits=fits), replace(search.plain, fits=now)
-    assert not rounds._substantial(ranked(Unknown("speed"), left - 0.018))
-    assert rounds._substantial(ranked(Unknown("speed"), left - 0.022))
+    little, enough = (replace(ranked(Unknown("speed"), left - part), gain=0.2) for part in (0.018, 0.022))
+    assert not rounds._substantial(little)
+    assert rounds._substantial(enough)
+    assert not rounds._substantial(
+        replace(enough, gain=0.09)
+    )  # within the margin it would give way to names, or to nothing

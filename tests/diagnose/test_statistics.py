@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greybox_torch.diagnose.choice import LEAST_GAIN, LEAST_GAIN_THERE, least_gain
+from greybox_torch.diagnose.choice import LEAST_GAIN, LEAST_GAIN_FAR_ABOVE_NOISE, least_gain
 from greybox_torch.diagnose.held_out import Gain, gain
 from greybox_torch.diagnose.leaders import Leader
 from greybox_torch.diagnose.name import Ranked, in_order, likelihood_ratio, sureness
@@ -171,4 +171,4 @@ def test_at_the_noise_likelihood_tells_laws_apart_that_windows_do_not(fitted, no
 
 def test_where_much_is_left_more_has_to_be_gained(fitted) -> None:
     assert least_gain(fitted(energies(0), noise=1.0)) == LEAST_GAIN
-    assert least_gain(fitted(16.0 * energies(0), noise=1.0)) == LEAST_GAIN_THERE
+    assert least_gain(fitted(16.0 * energies(0), noise=1.0)) == LEAST_GAIN_FAR_ABOVE_NOISE
