@@ -73,23 +73,23 @@ def finer(
 def absorbed(fitted: Hypothesis, law: Attachment, surroundings: Mapping[str, Surroundings]) -> dict[str, float] | None:
     """The values without a law, its force handed to the free curve of the same signal at its port; None where there is no such curve."""
     around, mechanism = surroundings[law.port], law.mechanism
-    same = (e for e in fitted.effects if e is not law and e.port == law.port and isinstance(e.mechanism, Unknown))
-    curve = next(same, None)
-    if curve is None or mechanism.kinematic or mechanism.states(around):
+    same = (e for e in fitted.effects if e is not law and e.port == law.port)
+    curve, unknown = next(((e, m) for e in same if isinstance(m := e.mechanism, Unknown)), (None, None))
+    if curve is None or unknown is None or unknown.factor or mechanism.kinematic or mechanism.states(around):
         return None
-    if mechanism.signals() != curve.mechanism.signals():
+    if not set(mechanism.signals()) <= {unknown.signal}:
         return None
     grid, target = _drawn(fitted, curve, around)
     own = {n.removeprefix(f"{law.prefix}."): v for n, v in fitted.values().items() if n.startswith(f"{law.prefix}.")}
-    (signal,) = curve.mechanism.signals()
-    whole = target + law_force(mechanism, around, {signal: grid}, own)
+    whole = target + law_force(mechanism, around, {unknown.signal: grid}, own)
     return _without(fitted, law) | _heights(curve, around, grid, whole)
 
 
 def _heights(curve: Attachment, around: Surroundings, grid: torch.Tensor, force: np.ndarray) -> dict[str, float]:
     """The heights with which a curve draws a force (N,) over its signal (N,), by least squares."""
-    (signal,), probe = curve.mechanism.signals(), curve.mechanism.probes(around)[0]
-    columns = [force_column(curve.mechanism, around, {signal: grid}, probe, name) for name in probe.directions]
+    unknown, probe = curve.mechanism, curve.mechanism.probes(around)[0]
+    assert isinstance(unknown, Unknown)
+    columns = [force_column(unknown, around, {unknown.signal: grid}, probe, name) for name in probe.directions]
     heights = np.linalg.lstsq(np.stack(columns, axis=1), force, rcond=1e-6)[0]
     return {f"{curve.prefix}.{n}": float(h) for n, h in zip(probe.directions, heights, strict=True)}
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnose.candidates import attach
-from greybox_torch.diagnose.curve import absorbed
+from greybox_torch.diagnose.curve import absorbed, finer
 from greybox_torch.diagnose.leaders import MOST_TIED, NAMED_PER_LENGTH, Leader, _with_ties
 from greybox_torch.diagnose.name import judged, polished
 from greybox_torch.diagnose.noise import only_noise
@@ -147,6 +147,24 @@ def test_a_law_hands_its_force_to_the_curve_beside_it(motor_data, motor, begun) 
     )
     assert handed is not None and handed.score < both.score + 0.05 < search.plain.score - 0.5
     assert absorbed(both, curve, search.surroundings) is None
+    bias = attach(motor, "rotor", ConstantBias())
+    beside = hypothesis(search.problem, (bias, curve), search.surroundings, [start], substeps=1)
+    assert beside is not None
+    assert absorbed(beside, bias, search.surroundings) is not None  # a constant is a curve of any signal
     at_position = attach(motor, "rotor", Unknown("position", 12))
     elsewhere = hypothesis(search.problem, (drag, at_position), search.surroundings, [start], substeps=1)
     assert elsewhere is not None and absorbed(elsewhere, drag, search.surroundings) is None
+
+
+@pytest.mark.parametrize("factor", ["", "position"])
+def test_a_finer_curve_begins_as_the_one_it_refines(motor_data, motor, begun, factor) -> None:
+    search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v)), motor)
+    curve = attach(motor, "rotor", Unknown("speed", 8, factor))
+    start = search.plain.values() | {f"{curve.prefix}.w_{k}": 0.01 * (k - 4) for k in range(8)}
+    drawn = hypothesis(search.problem, (curve,), search.surroundings, [start], substeps=1)
+    assert drawn is not None
+    attachment, values = finer(drawn, curve, search.surroundings)
+    assert sum(n.startswith(f"{curve.prefix}.w_") for n in values) == 16
+    frozen = frozenset(n for n in values if "w_" in n)
+    same = hypothesis(search.problem, (attachment,), search.surroundings, [values], substeps=1, frozen=frozen)
+    assert same is not None and same.score < drawn.score + 0.02
