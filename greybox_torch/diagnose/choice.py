@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from greybox_torch.diagnose.name import Ranked, surely_better
+from greybox_torch.diagnose.name import Ranked
 from greybox_torch.diagnose.noise import far_above_noise
 from greybox_torch.diagnose.refit import Hypothesis
+from greybox_torch.diagnose.sureness import surely_better
 
 LEAST_GAIN = 0.01
 """Improvement of the mean squared error (as a share, averaged over window lengths) below which nothing is claimed."""

@@ -9,9 +9,9 @@ from functools import partial
 from greybox_torch.data import DataSet
 from greybox_torch.diagnose.choice import LEAST_SURENESS
 from greybox_torch.diagnose.held_out import Gain, gain, held_out_fits, timelines
-from greybox_torch.diagnose.name import likelihood_ratio
 from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.select import Search
+from greybox_torch.diagnose.sureness import likelihood_ratio
 from greybox_torch.estimate.problem import all_starts_free, make_problem
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.simulate.side_by_side import side_by_side

@@ -35,7 +35,7 @@ def laws_on_curve(
     weight = _visited(around.ranges[unknown.signal].rms, grid.numpy())
     matches = matching_laws(site.kind, around, {unknown.signal: grid}, target, weight, there)
     base, found = _without(fitted, curve), []
-    for match in worth_a_refit(matches):
+    for match in worth_a_refit([m for m in matches if not there & set(m.law.generalises)]):
         attachment = attach(model, curve.port, match.law)
         values = {**base, **{f"{attachment.prefix}.{n}": v for n, v in match.values.items()}}
         found.append(Leader(attachment, ({**values, **card}, values), match.share))

@@ -10,7 +10,6 @@ import numpy as np
 
 from greybox_torch.diagnose.curve import laws_on_curve
 from greybox_torch.diagnose.leaders import Leader
-from greybox_torch.diagnose.noise import floor_known, times_noise
 from greybox_torch.diagnose.refit import (
     POLISH_SETTINGS,
     Hypothesis,
@@ -20,6 +19,7 @@ from greybox_torch.diagnose.refit import (
     score_of,
     without_free,
 )
+from greybox_torch.diagnose.sureness import sureness, white_samples
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.mechanisms.mechanism import Surroundings
@@ -39,15 +39,6 @@ TRIAL_SETTINGS = Settings(iterations=14, tolerance=1e-3, trials=5)
 TRIAL_STARTS = 2
 PARSIMONY = 0.003
 """Improvement of the logarithm of the mean squared error that a further parameter has to bring where more than noise is left."""
-
-NOISE_REACHED = 1.05
-"""How many times the noise the root mean square error of hypotheses may be, for likelihood to count them."""
-
-LEAST_RATIO_SPREAD = 0.02
-"""Scatter of the log ratio of window energies below which differences between windows mean nothing."""
-
-FEWEST_WINDOWS = 8
-"""Windows that a standard error needs."""
 
 
 @dataclass(frozen=True)
@@ -82,23 +73,6 @@ def in_order(ranked: Sequence[Ranked]) -> list[Ranked]:
     samples = 0 if best is None else white_samples(best)
     price = min(PARSIMONY, float(np.log(samples)) / samples) if samples else PARSIMONY
     return sorted(ranked, key=lambda r: r.fitted.score + price * r.size)
-
-
-def surely_better(worse: Hypothesis, better: Hypothesis) -> float:
-    """How many standard errors ``better`` is better: by windows or, at the noise, by likelihood."""
-    return max(sureness(worse, better), likelihood_ratio(worse, better))
-
-
-def likelihood_ratio(worse: Hypothesis, better: Hypothesis) -> float:
-    """Standard errors by which the likelihood of white noise puts ``worse`` behind; zero where more than that is left."""
-    return float(np.sqrt(max(0.0, white_samples(better) * (worse.score - better.score))))
-
-
-def white_samples(fitted: Hypothesis) -> int:
-    """How many samples tell hypotheses apart by likelihood: all of them where this one leaves white noise alone, else none."""
-    if not floor_known(fitted.problem) or times_noise(fitted.problem, fitted) > NOISE_REACHED:
-        return 0
-    return int(np.sum(~np.isnan(fitted.problem.tape.y)))
 
 
 def rank(
@@ -195,36 +169,6 @@ def polished(
         device=device,
     )
     return fitted if again is None or again.score > fitted.score else again
-
-
-def sureness(before: Hypothesis, after: Hypothesis) -> float:
-    """How many standard errors the improvement is away from none: the largest over the window lengths.
-
-    Judged over windows, so that errors which are correlated within a window count once: by the mean difference of the windows'
-    energies; by the mean of their logarithmic ratio, which sees an effect whose size varies by orders of magnitude; and by how far the
-    ratio of a single window stands out from that of the others, which sees an effect that acts at one place of the record (a stop).
-    """
-    best = 0.0
-    for old, new in zip(before.fits, after.fits, strict=True):
-        if len(old.energies) >= FEWEST_WINDOWS:
-            least = 1e-12 * float(old.energies.max())
-            ratio = np.log(np.maximum(old.energies, least)) - np.log(np.maximum(new.energies, least))
-            best = max(
-                best, _standard_errors(old.energies - new.energies), _standard_errors(ratio), _standing_out(ratio)
-            )
-    return best
-
-
-def _standing_out(ratio: np.ndarray) -> float:
-    """How far the largest log ratio lies from the middle, in robust standard deviations, halved because it is the largest of many."""
-    middle = float(np.median(ratio))
-    spread = 1.4826 * float(np.median(np.abs(ratio - middle))) + LEAST_RATIO_SPREAD
-    return 0.5 * (float(ratio.max()) - middle) / spread
-
-
-def _standard_errors(values: np.ndarray) -> float:
-    spread = float(np.std(values, ddof=1)) / np.sqrt(len(values))
-    return float(values.mean()) / max(spread, 1e-300)
 
 
 def _finalists(

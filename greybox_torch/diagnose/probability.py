@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from greybox_torch.diagnose.name import Ranked, surely_better
+from greybox_torch.diagnose.name import Ranked
 from greybox_torch.diagnose.noise import ABOVE_NOISE, far_above_noise, times_noise
 from greybox_torch.diagnose.refit import Hypothesis
+from greybox_torch.diagnose.sureness import surely_better
 from greybox_torch.diagnose.verdict import Alternative
 
 if TYPE_CHECKING:

@@ -6,15 +6,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
-import numpy as np
-
 from greybox_torch.diagnose.candidates import candidates, periodic_candidates
 from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS, chosen, least_gain
 from greybox_torch.diagnose.curve import finer
-from greybox_torch.diagnose.leaders import Leader, identity_of, leaders
+from greybox_torch.diagnose.leaders import Leader, leaders
 from greybox_torch.diagnose.name import MOST_TIED, TIE, Ranked, in_order, judged, polished, rank
 from greybox_torch.diagnose.orders import scan_orders
 from greybox_torch.diagnose.refit import POLISH_SETTINGS, WINDOW_SETTINGS, Hypothesis, hypothesis
+from greybox_torch.diagnose.restarts import restarts
 from greybox_torch.diagnose.screen import Look, Screen
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.problem import Problem
@@ -35,14 +34,6 @@ CLOSE = 0.7
 """Share of the best gain from which a rival is polished before it is compared."""
 
 FRONT_RUNNERS = 3
-MOST_SHAPES = 3
-SHAPES_TIE = 0.9
-"""Share of what the best shape of a mechanism explains from which another shape of it may be as good."""
-
-
-ORDER_SHIFTS = (-2, -1, 1, 2)
-"""Quarter periods over the travel by which orders are tried anew."""
-
 LEAST_PART = 0.02
 """Share of the plain model's mean squared error that a free curve has to remove at some window length."""
 
@@ -226,7 +217,9 @@ class Rounds:
             return list(ranked)
         tied = sum(not r.unknown and r.gain > ranked[0].gain - TIE for r in ranked)
         front = [r for r in ranked if r.gain > CLOSE * ranked[0].gain][: max(FRONT_RUNNERS, min(tied, MOST_TIED))]
-        polish = side_by_side(partial(self._polished, r.fitted, self._shapes(looks, r)) for r in front)
+        polish = side_by_side(
+            partial(self._polished, r.fitted, restarts(looks, r, self._card(), self.surroundings)) for r in front
+        )
         best = min(polish, key=lambda fitted: fitted.score)
         parent = self._polished(self.current, [best.values(), {**best.values(), **self._card()}])
         if parent.score < self.current.score:
@@ -240,34 +233,6 @@ class Rounds:
     def _polished(self, fitted: Hypothesis, starts: Sequence[dict[str, float]]) -> Hypothesis:
         self.progress(f"polishing {' + '.join(e.prefix for e in fitted.effects) or 'the model as it stands'}")
         return polished(self.problem, fitted, self.surroundings, starts, substeps=self.substeps, device=self.device)
-
-    def _shapes(self, looks: Sequence[Sequence[Look]], ranked: Ranked) -> list[dict[str, float]]:
-        """Start values against local minima, the base's from the card, the newest effect's shape as probes of the screen had it.
-
-        Of the shapes that explain about as much, some from end to end: between them the optimum may be narrower than the probes' grid.
-        """
-        effect, values, card = ranked.leader.attachment, ranked.fitted.values(), self._card()
-        explained: dict[tuple[tuple[str, float], ...], float] = {}
-        for look in (k for at in looks for k in at if identity_of(k.attachment) == identity_of(effect)):
-            shape = tuple(sorted((f"{effect.prefix}.{n}", v) for n, v in look.probe.values.items() if n != "order"))
-            explained[shape] = max(explained.get(shape, 0.0), look.explained)
-        best = sorted(explained, key=lambda shape: -explained[shape])
-        tied = [s for s in best if explained[s] > SHAPES_TIE * explained[best[0]]]
-        ends = sorted(tied) if len(tied) > MOST_SHAPES else best
-        spread = np.unique(np.linspace(0, min(len(ends), max(len(tied), MOST_SHAPES)) - 1, MOST_SHAPES).round())
-        restarts = [{**values, **card, **dict(ends[int(k)])} for k in spread]
-        return restarts + self._neighbouring_orders(effect, values)
-
-    def _neighbouring_orders(self, effect: Attachment, values: dict[str, float]) -> list[dict[str, float]]:
-        """For a periodic effect, orders by which its phase shifts by a quarter period or more over the travel.
-
-        Along short windows positions are less exact than over long ones, where the order they suggest may lie in the next valley.
-        """
-        name = f"{effect.prefix}.order"
-        if name not in values:
-            return []
-        step = 0.5 * np.pi / self.surroundings[effect.port].ranges["position"].span
-        return [{**values, name: values[name] + shift * step} for shift in ORDER_SHIFTS]
 
     def _card(self) -> dict[str, float]:
         """The parameter values that the problem began with."""

@@ -9,12 +9,13 @@ from functools import partial
 from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS, least_gain
 from greybox_torch.diagnose.curve import absorbed
 from greybox_torch.diagnose.leaders import Leader, leaders
-from greybox_torch.diagnose.name import PARSIMONY, Ranked, sureness
+from greybox_torch.diagnose.name import PARSIMONY, Ranked
 from greybox_torch.diagnose.noise import ABOVE_NOISE, only_noise, times_noise
 from greybox_torch.diagnose.probability import shared
 from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.rounds import Round, Rounds
 from greybox_torch.diagnose.screen import Look
+from greybox_torch.diagnose.sureness import sureness
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.simulate.side_by_side import side_by_side
 

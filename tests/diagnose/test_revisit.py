@@ -13,6 +13,7 @@ from greybox_torch.diagnose.leaders import MOST_TIED, NAMED_PER_LENGTH, Leader, 
 from greybox_torch.diagnose.name import judged, polished
 from greybox_torch.diagnose.noise import only_noise
 from greybox_torch.diagnose.refit import hypothesis
+from greybox_torch.diagnose.restarts import restarts
 from greybox_torch.diagnose.rounds import Round
 from greybox_torch.diagnose.screen import Look
 from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, TorqueRipple
@@ -109,10 +110,17 @@ def test_shapes_that_explain_alike_are_tried_from_end_to_end(motor_data, motor, 
     shares = {1.0: 0.1, 2.0: 0.2, 4.0: 0.44, 8.0: 0.443, 16.0: 0.442, 32.0: 0.442, 64.0: 0.442}
     looks = [[Look(mode, Probe(("mass",), {"omega": w}), 31, share, np.ones(1)) for w, share in shares.items()]]
     ranked = judged(Leader(mode, (), 0.443), search.plain, search.plain)
-    tried = [start[f"{mode.prefix}.omega"] for start in search._shapes(looks, ranked)]
+    tried = [start[f"{mode.prefix}.omega"] for start in restarts(looks, ranked, search._card(), search.surroundings)]
     assert tried == [4.0, 16.0, 64.0]
     looks[0][3] = Look(mode, Probe(("mass",), {"omega": 8.0}), 31, 0.9, np.ones(1))
-    assert search._shapes(looks, ranked)[0][f"{mode.prefix}.omega"] == 8.0
+    assert restarts(looks, ranked, search._card(), search.surroundings)[0][f"{mode.prefix}.omega"] == 8.0
+
+
+def test_what_was_not_screened_has_no_further_shapes(motor, motor_data, begun) -> None:
+    """A law that a learned curve suggested."""
+    search = begun(motor_data(noise=0.1), motor)
+    ranked = judged(Leader(attach(motor, "rotor", AdditionalMode()), (), 0.4), search.plain, search.plain)
+    assert restarts([[]], ranked, search._card(), search.surroundings) == []
 
 
 def test_a_law_that_contains_what_is_there_is_chosen_in_its_place_not_beside_it(motor_data, motor, begun) -> None:

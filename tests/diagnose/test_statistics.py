@@ -10,8 +10,9 @@ import pytest
 from greybox_torch.diagnose.choice import LEAST_GAIN, LEAST_GAIN_FAR_ABOVE_NOISE, least_gain
 from greybox_torch.diagnose.held_out import Gain, gain
 from greybox_torch.diagnose.leaders import Leader
-from greybox_torch.diagnose.name import Ranked, in_order, likelihood_ratio, sureness
+from greybox_torch.diagnose.name import Ranked, in_order
 from greybox_torch.diagnose.probability import CEILING, of_a_stopped_search, shared
+from greybox_torch.diagnose.sureness import likelihood_ratio, sureness
 from greybox_torch.diagnose.verdict import Effect
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
