@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.estimate.problem import Problem
+
+if TYPE_CHECKING:
+    from greybox_torch.diagnose.refit import Hypothesis
+    from greybox_torch.estimate.window_fit import WindowFit
 
 DIFFERENCES = 3
 """How many times the outputs are differenced: what a machine does is smooth at the rate it is sampled at, noise is not."""
@@ -20,6 +25,9 @@ which the differences count and a model explains: the floor is a few per cent hi
 ABOVE_NOISE = 1.3
 """How many times the noise an error must be to count as more than noise."""
 
+NOISE_REACHED = 1.05
+"""How many times the noise a root mean square error may be to count as noise alone where hypotheses are compared."""
+
 FAR_ABOVE_NOISE = 3.0
 """How many times the noise an error is far above it: laws that leave so much are not the whole story."""
 
@@ -32,6 +40,11 @@ def times_noise(problem: Problem, fitted: Hypothesis) -> float:
 def far_above_noise(fitted: Hypothesis) -> bool:
     """Whether a hypothesis leaves much more than the noise."""
     return times_noise(fitted.problem, fitted) > FAR_ABOVE_NOISE
+
+
+def reaches_noise(problem: Problem, fit: WindowFit) -> bool:
+    """Whether a fit leaves white noise alone, where the recordings tell how much of it there is."""
+    return floor_known(problem) and fit.mean_square < NOISE_REACHED**2 * noise_floor(problem)
 
 
 def only_noise(problem: Problem, fitted: Hypothesis) -> bool:

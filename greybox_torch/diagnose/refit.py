@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from greybox_torch.diagnose.noise import reaches_noise
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, carried_starts, fit_windows
@@ -106,6 +107,8 @@ def hypothesis(
         fit = _best_fit(trials, stepper, length, shorter, substeps, settings)
         if fit is None:
             return None
+        if fits and reaches_noise(base, fits[-1]) and not reaches_noise(base, fit):
+            fit = _states_first(fit, fits, stepper, substeps, settings)
         fits.append(fit)
         shorter = fit
     return Hypothesis(tuple(effects), model, stepper, tuple(fits), _floor(base), frozen)
@@ -141,6 +144,25 @@ def _best_fit(
         return None
     ended = side_by_side(partial(continued, fit, stepper, length, substeps, settings) for fit in _apart(found))
     return min(ended, key=lambda f: f.mean_square)
+
+
+def _states_first(
+    fit: WindowFit, fits: Sequence[WindowFit], stepper: Stepper, substeps: int, settings: Settings
+) -> WindowFit:
+    """``fit``, or a better one from the parameters that reached the noise on shorter windows, start states along those found first.
+
+    Where the motion is nearly chaotic, parameters and start states together lose over long windows what was found over shorter ones.
+    """
+    problem, length = fits[-1].problem, fit.windows.steps
+    fixed = replace(problem, free=np.zeros_like(problem.free))
+    for shorter in fits:
+        begun = fit_windows(fixed, stepper, length, shorter=shorter, substeps=substeps, settings=settings)
+        again = begun and fit_windows(
+            problem, stepper, length, starts=begun.starts, substeps=substeps, settings=settings
+        )
+        if again is not None:
+            fit = min(fit, continued(again, stepper, length, substeps, settings), key=lambda f: f.mean_square)
+    return fit
 
 
 def _apart(found: Sequence[WindowFit]) -> list[WindowFit]:

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from greybox_torch.diagnose.noise import floor_known, times_noise
+from greybox_torch.diagnose.noise import reaches_noise
 from greybox_torch.diagnose.refit import Hypothesis
-
-NOISE_REACHED = 1.05
-"""How many times the noise the root mean square error of hypotheses may be, for likelihood to count them."""
 
 LEAST_RATIO_SPREAD = 0.02
 """Scatter of the log ratio of window energies below which differences between windows mean nothing."""
@@ -29,7 +26,7 @@ def likelihood_ratio(worse: Hypothesis, better: Hypothesis) -> float:
 
 def white_samples(fitted: Hypothesis) -> int:
     """How many samples tell hypotheses apart by likelihood: all of them where this one leaves white noise alone, else none."""
-    if not floor_known(fitted.problem) or times_noise(fitted.problem, fitted) > NOISE_REACHED:
+    if not all(reaches_noise(fitted.problem, fit) for fit in fitted.fits):
         return 0
     return int(np.sum(~np.isnan(fitted.problem.tape.y)))
 

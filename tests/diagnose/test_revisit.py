@@ -11,8 +11,8 @@ from greybox_torch.diagnose.candidates import attach
 from greybox_torch.diagnose.curve import absorbed, finer
 from greybox_torch.diagnose.leaders import MOST_TIED, NAMED_PER_LENGTH, Leader, _with_ties
 from greybox_torch.diagnose.name import judged, polished
-from greybox_torch.diagnose.noise import only_noise
-from greybox_torch.diagnose.refit import hypothesis
+from greybox_torch.diagnose.noise import only_noise, reaches_noise
+from greybox_torch.diagnose.refit import WINDOW_SETTINGS, _states_first, hypothesis
 from greybox_torch.diagnose.restarts import restarts
 from greybox_torch.diagnose.rounds import Round
 from greybox_torch.diagnose.screen import Look
@@ -176,3 +176,18 @@ def test_a_finer_curve_begins_as_the_one_it_refines(motor_data, motor, begun, fa
     frozen = frozenset(n for n in values if "w_" in n)
     same = hypothesis(search.problem, (attachment,), search.surroundings, [values], substeps=1, frozen=frozen)
     assert same is not None and same.score < drawn.score + 0.02
+
+
+def test_long_windows_that_lost_the_way_begin_from_what_shorter_ones_found(motor_data, motor, begun) -> None:
+    """Seen: a transmission error found at the noise over 1240 samples, lost over 4960, and so taken back on other experiments."""
+    search = begun(motor_data(noise=0.1), motor)
+    *shorter, longest = search.plain.fits
+    assert all(reaches_noise(search.problem, fit) for fit in search.plain.fits)
+    lost = replace(
+        longest, mean_square=9 * longest.mean_square, problem=longest.problem.with_values(3 * longest.problem.values)
+    )
+    assert not reaches_noise(search.problem, lost)
+    found = _states_first(lost, shorter, search.plain.stepper, 1, WINDOW_SETTINGS)
+    assert found.windows.steps == longest.windows.steps and reaches_noise(search.problem, found)
+    assert found.mean_square == pytest.approx(longest.mean_square, rel=1e-2)
+    assert _states_first(longest, shorter, search.plain.stepper, 1, WINDOW_SETTINGS).mean_square <= longest.mean_square
