@@ -70,10 +70,17 @@ def shared(chosen: Ranked, ranked: Sequence[Ranked]) -> tuple[float, tuple[Alter
 def _weight(chosen: Ranked, rival: Ranked) -> float:
     if rival.gain <= 0:
         return 0.0
-    behind = surely_better(rival.fitted, chosen.fitted)
+    behind = 0.0 if _twins(chosen, rival) else surely_better(rival.fitted, chosen.fitted)
     share = min(1.0, rival.gain / max(chosen.gain, 1e-12))
     simpler = np.exp(-max(0, rival.size - chosen.size))
     return float(np.exp(-0.5 * (behind / TEMPERATURE) ** 2) * share * simpler)
+
+
+def _twins(chosen: Ranked, rival: Ranked) -> bool:
+    """Whether two laws do the same to one input and one output; then what sets their fits apart is how each is computed."""
+    tape = chosen.fitted.problem.tape
+    alone = len(tape.u) == 1 and len(tape.y) == 1
+    return alone and rival.leader.attachment.mechanism.name in chosen.leader.attachment.mechanism.twins
 
 
 def confidence(search: Search, effects: Sequence[Effect], complete: bool) -> float:

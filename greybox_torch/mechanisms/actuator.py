@@ -49,6 +49,7 @@ class InputDelay(Mechanism):
     name = "input_delay"
     kinds = ("actuator",)
     needs = ("input", "delayed")
+    twins = ("output_delay",)
     explanation = "The input acts after a dead time (computation, bus, transport)."
     source = "L. Ljung, System Identification, 2nd ed., 1999"
     experiment = "a step or a chirp of the input, to tell a lag from a delay"

@@ -138,17 +138,22 @@ class AugmentedModel(GreyBoxModel):
         return self.base.admissible(p)
 
     def prepared(self, tape: Any, values: Any) -> Any:
-        """The tape with the delayed inputs appended: value at the present delay, its slope, and the delay itself."""
+        """The tape with the delayed inputs appended: value at the present delay, its slope, and the delay itself.
+
+        What acts during the first T of a record was put in before it and is not known: outputs carry no weight there.
+        """
         tape = self.base.prepared(tape, values)
         names = [p.name for p in self.declared_parameters]
-        rows = []
+        rows, y = [], tape.y
         for a in self._delays():
             site = self.base_ports[a.port]
             assert isinstance(site, Actuator)
             channel = [i.name for i in self.base.inputs].index(site.input)
             delay = float(values[names.index(f"{a.prefix}.T")])
             rows += _delayed(tape, channel, delay)
-        return tape if not rows else replace(tape, u=np.concatenate([tape.u, np.array(rows)]))
+            if a.prefix not in self.probed:  # a look at a long delay must not hide records from the other looks
+                y = np.where(_after(tape, delay), y, np.nan)
+        return tape if not rows else replace(tape, u=np.concatenate([tape.u, np.array(rows)]), y=y)
 
     def begun(self, states: np.ndarray, tape: Any, samples: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Start states (W, n_x) with the memories that begin as their surroundings say."""
@@ -331,6 +336,11 @@ def _restarted(parameter: Parameter, start: Mapping[str, float]) -> Parameter:
         return parameter
     low, high = parameter.bounds
     return replace(parameter, value=float(np.clip(start[parameter.name], low, high)))
+
+
+def _after(tape: Any, delay: float) -> np.ndarray:
+    """Which samples (N,) lie ``delay`` s or more behind the beginning of their record."""
+    return np.concatenate([(time := tape.time(e)) - time[0] >= delay for e in range(len(tape.first))])
 
 
 def _delayed(tape: Any, channel: int, delay: float) -> list[np.ndarray]:

@@ -46,6 +46,7 @@ class OutputDelay(Mechanism):
     name = "output_delay"
     kinds = ("sensor",)
     needs = ("output",)
+    twins = ("input_delay",)
     fades = True
     explanation = "The output is recorded after a dead time (sampling, bus, filter)."
     source = "H. Padé, 1892; L. Ljung, System Identification, 2nd ed., 1999"

@@ -14,9 +14,11 @@ from greybox_torch.diagnose.name import Ranked, in_order
 from greybox_torch.diagnose.probability import CEILING, of_a_stopped_search, shared
 from greybox_torch.diagnose.sureness import likelihood_ratio, sureness
 from greybox_torch.diagnose.verdict import Effect
+from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction
+from greybox_torch.mechanisms.sensor import OutputDelay, SensorLag
 
 SAMPLES = 20_000
 
@@ -28,7 +30,7 @@ def fitted(stub):
     def make(*energies, free=(), noise=0.0):
         fits = tuple(stub(energies=np.asarray(e, dtype=float), mean_square=float(np.mean(e))) for e in energies)
         y = noise * np.random.default_rng(5).normal(size=(1, SAMPLES))
-        tape = stub(y=y, first=np.array([0]), span=lambda e: slice(0, SAMPLES))
+        tape = stub(y=y, u=y, first=np.array([0]), span=lambda e: slice(0, SAMPLES))
         problem = stub(free_names=free, tape=tape, weights=np.ones(1))
         return stub(fits=fits, problem=problem, score=float(np.log(np.mean(energies[0]))))
 
@@ -173,3 +175,16 @@ def test_at_the_noise_likelihood_tells_laws_apart_that_windows_do_not(fitted, no
 def test_where_much_is_left_more_has_to_be_gained(fitted) -> None:
     assert least_gain(fitted(energies(0), noise=1.0)) == LEAST_GAIN
     assert least_gain(fitted(16.0 * energies(0), noise=1.0)) == LEAST_GAIN_FAR_ABOVE_NOISE
+
+
+def test_a_delay_of_the_input_is_a_delay_of_the_output(fitted) -> None:
+    """They commute with any machine that does not change with time; only how they are computed sets their fits apart."""
+    same = energies(0)
+    chosen = ranked(InputDelay(), fitted, 1.0, same, port="actuator", noise=1.0)
+    twin = ranked(OutputDelay(), fitted, 1.0, 1.01 * same, port="sensor", noise=1.0)
+    probability, alternatives = shared(chosen, [chosen, twin])
+    assert probability == pytest.approx(CEILING / 2, abs=1e-3) and len(alternatives) == 1
+    lag = ranked(SensorLag(), fitted, 1.0, 1.01 * same, port="sensor", noise=1.0)
+    assert shared(chosen, [chosen, lag])[0] > 0.9
+    chosen.fitted.problem.tape.y = np.repeat(chosen.fitted.problem.tape.y, 2, axis=0)  # another sensor sees no delay
+    assert shared(chosen, [chosen, twin])[0] > 0.9

@@ -247,6 +247,17 @@ def test_delay_shifts_the_input(around, samples, hold) -> None:
     np.testing.assert_allclose(delayed[known], expected[known], rtol=0, atol=1e-14)
 
 
+def test_what_was_put_in_before_a_record_is_not_known(around) -> None:
+    """Seen: a record under way; the torque of its first moments fell on a late actuator, whose delay was then taken for a sensor's."""
+    delay = at("actuator", InputDelay())
+    tape = tape_of(90, (50, 40))
+    model = attached(Tank(), around, delay)
+    missing = np.isnan(model.prepared(tape, values_of(model, T=2.4 * STEP)).y[0])
+    assert np.flatnonzero(missing).tolist() == [0, 1, 2, 50, 51, 52]
+    looked_at = attached(Tank(), around, delay, probed=[delay])
+    assert not np.isnan(looked_at.prepared(tape, values_of(looked_at, T=2.4 * STEP)).y).any()
+
+
 def of_kind(mechanism: Mechanism) -> tuple[GreyBoxModel, np.ndarray, Attachment]:
     """A model with a port that the mechanism fits, its start state, and the attachment."""
     kind, position = mechanism.kinds[0], "motor" if "position" in mechanism.needs else ""
