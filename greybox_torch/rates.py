@@ -9,7 +9,7 @@ import numpy as np
 import torch
 
 from greybox_torch.errors import UserError, did_you_mean
-from greybox_torch.mechanisms.attachment import AugmentedModel
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import GreyBoxModel, Signals
 from greybox_torch.simulate.tape import Tape
 

@@ -17,7 +17,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.estimate.metrics import fit_percent, root_mean_square
 from greybox_torch.estimate.problem import make_problem
-from greybox_torch.mechanisms.attachment import AugmentedModel
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.train import Physics, Trained, TrainingSettings, physics_of
 

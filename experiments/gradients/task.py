@@ -8,7 +8,8 @@ import numpy as np
 
 from experiments.speed.network import network_task
 from greybox_torch.estimate.problem import Problem, problem_for
-from greybox_torch.mechanisms.attachment import AugmentedModel, attach
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.model import GreyBoxModel

@@ -10,7 +10,8 @@ import torch
 
 from greybox_torch.diagnose.leaders import Leader
 from greybox_torch.diagnose.refit import Hypothesis
-from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel, attach
+from greybox_torch.mechanisms.attachment import Attachment, attach
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.matching import force_column, kinematic_laws, law_force, matching_laws, worth_a_refit
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown

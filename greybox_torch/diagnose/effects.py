@@ -15,7 +15,8 @@ from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.rounds import Round
 from greybox_torch.diagnose.select import Search
 from greybox_torch.diagnose.verdict import Effect, Profile, Timeline
-from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.ports import Port

@@ -9,7 +9,8 @@ from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.verdict import Curve, Profile
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit
-from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.model import Signals
 from greybox_torch.simulate.stepper import Stepper

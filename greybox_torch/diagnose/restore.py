@@ -7,7 +7,8 @@ from dataclasses import asdict
 from typing import Any
 
 from greybox_torch.errors import UserError
-from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.library import LEARNED, LIBRARY
 from greybox_torch.mechanisms.mechanism import Mechanism, Range, Surroundings
 from greybox_torch.model import GreyBoxModel

@@ -17,7 +17,8 @@ import numpy as np
 
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, carried_starts
-from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Probe, Surroundings
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulate.packed_normals import PackedNormals

@@ -11,7 +11,8 @@ import torch
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.fit import FitResult
 from greybox_torch.estimate.shifted_states import shifted_state
-from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel, attach
+from greybox_torch.mechanisms.attachment import Attachment, attach
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.matching import Match, kinematic_laws, matching_laws, worth_a_refit
 from greybox_torch.model import Coupling
 from greybox_torch.train.hybrid import port_named

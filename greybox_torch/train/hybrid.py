@@ -9,7 +9,8 @@ import numpy as np
 
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.estimate.problem import Problem, problem_for
-from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel, attach
+from greybox_torch.mechanisms.attachment import Attachment, attach
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.friction_net import FrictionNet
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.mechanisms.network import Network

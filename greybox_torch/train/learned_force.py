@@ -10,7 +10,7 @@ import torch
 
 from greybox_torch.estimate.free_run import FreeRun, visited_states
 from greybox_torch.estimate.uncertainty import uncertainty
-from greybox_torch.mechanisms.attachment import AugmentedModel
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import Signals
 from greybox_torch.train.polish import PenalisedRun
 from greybox_torch.train.trained import Trained

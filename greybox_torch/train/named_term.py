@@ -9,7 +9,8 @@ import numpy as np
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.fit import FitResult, fit
 from greybox_torch.estimate.problem import Problem, problem_for
-from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.simulate.stepper import Stepper, make_stepper
 from greybox_torch.train.course import without_samples
 from greybox_torch.train.physics import estimate_physics

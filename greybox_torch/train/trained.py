@@ -8,7 +8,7 @@ import numpy as np
 import torch
 
 from greybox_torch.estimate.fit import FitResult
-from greybox_torch.mechanisms.attachment import AugmentedModel
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import Signals
 from greybox_torch.train.hybrid import Hybrid
 from greybox_torch.train.lessons import Course

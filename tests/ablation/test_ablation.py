@@ -19,7 +19,8 @@ from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.mechanisms.actuator import ActuatorDeadzone
-from greybox_torch.mechanisms.attachment import AugmentedModel, attach
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulate.stepper import make_stepper
 from greybox_torch.systems import RobotArm, load_model

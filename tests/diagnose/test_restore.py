@@ -11,7 +11,7 @@ from greybox_torch.diagnose.candidates import attach
 from greybox_torch.diagnose.restore import attachment_json, restored_model
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.actuator import InputDelay
-from greybox_torch.mechanisms.attachment import AugmentedModel
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.friction import PreslidingHysteresis
 from greybox_torch.mechanisms.transmission import Backlash

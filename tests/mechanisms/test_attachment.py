@@ -12,7 +12,8 @@ import torch
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import make_problem, problem_for
 from greybox_torch.mechanisms.actuator import InputDelay, InputLag, TorqueSaturation
-from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.friction import CoulombFriction, FrictionWarmup, PreslidingHysteresis
 from greybox_torch.mechanisms.library import LIBRARY

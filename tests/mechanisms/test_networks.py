@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from greybox_torch.diagnose.restore import attachment_json, restored_model
 from greybox_torch.errors import UserError
-from greybox_torch.mechanisms.attachment import AugmentedModel, attach
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.friction_net import FrictionNet
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.network import Network

@@ -25,7 +25,7 @@ from scipy.linalg import solveh_banded
 from experiments.concealed.against.plain import Plain
 from greybox_torch.diagnose.candidates import attach
 from greybox_torch.estimate.problem import problem_for
-from greybox_torch.mechanisms.attachment import AugmentedModel
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
 from greybox_torch.simulate.stepper import Windows, make_stepper

@@ -11,7 +11,8 @@ import torch
 from experiments.concealed.against.terms import Term
 from greybox_torch.diagnose.candidates import attach
 from greybox_torch.estimate.problem import Problem, problem_for
-from greybox_torch.mechanisms.attachment import Attachment, AugmentedModel
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import GreyBoxModel, Parameter, Signals
 
