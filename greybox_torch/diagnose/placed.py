@@ -45,11 +45,13 @@ def placed(problem: Problem, stepper: Stepper, length: int, substeps: int) -> Wi
     best = np.zeros((len(problem.tape.first), len(places)))
     known = [problem.initial[:, places]]
     for moves in (grid, np.outer(FINER, step), np.outer(FINER, step), np.outer(FINER, 0.2 * step)):
-        best = _best_of(fit, places, [*known, best, *(best + move for move in moves)], experiments, stepper, substeps)
+        best = _best_of(
+            fit, places, [*known, best, *(best + move for move in moves)], experiments, stepper, length, substeps
+        )
         known = []
-        there = _moved(fit, places, best, experiments, stepper, substeps)
+        there = _moved(fit, places, best, experiments, stepper, length, substeps)
         if there is not None:  # with the trajectories there, the next look is nearer to the truth
-            fit = continued(there, stepper, there.windows.steps, substeps, SETTINGS)
+            fit = continued(there, stepper, length, substeps, SETTINGS)
     return fit
 
 
@@ -59,12 +61,13 @@ def _best_of(
     trials: Sequence[np.ndarray],
     experiments: np.ndarray,
     stepper: Stepper,
+    length: int,
     substeps: int,
 ) -> np.ndarray:
     """Of start positions (E, k) tried, those at which each experiment fits best."""
     best, least = trials[0].copy(), np.full(len(trials[0]), np.inf)
     for trial in trials:
-        found = _moved(fit, places, trial, experiments, stepper, substeps)
+        found = _moved(fit, places, trial, experiments, stepper, length, substeps)
         if found is not None:
             energies = np.bincount(experiments, weights=found.energies, minlength=len(trial))
             better = energies < least
@@ -78,6 +81,7 @@ def _moved(
     to: np.ndarray,
     experiments: np.ndarray,
     stepper: Stepper,
+    length: int,
     substeps: int,
 ) -> WindowFit | None:
     """``fit`` once more with the positions ``places`` of every experiment beginning at ``to`` (E, k)."""
@@ -86,4 +90,4 @@ def _moved(
     starts[:, places] += (to - starts[first][:, places])[experiments]
     initial[:, places] = to
     problem = replace(fit.problem, initial=initial)
-    return fit_windows(problem, stepper, fit.windows.steps, starts=starts, substeps=substeps, settings=GLANCE)
+    return fit_windows(problem, stepper, length, starts=starts, substeps=substeps, settings=GLANCE)

@@ -109,7 +109,7 @@ def hypothesis(
         if fit is None:
             return None
         if fits and reaches_noise(base, fits[-1]) and not reaches_noise(base, fit):
-            fit = _states_first(fit, fits, stepper, substeps, settings)
+            fit = _states_first(fit, fits, stepper, length, substeps, settings)
         fits.append(fit)
         shorter = fit
     return Hypothesis(tuple(effects), model, stepper, tuple(fits), _floor(base), frozen)
@@ -148,13 +148,13 @@ def _best_fit(
 
 
 def _states_first(
-    fit: WindowFit, fits: Sequence[WindowFit], stepper: Stepper, substeps: int, settings: Settings
+    fit: WindowFit, fits: Sequence[WindowFit], stepper: Stepper, length: int, substeps: int, settings: Settings
 ) -> WindowFit:
     """``fit``, or a better one from the parameters that reached the noise on shorter windows, start states along those found first.
 
     Where the motion is nearly chaotic, parameters and start states together lose over long windows what was found over shorter ones.
     """
-    problem, length = fits[-1].problem, fit.windows.steps
+    problem = fits[-1].problem
     fixed = replace(problem, free=np.zeros_like(problem.free))
     for shorter in fits:
         begun = fit_windows(fixed, stepper, length, shorter=shorter, substeps=substeps, settings=settings)

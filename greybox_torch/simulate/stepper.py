@@ -138,7 +138,7 @@ def whole_records(tape: Tape) -> Windows:
 def cut(tape: Tape, length: int) -> Windows:
     """All experiments cut into windows of ``length`` samples, each beginning at a multiple of it.
 
-    A remainder shorter than half a window is joined to the window before it.
+    A remainder shorter than half a window is joined to the window before it: the longest, which ``steps`` counts, may be longer.
     """
     starts: list[int] = []
     lasts: list[int] = []

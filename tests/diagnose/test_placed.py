@@ -31,9 +31,10 @@ def restated(search, effect, **values):
     return replace(problem, free=np.zeros_like(problem.free)), make_stepper(model, (), device="cpu")
 
 
-def test_position_is_found_along_a_period(motor_data, motor, begun) -> None:
+@pytest.mark.parametrize("samples", [2000, 2020])  # of the second, the last window is longer than the others
+def test_position_is_found_along_a_period(motor_data, motor, begun, samples) -> None:
     order, phase = 5.0, 0.7
-    search = begun(motor_data(torque=lambda q, v: 0.03 * np.cos(order * q + phase)), motor)
+    search = begun(motor_data(samples, torque=lambda q, v: 0.03 * np.cos(order * q + phase)), motor)
     ripple = attach(motor, "rotor", TorqueRipple(order))
     size = {"a": 0.03 * np.cos(phase), "b": -0.03 * np.sin(phase), "order": order}
     problem, stepper = restated(search, ripple, **size)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from greybox_torch.diagnose.curve import absorbed, finer
 from greybox_torch.diagnose.leaders import MOST_TIED, NAMED_PER_LENGTH, Leader, _with_ties
 from greybox_torch.diagnose.name import judged, polished
 from greybox_torch.diagnose.noise import only_noise, reaches_noise
-from greybox_torch.diagnose.refit import WINDOW_SETTINGS, _states_first, hypothesis
+from greybox_torch.diagnose.refit import WINDOW_SETTINGS, _states_first, hypothesis, lengths
 from greybox_torch.diagnose.restarts import restarts
 from greybox_torch.diagnose.rounds import Round
 from greybox_torch.diagnose.screen import Look
@@ -187,7 +188,10 @@ def test_long_windows_that_lost_the_way_begin_from_what_shorter_ones_found(motor
         longest, mean_square=9 * longest.mean_square, problem=longest.problem.with_values(3 * longest.problem.values)
     )
     assert not reaches_noise(search.problem, lost)
-    found = _states_first(lost, shorter, search.plain.stepper, 1, WINDOW_SETTINGS)
+    again = partial(
+        _states_first, fits=shorter, stepper=search.plain.stepper, length=lengths(search.problem)[-1], substeps=1
+    )
+    found = again(lost, settings=WINDOW_SETTINGS)
     assert found.windows.steps == longest.windows.steps and reaches_noise(search.problem, found)
     assert found.mean_square == pytest.approx(longest.mean_square, rel=1e-2)
-    assert _states_first(longest, shorter, search.plain.stepper, 1, WINDOW_SETTINGS).mean_square <= longest.mean_square
+    assert again(longest, settings=WINDOW_SETTINGS).mean_square <= longest.mean_square
