@@ -25,15 +25,19 @@ GLANCE = Settings(iterations=5, tolerance=1e-2, trials=3)
 SETTINGS = Settings(iterations=20, tolerance=1e-4, trials=5)
 
 
-def placed(problem: Problem, stepper: Stepper, length: int, substeps: int) -> WindowFit | None:
+def placed(
+    problem: Problem, stepper: Stepper, length: int, substeps: int, shorter: WindowFit | None = None
+) -> WindowFit | None:
     """A fit of the window start states alone, positions beginning where each experiment fits best; None where even windows overflow.
 
     Args:
         problem: with no free parameters, its start states estimated (:func:`estimate_initial`): a free run over the beginning and short
             windows along the whole record are at times led astray by different things.
-        length: of the windows, in samples; short ones.
+        length: of the windows, in samples; from short ones, which are not led astray, to long ones, in which an effect that changes
+            slowly along the travel shows.
+        shorter: where the shorter windows placed it.
     """
-    fit = fit_windows(problem, stepper, length, substeps=substeps, settings=SETTINGS)
+    fit = fit_windows(problem, stepper, length, shorter=shorter, substeps=substeps, settings=SETTINGS)
     trials = problem.model.start_trials(problem.values)
     if fit is None or not trials:
         return fit

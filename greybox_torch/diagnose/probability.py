@@ -22,7 +22,10 @@ TEMPERATURE = 2.0
 """Standard errors that count as one: windows are not independent, and no law of the library is exactly the machine's."""
 
 UNEXPLAINED = 0.6
-"""How sure "nothing is missing" is where the error is clearly larger than the noise, and yet no effect explains any of it."""
+"""How sure "nothing is missing" is where the error is larger than the noise, and yet no effect explains any of it."""
+
+BEYOND_EXPLANATION = 0.8
+"""How sure "something is missing" is where that says so alone."""
 
 CEILING = 0.97
 """The most that is ever claimed."""
@@ -83,12 +86,18 @@ def _twins(chosen: Ranked, rival: Ranked) -> bool:
     return alone and rival.leader.attachment.mechanism.name in chosen.leader.attachment.mechanism.twins
 
 
-def confidence(search: Search, effects: Sequence[Effect], complete: bool) -> float:
-    """How sure the answer to "is anything missing?" is; a search that was stopped before it found anything has no answer."""
+def confidence(search: Search, effects: Sequence[Effect], complete: bool, unexplained: float | None) -> float:
+    """How sure the answer to "is anything missing?" is; a search that was stopped before it found anything is not sure of it.
+
+    Args:
+        unexplained: how many times the noise the error is, where it is clearly more and no effect explains it.
+    """
     if effects:
         return CEILING
     if not complete:
         return 0.5
+    if unexplained is not None:
+        return BEYOND_EXPLANATION
     if times_noise(search.problem, search.current) > ABOVE_NOISE:
         return UNEXPLAINED
     best = max((r.gain for r in search.rounds[-1].ranked), default=0.0) if search.rounds else 0.0

@@ -127,12 +127,13 @@ def diagnose(
     traces = judged.traces(bool(effects))
     detected = detect(judged.problem, traces)
     clock.stage("validation and report data", at)
+    unexplained = None if effects else _unexplained(search)
     verdict = Verdict(
         dataset=dataset.name,
         model=model.title,
         seed=seed,
         seconds=clock.seconds,
-        confidence=confidence(search, effects, not interrupted),
+        confidence=confidence(search, effects, not interrupted, unexplained),
         effects=effects,
         scores={name: comparison.scores for name, comparison in judged.comparisons(bool(effects)).items()},
         evidence=sentences(dataset, search, effects, gains, detected, interrupted),
@@ -140,7 +141,7 @@ def diagnose(
         ranking=_ranking(search),
         traces=traces,
         complete=not interrupted,
-        unexplained=_unexplained(search) if interrupted and not effects else None,
+        unexplained=unexplained,
     )
     final = augmented if effects else plain
     chosen = search.current if effects else search.plain

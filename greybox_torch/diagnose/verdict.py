@@ -119,21 +119,23 @@ class Verdict:
     complete: bool = True
     """Whether the search ran to its end, rather than into a time limit or an interruption."""
     unexplained: float | None = None
-    """How many times the noise the error was where the search was stopped before it found anything, if clearly more than noise."""
+    """How many times the noise the error is where nothing was found that explains it, if clearly more than noise."""
 
     @property
     def mismatch(self) -> bool:
-        """Whether something is missing."""
-        return bool(self.effects)
+        """Whether something is missing: what was found, or an error that nothing explains."""
+        return bool(self.effects) or self.unexplained is not None
 
     @property
     def sentence(self) -> str:
         """The verdict in one sentence."""
         if not self.effects and self.unexplained is not None:
-            return (
-                f"Something is missing from {self.model}: its error is {self.unexplained:.1f} times the noise. "
-                "The search was stopped before it could say what."
+            why = (
+                "No law of the library and no curve of one signal explains it."
+                if self.complete
+                else "The search was stopped before it could say what."
             )
+            return f"Something is missing from {self.model}: its error is {self.unexplained:.1f} times the noise. {why}"
         if not self.effects and not self.complete:
             return f"Nothing was found to be missing from {self.model} before the search was stopped: no answer yet."
         if not self.effects:
@@ -168,7 +170,7 @@ class Verdict:
             "model": self.model,
             "seed": self.seed,
             "seconds": self.seconds,
-            "mismatch": self.mismatch or self.unexplained is not None,
+            "mismatch": self.mismatch,
             "complete": self.complete,
             "confidence": self.confidence,
             "sentence": self.sentence,

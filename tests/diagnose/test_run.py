@@ -7,6 +7,7 @@ import time
 import numpy as np
 import pytest
 
+from greybox_torch.diagnose.probability import BEYOND_EXPLANATION
 from greybox_torch.diagnose.restore import restored_model
 from greybox_torch.diagnose.run import Diagnosis, diagnose
 from greybox_torch.errors import UserError
@@ -84,6 +85,18 @@ def test_nothing_is_missing(nothing, motor) -> None:
 def test_no_estimation_experiment(motor_data, motor) -> None:
     with pytest.raises(UserError, match="no experiment has the role 'estimation'; expected at least one"):
         diagnose(motor_data(200, ("validation", "validation")), motor)
+
+
+def test_what_nothing_explains_is_said_to_be_missing(motor_data, motor, monkeypatch) -> None:
+    """Seen: an error of twelve times the noise, and "nothing is missing"."""
+    monkeypatch.setattr("greybox_torch.diagnose.select.Search.run", lambda search: search.current)
+    verdict = diagnose(motor_data(acting=dead_zone), motor).verdict
+    assert verdict.complete and verdict.mismatch and verdict.effects == () and verdict.unexplained > 3.0
+    assert verdict.confidence == BEYOND_EXPLANATION
+    assert (
+        verdict.sentence.startswith("Something is missing") and "no curve of one signal explains it" in verdict.sentence
+    )
+    assert verdict.as_json()["mismatch"] is True
 
 
 def stopped_at(word: str, error: type[BaseException]):

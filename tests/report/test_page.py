@@ -101,6 +101,14 @@ def test_a_search_that_was_stopped(verdict: Verdict, about: About) -> None:
     assert ("Confidence" in text) == verdict.mismatch
 
 
+def test_an_error_that_nothing_explains(of_kind: Callable[[str], Verdict], about: About) -> None:
+    """Something is missing, and there is no model with effects to compare with."""
+    unexplained = replace(of_kind("nothing"), unexplained=12.0)
+    text = Page(render_page(unexplained, about)).text
+    assert "Something is missing" in text and "12.0 times the noise" in text and "that something is missing" in text
+    assert "Nothing is missing" not in text
+
+
 def test_every_picture_is_told_in_words(verdict: Verdict, about: About) -> None:
     page = Page(render_page(verdict, about))
     pictures = page.all("svg")

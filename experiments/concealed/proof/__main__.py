@@ -31,7 +31,7 @@ def main(arguments: list[str] | None = None) -> int:
         "--page", type=Path, default=None, help="where the page goes, its figures beside it (OUT/proof.md)"
     )
     parser.add_argument("--workers", type=_positive, default=2, help="cases side by side, one thread each")
-    parser.add_argument("--time-limit", type=_positive, default=60, help="seconds of search for a case")
+    parser.add_argument("--time-limit", type=_positive, default=90, help="seconds of search for a case")
     options = parser.parse_args(arguments)
     out = options.out or Path("results") / ("proof" if options.set == "standard" else "proof-quick")
     try:

@@ -35,7 +35,7 @@ class Headline:
 
     @classmethod
     def of(cls, verdict: Verdict) -> Headline:
-        unknown = any(e.mechanism == "unknown" for e in verdict.effects)
+        unknown = not verdict.effects or any(e.mechanism == "unknown" for e in verdict.effects)
         answer = "nothing" if not verdict.mismatch else "unknown" if unknown else "found"
         figures = [_fit(verdict), *_errors(verdict)]
         if verdict.mismatch or verdict.complete:
@@ -71,7 +71,7 @@ def _fit(verdict: Verdict) -> Figure:
     )
     many = len(held_out(verdict, "refit")) > 1
     label = "Validation fit" + (", mean" if many else "")
-    if not verdict.mismatch:
+    if not verdict.effects:
         return Figure(label, "", before, "the model re-estimated, nothing added")
     return Figure(label, before, after, "re-estimated as it was → with the effects attached")
 
@@ -84,7 +84,7 @@ def _errors(verdict: Verdict) -> list[Figure]:
         before, after = (text.number(pooled(held_out(verdict, m, output))) for m in ("refit", "augmented"))
         label = f"Validation error of {text.words(output)}"
         note = f"root mean square, {text.unit(of)}" if of else "root mean square"
-        figures.append(Figure(label, before if verdict.mismatch else "", after if verdict.mismatch else before, note))
+        figures.append(Figure(label, before if verdict.effects else "", after if verdict.effects else before, note))
     return figures
 
 

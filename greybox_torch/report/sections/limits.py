@@ -41,7 +41,7 @@ class Limits:
 
     @classmethod
     def of(cls, verdict: Verdict) -> Limits | None:
-        if verdict.mismatch:
+        if verdict.effects:
             return None
         sentences = (*_cautions(verdict), *_sizes(verdict), *map(_band, spectra(verdict)))
         return cls(sentences, tuple(_suggestions(verdict)))

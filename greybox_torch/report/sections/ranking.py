@@ -49,4 +49,4 @@ class Ranking:
             )
             for port, mechanism, explained, gain in shown
         ]
-        return cls(tuple(rows), len(verdict.ranking) - len(rows), verdict.mismatch)
+        return cls(tuple(rows), len(verdict.ranking) - len(rows), bool(verdict.effects))

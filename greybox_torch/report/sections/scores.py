@@ -53,7 +53,7 @@ class Scores:
 
     @classmethod
     def of(cls, verdict: Verdict, about: About) -> Scores:
-        models = ("start", "refit", "augmented") if verdict.mismatch else ("start", "refit")
+        models = ("start", "refit", "augmented") if verdict.effects else ("start", "refit")
         several = len({s.output for s in verdict.scores["start"]}) > 1
         together = list(zip(*(verdict.scores[m] for m in models), strict=True))
         groups = []

@@ -43,11 +43,11 @@ class Spectrum:
         found = spectra(verdict)
         if not found:
             return None
-        what = "of the error before and after" if verdict.mismatch else "of the error that remains"
+        what = "of the error before and after" if verdict.effects else "of the error that remains"
         caption = f"Power spectral density {what}, and of the measured output for comparison (Welch's method, all validation experiments)."
         errors = (
-            Key(key.series, f"error {key.series}" if verdict.mismatch else "error that remains")
-            for key in keys(verdict.mismatch)
+            Key(key.series, f"error {key.series}" if verdict.effects else "error that remains")
+            for key in keys(bool(verdict.effects))
         )
         legend = (Key("output", "measured output"), *errors)
         return cls(side_by_side([_panel(s) for s in found], caption, legend))
@@ -59,7 +59,7 @@ def spectra(verdict: Verdict) -> list[Spectra]:
     for trace in validation_traces(verdict):
         step = float(np.median(np.diff(trace.time)))
         groups.setdefault((trace.output, float(f"{step:.3g}")), []).append(trace)
-    return [_averaged(traces, step, verdict.mismatch) for (_, step), traces in groups.items()]
+    return [_averaged(traces, step, bool(verdict.effects)) for (_, step), traces in groups.items()]
 
 
 def _averaged(traces: list[Trace], step: float, mismatch: bool) -> Spectra:

@@ -44,7 +44,7 @@ class Traces:
         worst = sorted(shown, key=lambda t: -_relative_error(t))[:MOST_CHARTS]
         several = len({t.output for t in shown}) > 1
         charts = [
-            Named(t.experiment + (f": {text.words(t.output)}" if several else ""), _chart(t, verdict.mismatch))
+            Named(t.experiment + (f": {text.words(t.output)}" if several else ""), _chart(t, bool(verdict.effects)))
             for t in shown
             if any(t is w for w in worst)
         ]
