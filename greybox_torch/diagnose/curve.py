@@ -12,7 +12,7 @@ from greybox_torch.diagnose.leaders import Leader
 from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.matching import force_column, kinematic_laws, law_force, matching_laws, worth_a_refit
+from greybox_torch.mechanisms.matching import force_column, kinematic_laws, matching_laws, worth_a_refit
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import GreyBoxModel, Signals
@@ -74,16 +74,16 @@ def finer(
 def absorbed(fitted: Hypothesis, law: Attachment, surroundings: Mapping[str, Surroundings]) -> dict[str, float] | None:
     """The values without a law, its force handed to the free curve of the same signal at its port; None where there is no such curve."""
     around, mechanism = surroundings[law.port], law.mechanism
-    same = (e for e in fitted.effects if e is not law and e.port == law.port)
-    curve, unknown = next(((e, m) for e in same if isinstance(m := e.mechanism, Unknown)), (None, None))
-    if curve is None or unknown is None or unknown.factor or mechanism.kinematic or mechanism.states(around):
+    same = (e for e in fitted.effects if e is not law and e.port == law.port and isinstance(e.mechanism, Unknown))
+    curve = next(same, None)
+    if curve is None or mechanism.kinematic or mechanism.states(around):
         return None
-    if not set(mechanism.signals()) <= {unknown.signal}:
+    unknown = curve.mechanism
+    assert isinstance(unknown, Unknown)
+    if unknown.factor or not set(mechanism.needs) <= {unknown.signal}:
         return None
     grid, target = _drawn(fitted, curve, around)
-    own = {n.removeprefix(f"{law.prefix}."): v for n, v in fitted.values().items() if n.startswith(f"{law.prefix}.")}
-    whole = target + law_force(mechanism, around, {unknown.signal: grid}, own)
-    return _without(fitted, law) | _heights(curve, around, grid, whole)
+    return _without(fitted, law) | _heights(curve, around, grid, target + _force(fitted, law, {unknown.signal: grid}))
 
 
 def _heights(curve: Attachment, around: Surroundings, grid: torch.Tensor, force: np.ndarray) -> dict[str, float]:
@@ -98,11 +98,17 @@ def _heights(curve: Attachment, around: Surroundings, grid: torch.Tensor, force:
 def _drawn(fitted: Hypothesis, curve: Attachment, around: Surroundings) -> tuple[torch.Tensor, np.ndarray]:
     """Values of the curve's signal over its range, and the learned force there."""
     unknown = curve.mechanism
-    assert isinstance(unknown, Unknown) and isinstance(fitted.model, AugmentedModel)
+    assert isinstance(unknown, Unknown)
     span = around.ranges[unknown.signal]
     grid = torch.linspace(span.low, span.high, POINTS, dtype=torch.float64)
+    return grid, _force(fitted, curve, {unknown.signal: grid})
+
+
+def _force(fitted: Hypothesis, effect: Attachment, signals: Mapping[str, torch.Tensor]) -> np.ndarray:
+    """The force of an effect without memory at signals (N,); a single number where it depends on none."""
+    assert isinstance(fitted.model, AugmentedModel)
     p = Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in fitted.values().items()})
-    return grid, fitted.model.curve(curve, {unknown.signal: grid}, p).detach().numpy()
+    return fitted.model.curve(effect, signals, p).detach().numpy()
 
 
 def _without(fitted: Hypothesis, curve: Attachment) -> dict[str, float]:

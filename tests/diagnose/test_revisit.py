@@ -18,7 +18,7 @@ from greybox_torch.diagnose.restarts import restarts
 from greybox_torch.diagnose.rounds import Round
 from greybox_torch.diagnose.screen import Look
 from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, TorqueRipple
-from greybox_torch.mechanisms.friction import QuadraticDrag
+from greybox_torch.mechanisms.friction import FrictionWarmup, QuadraticDrag
 from greybox_torch.mechanisms.mechanism import Probe
 from greybox_torch.mechanisms.unknown import Unknown
 
@@ -160,6 +160,9 @@ def test_a_law_hands_its_force_to_the_curve_beside_it(motor_data, motor, begun) 
     beside = hypothesis(search.problem, (bias, curve), search.surroundings, [start], substeps=1)
     assert beside is not None
     assert absorbed(beside, bias, search.surroundings) is not None  # a constant is a curve of any signal
+    warm = attach(motor, "rotor", FrictionWarmup())
+    later = hypothesis(search.problem, (warm, curve), search.surroundings, [start], substeps=1)
+    assert later is not None and absorbed(later, warm, search.surroundings) is None  # of time as well
     at_position = attach(motor, "rotor", Unknown("position", 12))
     elsewhere = hypothesis(search.problem, (drag, at_position), search.surroundings, [start], substeps=1)
     assert elsewhere is not None and absorbed(elsewhere, drag, search.surroundings) is None
