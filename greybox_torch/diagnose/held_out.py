@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import partial, reduce
 
 import numpy as np
 
@@ -60,27 +60,25 @@ def held_out_fits(hypothesis: Hypothesis, problem: Problem, substeps: int) -> tu
         fit = partial(
             fit_windows, there.problem, hypothesis.stepper, length, substeps=substeps, settings=WINDOW_SETTINGS
         )
-        ended = _window_by_window(fit(shorter=there), fit(shorter=short), fit())
+        ended = reduce(_window_by_window, (fit(shorter=there), fit(shorter=short), fit()))
         if ended is not None:
             found.append(ended)
             short = replace(short, problem=ended.problem)
     return tuple(found)
 
 
-def _window_by_window(*fits: WindowFit | None) -> WindowFit | None:
-    """Of fits of the start states the best one in every window: with the parameters fixed, windows are independent.
+def _window_by_window(one: WindowFit | None, other: WindowFit | None) -> WindowFit | None:
+    """Of two fits of the start states the better one in every window: with the parameters fixed, windows are independent.
 
     From one start a window or two may end in a local minimum, which would outweigh all the others.
     """
-    one, *others = [fit for fit in fits if fit is not None] or [None]
-    for other in others:
-        if one is not None and other is not None:
-            better = other.energies < one.energies
-            energies = np.where(better, other.energies, one.energies)
-            share = float(energies.sum()) / max(float(one.energies.sum()), 1e-300)
-            starts = np.where(better[:, None], other.starts, one.starts)
-            one = replace(one, starts=starts, energies=energies, mean_square=share * one.mean_square)
-    return one
+    if one is None or other is None:
+        return one or other
+    better = other.energies < one.energies
+    energies = np.where(better, other.energies, one.energies)
+    share = float(energies.sum()) / max(float(one.energies.sum()), 1e-300)
+    starts = np.where(better[:, None], other.starts, one.starts)
+    return replace(one, starts=starts, energies=energies, mean_square=share * one.mean_square)
 
 
 def gain(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> Gain:

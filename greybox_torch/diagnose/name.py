@@ -112,9 +112,8 @@ def rank(
     at_middle = [f for f in current.fits if f.windows.steps == cut(base.tape, middle[0]).steps]
     hopeless = score_of(at_middle, current.floor) + HOPELESS
     first = sorted((entry for entry in first if entry[0] < hopeless), key=lambda entry: entry[0])
-    longest_first = sorted(
-        _finalists(first), key=lambda entry: not entry[1].unknown
-    )  # or two cores end one after the other
+    # Curves take longest: begun last, they would leave the other cores idle.
+    longest_first = sorted(_finalists(first), key=lambda entry: not entry[1].unknown)
     final = [r for r in side_by_side(partial(in_full, *entry[1:]) for entry in longest_first) if r is not None]
     return in_order([*final, *_distilled(refit, current, final, surroundings, progress)])
 

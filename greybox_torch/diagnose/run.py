@@ -17,7 +17,7 @@ from greybox_torch.diagnose.evidence import sentences
 from greybox_torch.diagnose.final import finish
 from greybox_torch.diagnose.judgement import Judgement
 from greybox_torch.diagnose.locate import window_errors
-from greybox_torch.diagnose.noise import floor_known, times_noise
+from greybox_torch.diagnose.noise import far_above_noise, floor_known, times_noise
 from greybox_torch.diagnose.probability import confidence, of_a_stopped_search
 from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.diagnose.select import Search
@@ -27,9 +27,6 @@ from greybox_torch.estimate.problem import Problem, all_starts_free, make_proble
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulate.stepper import make_stepper
 from greybox_torch.simulate.substeps import choose_substeps
-
-CLEARLY_ABOVE_NOISE = 3.0
-"""How many times the noise an error must be to say, without a law that explains it, that something is missing."""
 
 
 @dataclass(frozen=True)
@@ -168,8 +165,8 @@ def _searched(search: Search) -> bool:
 
 def _unexplained(search: Search) -> float | None:
     """How many times the noise the model's error is, if that is too much to be chance or badly determined friction."""
-    times = times_noise(search.problem, search.plain)
-    return times if times > CLEARLY_ABOVE_NOISE and floor_known(search.problem) else None
+    known = floor_known(search.problem) and far_above_noise(search.plain)
+    return times_noise(search.problem, search.plain) if known else None
 
 
 def _noise_weights(search: Search) -> np.ndarray:

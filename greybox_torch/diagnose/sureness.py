@@ -26,7 +26,8 @@ def likelihood_ratio(worse: Hypothesis, better: Hypothesis) -> float:
 
 def white_samples(fitted: Hypothesis) -> int:
     """How many samples tell hypotheses apart by likelihood: all of them where this one leaves white noise alone, else none."""
-    if not all(reaches_noise(fitted.problem, fit) for fit in fitted.fits):
+    worst = max(fitted.fits, key=lambda fit: fit.mean_square)
+    if not reaches_noise(fitted.problem, worst):
         return 0
     return int(np.sum(~np.isnan(fitted.problem.tape.y)))
 
