@@ -37,7 +37,8 @@ class Scale:
         """Marks at round values: ``most``, or one more, or fewer."""
         values = self._decades(most) if self.logarithmic else self._steps(most)
         labels = [_power(v) for v in values] if self.logarithmic else _decimals(values)
-        places = self.place(np.array(values, dtype=float))
+        # Where an axis is hardly longer than its numbers are exact, a mark at its end lies beyond it by rounding.
+        places = np.clip(self.place(np.array(values, dtype=float)), 0.0, 1.0)
         return tuple(Tick(float(p), label) for p, label in zip(places, labels, strict=True))
 
     def _steps(self, most: int) -> list[float]:

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from greybox_torch.report.chart.scale import Scale, linear, logarithmic
@@ -26,6 +26,7 @@ def test_marks_at_round_values(scale: Scale, most: int, labels: list[str]) -> No
 
 
 @given(st.floats(-1e6, 1e6), st.floats(1e-6, 1e6), st.integers(3, 8))
+@example(879609.9999999999, 1e-6, 5)
 def test_marks_lie_on_the_axis_and_are_few(low: float, length: float, most: int) -> None:
     ticks = Scale(low, low + length).ticks(most)
     assert 1 <= len(ticks) <= most + 1
