@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from greybox_torch.diagnose.name import Ranked
 from greybox_torch.diagnose.noise import far_above_noise
 from greybox_torch.diagnose.refit import Hypothesis
-from greybox_torch.diagnose.sureness import surely_better
+from greybox_torch.diagnose.sureness import surely_better, white_samples
 
 LEAST_GAIN = 0.01
 """Improvement of the mean squared error (as a share, averaged over window lengths) below which nothing is claimed."""
@@ -29,12 +29,18 @@ def least_gain(fitted: Hypothesis) -> float:
 
 
 def chosen(ranked: Sequence[Ranked]) -> Ranked | None:
-    """The best of the hypotheses that pay: a named mechanism, unless a free curve is better by a margin and takes half again as much."""
+    """The best of the hypotheses that pay: a named mechanism, unless a free curve is better by a margin and much better."""
     named = simplest([r for r in ranked if not r.unknown])
     curve = next((r for r in ranked if r.unknown), None)
     if named is None or curve is None:
         return named or curve
-    return curve if curve.gain > named.gain + CURVE_MARGIN and curve.gain > 1.5 * named.gain else named
+    much_better = curve.gain > 1.5 * named.gain or alone_at_noise(curve.fitted, named.fitted)
+    return curve if curve.gain > named.gain + CURVE_MARGIN and much_better else named
+
+
+def alone_at_noise(curve: Hypothesis, named: Hypothesis) -> bool:
+    """Whether a free curve leaves white noise alone and names do not: then they are not the machine's, however far they come."""
+    return white_samples(curve) > 0 and not white_samples(named)
 
 
 def simplest(ranked: Sequence[Ranked]) -> Ranked | None:

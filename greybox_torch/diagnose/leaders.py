@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,13 +51,48 @@ def leaders(
         card: the values that the problem began with. A model that lacks an effect bends its parameters to make up for it, at times into
             a valley that the complete model cannot leave again; so every candidate is also refitted from where the user began.
     """
+
+    def first_few(best: list[Look]) -> list[Look]:
+        named = _with_ties([b for b in best if not isinstance(b.attachment.mechanism, Unknown)])
+        return named + [b for b in best if isinstance(b.attachment.mechanism, Unknown)][:CURVES_PER_LENGTH]
+
+    return _followed(looks, fits, surroundings, card, first_few)
+
+
+def elsewhere(
+    attachment: Attachment,
+    known: Collection[Attachment],
+    looks: Sequence[Sequence[Look]],
+    fits: Sequence[WindowFit],
+    surroundings: Mapping[str, Surroundings],
+    card: Mapping[str, float],
+) -> list[Leader]:
+    """A law, and the laws that it contains, at every port where it was looked at, without those ``known``.
+
+    Arguments as for :func:`leaders`. A look is linear: where an effect is large, another place than the right one may explain more of it
+    at first sight.
+    """
+    names = {attachment.mechanism.name, *attachment.mechanism.generalises}
+    there = {identity_of(a) for a in known}
+
+    def not_known(best: list[Look]) -> list[Look]:
+        return [b for b in best if b.attachment.mechanism.name in names and identity_of(b.attachment) not in there]
+
+    return _followed(looks, fits, surroundings, card, not_known)
+
+
+def _followed(
+    looks: Sequence[Sequence[Look]],
+    fits: Sequence[WindowFit],
+    surroundings: Mapping[str, Surroundings],
+    card: Mapping[str, float],
+    choose: Callable[[list[Look]], list[Look]],
+) -> list[Leader]:
+    """What ``choose`` takes of the looks at any window length, best of each hypothesis first, as leaders."""
     found: dict[tuple, Leader] = {}
     for at_length, fit in zip(looks, fits, strict=True):
-        best = _best_of_each(at_length, surroundings)
-        named = _with_ties([b for b in best if not isinstance(b.attachment.mechanism, Unknown)])
-        curves = [b for b in best if isinstance(b.attachment.mechanism, Unknown)][:CURVES_PER_LENGTH]
         fitted = dict(zip(fit.problem.names, map(float, fit.problem.values), strict=True))
-        for look in named + curves:
+        for look in choose(_best_of_each(at_length, surroundings)):
             if look.explained < LEAST_SHARE:
                 continue
             identity = identity_of(look.attachment)

@@ -8,7 +8,7 @@ import torch
 from greybox_torch.diagnose.refit import Hypothesis
 from greybox_torch.diagnose.verdict import Curve, Profile
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.estimate.window_fit import WindowFit
+from greybox_torch.estimate.window_fit import WindowFit, states_along
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Surroundings
@@ -45,12 +45,7 @@ def local_signals(
     model: AugmentedModel, attachment: Attachment, fit: WindowFit, stepper: Stepper, substeps: int
 ) -> dict[str, np.ndarray]:
     """The signals that an effect depends on, along the estimation records (N,)."""
-    problem, windows = fit.problem, fit.windows
-    run = stepper.run(problem.driving_tape, windows, problem.values, fit.starts, substeps=substeps, keep_states=True)
-    assert run.states is not None
-    states = np.zeros((problem.tape.u.shape[1], run.states.shape[2]))
-    for w, (first, last) in enumerate(zip(windows.start, windows.last, strict=True)):
-        states[first : last + 1] = run.states[w, : last - first + 1]
+    problem, states = fit.problem, states_along(fit, stepper, substeps)
     x = Signals("state", {s.name: torch.as_tensor(states[:, i]) for i, s in enumerate(model.states)})
     tape = problem.driving_tape
     u = Signals("input", {s.name: torch.as_tensor(tape.u[i]) for i, s in enumerate(model.inputs)})

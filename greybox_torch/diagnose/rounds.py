@@ -9,16 +9,18 @@ from functools import partial
 from greybox_torch.diagnose.candidates import candidates, periodic_candidates
 from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS, chosen, least_gain
 from greybox_torch.diagnose.curve import finer
-from greybox_torch.diagnose.leaders import Leader, leaders
+from greybox_torch.diagnose.leaders import Leader, elsewhere, leaders
 from greybox_torch.diagnose.name import MOST_TIED, TIE, Ranked, in_order, judged, polished, rank
-from greybox_torch.diagnose.orders import scan_orders
+from greybox_torch.diagnose.noise import noise_floor
+from greybox_torch.diagnose.orders import distinct_orders, scan_orders
 from greybox_torch.diagnose.refit import POLISH_SETTINGS, WINDOW_SETTINGS, Hypothesis, hypothesis
 from greybox_torch.diagnose.restarts import restarts
 from greybox_torch.diagnose.screen import Look, Screen
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.shifted_states import shifted_states
-from greybox_torch.estimate.surroundings import survey
+from greybox_torch.estimate.surroundings import surroundings_along
+from greybox_torch.estimate.window_fit import states_along
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
@@ -92,9 +94,10 @@ class Rounds:
             )
         self.plain = self.current = plain
         self.shifts = shifted_states(self.problem.model, plain.problem)
-        self.surroundings: dict[str, Surroundings] = survey(
-            self.problem.model, plain.problem, plain.stepper, self.substeps
-        )
+        # Over windows, not along the free run: that runs through a stop that the model lacks, and away with a bias.
+        over = plain.fits[min(1, len(plain.fits) - 1)]
+        visited = states_along(over, plain.stepper, self.substeps)
+        self.surroundings: dict[str, Surroundings] = surroundings_along(self.problem.model, over.problem, visited)
 
     def round_of(self, prefix: str) -> Round | None:
         """The round in which an effect was taken, the last one where it was chosen anew beside the others."""
@@ -116,7 +119,11 @@ class Rounds:
         )
         found = [k for k in found if k.explained >= least]
         found = [k for k in found if not k.unknown or self._promising(k)]
-        ranked = rank(
+        ranked = self._ranked(found)
+        return self._take(looks, in_order([*ranked, *self._ranked(self._elsewhere(looks, found, ranked))]))
+
+    def _ranked(self, found: Sequence[Leader]) -> list[Ranked]:
+        return rank(
             self.problem,
             self.current,
             found,
@@ -125,7 +132,16 @@ class Rounds:
             device=self.device,
             progress=self.progress,
         )
-        return self._take(looks, ranked)
+
+    def _elsewhere(
+        self, looks: Sequence[Sequence[Look]], found: Sequence[Leader], ranked: Sequence[Ranked]
+    ) -> list[Leader]:
+        """The best named law at the ports where the screen did not put it among the first, if it pays."""
+        best = next((r for r in ranked if not r.unknown), None)
+        if best is None or best.gain < least_gain(best.fitted) or best.surely < LEAST_SURENESS:
+            return []
+        known = [k.attachment for k in found]
+        return elsewhere(best.leader.attachment, known, looks, self.current.fits, self.surroundings, self._card())
 
     def _take(self, looks: Sequence[Sequence[Look]], ranked: Sequence[Ranked]) -> bool:
         """End a round: compare what was refitted fairly, and take the best if it pays. Whether one was taken."""
@@ -187,8 +203,12 @@ class Rounds:
         offered = self._fine_curves() if fine else self._offered()
         model, at, free = self.problem.model, self.current, self.current.problem.free_names
         there = {(e.port, e.mechanism.name) for e in at.effects}
+        there_in_part = {(e.port, name) for e in at.effects for name in e.mechanism.includes}
         offered = [
-            a for a in offered if not there & {(a.port, n) for n in (a.mechanism.name, *a.mechanism.generalises)}
+            a
+            for a in offered
+            if not there & {(a.port, n) for n in (a.mechanism.name, *a.mechanism.generalises)}
+            and (a.port, a.mechanism.name) not in there_in_part
         ]
         screen = Screen.of(model, at.effects, offered, self.surroundings, free, device=self.device)
         return side_by_side(partial(screen.look, fit, self.substeps) for fit in at.fits)
@@ -198,14 +218,22 @@ class Rounds:
 
     def _offered(self) -> list[Attachment]:
         model, at, free = self.problem.model, self.current, self.current.problem.free_names
+        over = [f for f in at.fits if f.mean_square > noise_floor(self.problem)] or at.fits
         orders = scan_orders(
-            model, at.effects, self.surroundings, free, at.fits[:2], substeps=self.substeps, device=self.device
+            model, at.effects, self.surroundings, free, over[:2], substeps=self.substeps, device=self.device
         )
+        orders = distinct_orders([*orders, *self._orders_before()])
         return [
             *candidates(model, self.shifts, self.surroundings, flexible=False),
             *periodic_candidates(model, self.shifts, self.surroundings, orders),
             *(candidates(model, self.shifts, self.surroundings, flexible=True) if self._may_be_a_curve() else []),
         ]
+
+    def _orders_before(self) -> list[float]:
+        """Orders that refits of earlier rounds came to: what is there now may hide the one that is right from a scan."""
+        ranked = [r for done in self.rounds for r in done.ranked if r.gain > LEAST_GAIN]
+        values = ((r.fitted.values(), f"{r.leader.attachment.prefix}.order") for r in ranked)
+        return [found[name] for found, name in values if name in found]
 
     def _fairly(self, looks: Sequence[Sequence[Look]], ranked: Sequence[Ranked]) -> list[Ranked]:
         """The front runners polished, and compared with their parent refitted from the best one's values.
@@ -216,7 +244,10 @@ class Rounds:
         if not ranked or ranked[0].gain < LEAST_GAIN:
             return list(ranked)
         tied = sum(not r.unknown and r.gain > ranked[0].gain - TIE for r in ranked)
-        front = [r for r in ranked if r.gain > CLOSE * ranked[0].gain][: max(FRONT_RUNNERS, min(tied, MOST_TIED))]
+        close = [
+            r for r in ranked if r.gain > CLOSE * ranked[0].gain
+        ]  # not always the first: in order there is a price
+        front = close[: max(FRONT_RUNNERS, min(tied, MOST_TIED))]
         polish = side_by_side(
             partial(self._polished, r.fitted, restarts(looks, r, self._card(), self.surroundings)) for r in front
         )
@@ -226,9 +257,9 @@ class Rounds:
             self.current = parent
             if not parent.effects:
                 self.plain = parent
-        rest = [r.fitted for r in ranked[len(front) :]]
-        again = [judged(r.leader, self.current, fitted) for r, fitted in zip(ranked, polish + rest, strict=True)]
-        return in_order(again)
+        rest = [r for r in ranked if all(r is not one for one in front)]
+        fitted = [*polish, *(r.fitted for r in rest)]
+        return in_order([judged(r.leader, self.current, one) for r, one in zip([*front, *rest], fitted, strict=True)])
 
     def _polished(self, fitted: Hypothesis, starts: Sequence[dict[str, float]]) -> Hypothesis:
         self.progress(f"polishing {' + '.join(e.prefix for e in fitted.effects) or 'the model as it stands'}")

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
-from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS, least_gain
+from greybox_torch.diagnose.choice import CURVE_MARGIN, LEAST_GAIN, LEAST_SURENESS, alone_at_noise, least_gain
 from greybox_torch.diagnose.curve import absorbed
 from greybox_torch.diagnose.leaders import Leader, leaders
 from greybox_torch.diagnose.name import PARSIMONY, Ranked
@@ -151,7 +151,8 @@ class Search(Rounds):
         finally:
             self.curves = True
         reached, ceiling = (before.score - h.score for h in (self.current, with_curve))
-        if reached < min(ceiling - CURVE_MARGIN, NAMED_SHARE * ceiling):
+        share = 1.0 if alone_at_noise(with_curve, self.current) else NAMED_SHARE
+        if reached < min(ceiling - CURVE_MARGIN, share * ceiling):
             if len(self.current.effects) > len(before.effects):
                 self.named = self.current, self.rounds
             self.current, self.rounds = with_curve, its_rounds
@@ -165,10 +166,11 @@ class Search(Rounds):
 
     def contained(self, effect: Attachment) -> list[tuple[Ranked, Hypothesis]]:
         """Laws that the law of ``effect`` contains, of those that were refitted beside it, and each in its place beside the others."""
-        done, found = self.round_of(effect.prefix), []
+        done, found, there = self.round_of(effect.prefix), [], {e.prefix for e in self.current.effects}
         for rival in done.ranked if done is not None else ():
             other = rival.leader.attachment
-            if other.port == effect.port and other.mechanism.name in effect.mechanism.generalises:
+            inside = other.port == effect.port and other.mechanism.name in effect.mechanism.generalises
+            if inside and other.prefix not in there:
                 self.progress(f"refitting {other.prefix} in the place of {effect.prefix}")
                 effects = tuple(other if e is effect else e for e in self.current.effects)
                 fitted = self._refitted(effects, self.current, [rival.fitted.values()])

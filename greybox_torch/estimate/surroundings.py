@@ -16,18 +16,18 @@ from greybox_torch.simulate.stepper import Stepper
 
 def survey(model: GreyBoxModel, problem: Problem, stepper: Stepper, substeps: int) -> dict[str, Surroundings]:
     """Ranges of the signals around every port of ``model``, along the free run of ``problem`` (of that model, or of it augmented)."""
-    pieces = visited_states(problem, stepper, substeps=substeps)
-    states = np.concatenate(pieces)[:, : len(model.states)]
-    index = np.concatenate(
-        [np.arange(problem.tape.span(e).start, problem.tape.span(e).stop) for e in range(len(pieces))]
-    )
+    return surroundings_along(model, problem, np.concatenate(visited_states(problem, stepper, substeps=substeps)))
+
+
+def surroundings_along(model: GreyBoxModel, problem: Problem, states: np.ndarray) -> dict[str, Surroundings]:
+    """Ranges of the signals around every port of ``model``, along states (N, n_x or more) at the samples of the problem's records."""
     x = Signals("state", {s.name: torch.as_tensor(states[:, i]) for i, s in enumerate(model.states)})
-    u = Signals("input", {s.name: torch.as_tensor(problem.tape.u[i, index]) for i, s in enumerate(model.inputs)})
+    u = Signals("input", {s.name: torch.as_tensor(problem.tape.u[i]) for i, s in enumerate(model.inputs)})
     values = dict(zip(problem.names, problem.values, strict=True))
     p = Signals(
         "parameter", {q.name: torch.tensor(values[q.name], dtype=torch.float64) for q in model.declared_parameters}
     )
-    times = np.concatenate([problem.tape.time(e) for e in range(len(pieces))])
+    times = np.concatenate([problem.tape.time(e) for e in range(len(problem.tape.first))])
     return {port.name: _around(model, port, x, u, p, times, problem) for port in model.all_ports}
 
 

@@ -127,6 +127,17 @@ def _starts_of(shorter: WindowFit, problem: Problem, stepper: Stepper, windows: 
     return states
 
 
+def states_along(fit: WindowFit, stepper: Stepper, substeps: int) -> np.ndarray:
+    """States (N, n_x) at the samples of the records, every window from its own start."""
+    problem, windows = fit.problem, fit.windows
+    run = stepper.run(problem.driving_tape, windows, problem.values, fit.starts, substeps=substeps, keep_states=True)
+    assert run.states is not None
+    states = np.zeros((problem.tape.u.shape[1], run.states.shape[2]))
+    for w, (first, last) in enumerate(zip(windows.start, windows.last, strict=True)):
+        states[first : last + 1] = run.states[w, : last - first + 1]
+    return states
+
+
 def carried_starts(
     problem: Problem, stepper: Stepper, windows: Windows, starts: np.ndarray, substeps: int
 ) -> np.ndarray:

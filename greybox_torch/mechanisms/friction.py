@@ -78,7 +78,8 @@ class StribeckFriction(Mechanism):
     """−(F_c + F_s exp(−(v / v_s)²)) tanh(v / v_0) − c v."""
 
     name = "stribeck_friction"
-    generalises = ("coulomb_friction",)
+    generalises = ("coulomb_friction", "viscous_friction")
+    includes = generalises
     kinds = ("body",)
     needs = ("speed",)
     explanation = (
@@ -212,6 +213,7 @@ class PreslidingHysteresis(Mechanism):
 
     name = "presliding_hysteresis"
     generalises = ("coulomb_friction",)
+    includes = generalises
     kinds = ("body",)
     needs = ("speed",)
     explanation = "Before sliding, friction acts like a spring that yields (bristles bend, then slip)."

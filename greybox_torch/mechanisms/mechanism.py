@@ -80,6 +80,8 @@ class Mechanism:
     """Whether the memory is gone after a few samples, so that a window may begin with any."""
     generalises: ClassVar[tuple[str, ...]] = ()
     """Mechanisms that this one contains: where it does no better than one of them, that one is meant."""
+    includes: ClassVar[tuple[str, ...]] = ()
+    """Of these the ones whose whole force is a part of its own: beside it they would name the same friction twice."""
     twins: ClassVar[tuple[str, ...]] = ()
     """Mechanisms elsewhere that no recording of one input and one output tells from this one, however well it is fitted."""
     experiment: ClassVar[str] = ""

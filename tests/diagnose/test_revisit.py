@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnose.candidates import attach
+from greybox_torch.diagnose.choice import alone_at_noise
 from greybox_torch.diagnose.curve import absorbed, finer
-from greybox_torch.diagnose.leaders import MOST_TIED, NAMED_PER_LENGTH, Leader, _with_ties
+from greybox_torch.diagnose.leaders import MOST_TIED, NAMED_PER_LENGTH, Leader, _with_ties, elsewhere
 from greybox_torch.diagnose.name import judged, polished
 from greybox_torch.diagnose.noise import only_noise, reaches_noise
 from greybox_torch.diagnose.refit import WINDOW_SETTINGS, _states_first, hypothesis, lengths
@@ -18,7 +19,13 @@ from greybox_torch.diagnose.restarts import restarts
 from greybox_torch.diagnose.rounds import Round
 from greybox_torch.diagnose.screen import Look
 from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, TorqueRipple
-from greybox_torch.mechanisms.friction import FrictionWarmup, QuadraticDrag
+from greybox_torch.mechanisms.friction import (
+    FrictionWarmup,
+    PreslidingHysteresis,
+    QuadraticDrag,
+    StribeckFriction,
+    ViscousFriction,
+)
 from greybox_torch.mechanisms.mechanism import Probe
 from greybox_torch.mechanisms.unknown import Unknown
 
@@ -62,6 +69,60 @@ def test_what_stands_is_left_where_the_choice_is_the_same(motor_data, motor, beg
     }
     assert not search._revised()
     assert {e.mechanism.name for e in search.current.effects} == {e.mechanism.name for e in whole.effects}
+
+
+def test_hypotheses_keep_their_fits_where_the_order_is_not_that_of_the_gains(motor_data, motor, begun) -> None:
+    search = begun(motor_data(torque=lambda q, v: -0.01 * v * abs(v)), motor)
+    ranked = []
+    for law, gain in ((QuadraticDrag(), 0.5), (ConstantBias(), 0.1), (StribeckFriction(), 0.4)):
+        effect = attach(motor, "rotor", law)
+        fitted = search._refitted((effect,), search.plain)
+        ranked.append(replace(judged(Leader(effect, (), 0.5), search.plain, fitted), gain=gain))
+    again = search._fairly([[look(motor, 0.5)]], ranked)
+    assert {r.leader.attachment.prefix for r in again} == {r.leader.attachment.prefix for r in ranked}
+    assert all(r.fitted.effects == (r.leader.attachment,) for r in again)
+
+
+def test_orders_of_earlier_rounds_are_looked_at_again(motor_data, motor, begun) -> None:
+    search = begun(motor_data(), motor)
+    effect = attach(motor, "rotor", TorqueRipple(3.0))
+    fitted = search._refitted((effect,), search.plain)
+    ranked = replace(judged(Leader(effect, (), 0.5), search.plain, fitted), gain=0.5)
+    search.rounds = [Round((), search.plain, (ranked, replace(ranked, gain=0.0)), None)]
+    assert search._orders_before() == [fitted.values()["rotor.torque_ripple.order"]]
+    search.rounds = []
+    assert search._orders_before() == []
+
+
+def test_friction_that_has_coulomb_friction_in_it_is_not_joined_by_it(motor_data, motor, begun) -> None:
+    search = begun(motor_data(), motor)
+    search.current = search._refitted((attach(motor, "rotor", PreslidingHysteresis()),), search.plain)
+    offered = {k.attachment.mechanism.name for k in search._screened(fine=False)[0] if k.attachment.port == "rotor"}
+    assert "coulomb_friction" not in offered and "quadratic_drag" in offered
+
+
+def test_a_law_is_also_looked_for_where_the_screen_did_not_put_it_first(arm_search) -> None:
+    model, fits = arm_search.problem.model, arm_search.plain.fits
+    places = [attach(model, port, StribeckFriction()) for port in ("motor", "gearbox", "arm")]
+    viscous = attach(model, "arm", ViscousFriction())
+    looks = [
+        [Look(a, Probe(("F_c",)), 31, 0.2, np.ones(1)) for a in places]
+        + [Look(viscous, Probe(("c",)), 31, 0.3, np.ones(1))]
+    ]
+    found = elsewhere(places[0], [places[0]], looks, fits[:1], arm_search.surroundings, {})
+    assert {k.attachment.prefix for k in found} == {
+        "gearbox.stribeck_friction",
+        "arm.stribeck_friction",
+        "arm.viscous_friction",
+    }
+    assert found[0].attachment is viscous
+
+
+def test_names_do_not_stand_for_a_curve_that_alone_leaves_nothing_but_noise(motor_data, motor, begun) -> None:
+    search = begun(motor_data(torque=lambda q, v: 0.2, noise=0.1), motor)
+    with_bias = search._refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
+    assert alone_at_noise(with_bias, search.plain)
+    assert not alone_at_noise(with_bias, with_bias) and not alone_at_noise(search.plain, search.plain)
 
 
 def test_frozen_parameters_keep_their_values_and_are_free_again_when_polished(dead_zone_search) -> None:

@@ -17,15 +17,11 @@ from greybox_torch.systems.load import load_model
 
 @pytest.fixture(scope="module")
 def states(arm_search) -> np.ndarray:
-    plain = arm_search.plain
-    run = plain.stepper.run(
-        plain.problem.tape,
-        whole_records(plain.problem.tape),
-        plain.problem.values,
-        plain.problem.initial,
-        keep_states=True,
-    )
-    return run.states[0]
+    """Along windows of the middle length, each from its own start."""
+    plain, over = arm_search.plain, arm_search.plain.fits[1]
+    run = plain.stepper.run(over.problem.tape, over.windows, over.problem.values, over.starts, keep_states=True)
+    sizes = np.diff(over.windows.start, append=plain.problem.tape.u.shape[1])
+    return np.concatenate([run.states[w, :n] for w, n in enumerate(sizes)])
 
 
 @pytest.mark.parametrize(
