@@ -8,11 +8,12 @@ from functools import partial, reduce
 
 import numpy as np
 
+from greybox_torch.data import DataSet
 from greybox_torch.diagnose.placed import placed
 from greybox_torch.diagnose.refit import WINDOW_SETTINGS, Hypothesis, lengths
 from greybox_torch.diagnose.verdict import Timeline
 from greybox_torch.estimate.initial import estimate_initial
-from greybox_torch.estimate.problem import Problem, problem_for
+from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 
 
@@ -35,18 +36,43 @@ class Gain:
         return self.share - 1.96 * self.error, self.share + 1.96 * self.error
 
 
-def held_out_fits(hypothesis: Hypothesis, problem: Problem, substeps: int) -> tuple[WindowFit, ...]:
+class Others:
+    """The validation experiments of a data set, and what hypotheses of a search leave there.
+
+    ``problem`` is the plain model on them, outputs weighted as in the search. Fits are kept: confirming asks for some of them again.
+    """
+
+    def __init__(self, dataset: DataSet, problem: Problem, substeps: int) -> None:
+        others = all_starts_free(dataset, make_problem(dataset, problem.model, dataset.validation()))
+        self.problem, self.substeps = replace(others, weights=problem.weights), substeps
+        self._kept: dict[int, tuple[Hypothesis, tuple[WindowFit, ...]]] = {}
+
+    def fits(self, hypothesis: Hypothesis) -> tuple[WindowFit, ...]:
+        """The hypothesis with the parameters it was fitted with, as :func:`held_out_fits`."""
+        if id(hypothesis) not in self._kept:
+            self._kept[id(hypothesis)] = hypothesis, held_out_fits(hypothesis, self.problem, self.substeps)
+        return self._kept[id(hypothesis)][1]
+
+    def fits_at(self, hypothesis: Hypothesis, values: Mapping[str, float]) -> tuple[WindowFit, ...]:
+        """The hypothesis with other parameters."""
+        return held_out_fits(hypothesis, self.problem, self.substeps, values)
+
+
+def held_out_fits(
+    hypothesis: Hypothesis, problem: Problem, substeps: int, values: Mapping[str, float] | None = None
+) -> tuple[WindowFit, ...]:
     """The hypothesis on other experiments: parameters as they are, window start states free, at the middle and the longest windows.
 
     Args:
         problem: the plain model on the held-out experiments.
+        values: parameter values by name, by default the hypothesis's own.
     """
-    own = hypothesis.values()
+    own = hypothesis.values() if values is None else values
     known: Mapping[str, float] = {n: own[n] for n in hypothesis.problem.names}
     restated = (
         problem_for(problem, hypothesis.model, known)
         if hypothesis.effects
-        else problem.with_values(hypothesis.problem.values)
+        else problem.with_values(np.array([own[n] for n in problem.names]))
     )
     fixed = replace(restated, free=np.zeros_like(restated.free))
     started = estimate_initial(fixed, hypothesis.stepper, substeps=substeps)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -15,6 +15,7 @@ from greybox_torch.diagnose.detect import detect
 from greybox_torch.diagnose.effects import describe
 from greybox_torch.diagnose.evidence import sentences
 from greybox_torch.diagnose.final import finish
+from greybox_torch.diagnose.held_out import Gain, Others
 from greybox_torch.diagnose.judgement import Judgement
 from greybox_torch.diagnose.locate import window_errors
 from greybox_torch.diagnose.noise import far_above_noise, floor_known, times_noise
@@ -22,6 +23,7 @@ from greybox_torch.diagnose.probability import confidence, of_a_stopped_search
 from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.diagnose.select import Search
 from greybox_torch.diagnose.verdict import Verdict
+from greybox_torch.diagnose.widen import predicts_better, widened
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
 from greybox_torch.model import GreyBoxModel
@@ -84,7 +86,8 @@ def diagnose(
     """Find what physics ``model`` leaves out, from the estimation experiments; judge it on the validation experiments.
 
     Start states that the card does not mention are estimated, whatever the model's own default, so that a wrong start is not taken for
-    missing physics. Choosing uses the estimation experiments alone; the validation experiments can only take a finding back.
+    missing physics. Choosing uses the estimation experiments alone; the validation experiments can only take a finding back. Where they
+    show what the estimation experiments do not, one of them is taken to choose with, and no longer counts as validation.
 
     Args:
         seed: kept in the verdict; the search itself draws no random numbers.
@@ -99,26 +102,11 @@ def diagnose(
         raise UserError(
             f"{dataset.path}: [[experiment]] role: no experiment has the role 'estimation'; expected at least one"
         )
-    problem = all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
-    stepper = make_stepper(model, problem.free_names, device=device)
-    substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
-    search = Search(problem, substeps, device, clock.progress)
-    at = clock.stage("preparing", 0.0)
-    interrupted = _searched(search)
-    at = clock.stage("searching: screen, refit, select", at)
-    gains = confirmed(dataset, search, progress)
-    at = clock.stage("confirming on held-out experiments", at)
-    progress("fitting whole records")
-    plain = finish(search.plain, substeps, device=device)
-    augmented = finish(search.current, substeps, device=device) if search.current.effects else plain
-    at = clock.stage("final fits on whole records", at)
-    progress("judging on the validation experiments")
-    judged = Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
-    while search.current.effects and not judged.holds:
-        gains = without_weakest(search, gains)
-        augmented = finish(search.current, substeps, device=device) if search.current.effects else plain
-        judged = Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
-    effects = describe(search, augmented, substeps, judged.sums, gains) if search.current.effects else ()
+    found = _found_with_more(_found(dataset, model, device, clock), model, device, clock)
+    dataset, search, gains, judged = found.dataset, found.search, found.gains, found.judged
+    plain, augmented, interrupted = judged.plain, judged.augmented, found.interrupted
+    at = clock.seconds
+    effects = describe(search, augmented, search.substeps, judged.sums, gains) if search.current.effects else ()
     if interrupted:
         effects = of_a_stopped_search(effects)
     traces = judged.traces(bool(effects))
@@ -133,7 +121,7 @@ def diagnose(
         confidence=confidence(search, effects, not interrupted, unexplained),
         effects=effects,
         scores={name: comparison.scores for name, comparison in judged.comparisons(bool(effects)).items()},
-        evidence=sentences(dataset, search, effects, gains, detected, interrupted),
+        evidence=(*sentences(dataset, search, effects, gains, detected, interrupted), *found.more),
         stages=clock.stages,
         ranking=_ranking(search),
         traces=traces,
@@ -144,6 +132,62 @@ def diagnose(
     chosen = search.current if effects else search.plain
     attachments = [attachment_json(e, search.surroundings[e.port]) for e in chosen.effects]
     return Diagnosis(verdict, chosen.model, final.values(), _starts(final.problem), attachments)
+
+
+@dataclass(frozen=True)
+class _Found:
+    """What a search on the estimation experiments of a data set came to, and what the others made of it."""
+
+    dataset: DataSet
+    search: Search
+    others: Others | None
+    gains: Mapping[str, Gain]
+    judged: Judgement
+    interrupted: bool
+    more: tuple[str, ...] = ()
+    """Which experiments were taken to choose with besides those of the card, in sentences."""
+
+
+def _found(dataset: DataSet, model: GreyBoxModel, device: str, clock: _Clock) -> _Found:
+    """Search on the estimation experiments, and let the others confirm what was found or take it back."""
+    at = clock.seconds
+    problem = all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
+    stepper = make_stepper(model, problem.free_names, device=device)
+    substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
+    search = Search(problem, substeps, device, clock.progress)
+    at = clock.stage("preparing", at)
+    interrupted = _searched(search)
+    at = clock.stage("searching: screen, refit, select", at)
+    others = Others(dataset, search.problem, substeps) if dataset.validation() else None
+    gains = confirmed(search, others, clock.report)
+    at = clock.stage("confirming on held-out experiments", at)
+    clock.report("fitting whole records")
+    plain = finish(search.plain, substeps, device=device)
+    augmented = finish(search.current, substeps, device=device) if search.current.effects else plain
+    at = clock.stage("final fits on whole records", at)
+    clock.report("judging on the validation experiments")
+    judged = Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
+    while search.current.effects and not judged.holds:
+        gains = without_weakest(search, gains)
+        augmented = finish(search.current, substeps, device=device) if search.current.effects else plain
+        judged = Judgement(dataset, problem, search, plain, augmented, substeps, device, gains)
+    clock.stage("validation and report data", at)
+    return _Found(dataset, search, others, gains, judged, interrupted)
+
+
+def _found_with_more(first: _Found, model: GreyBoxModel, device: str, clock: _Clock) -> _Found:
+    """``first``, or what is found with more experiments to choose with, where those show what the others do not."""
+    best = last = first
+    while not last.interrupted and last.others is not None:
+        more = widened(last.dataset, last.search, last.others)
+        if more is None:
+            break
+        clock.report(f"searching again, {more.taken} among the experiments to choose with")
+        found = _found(more.dataset, model, device, clock)
+        last = replace(found, more=(*last.more, more.sentence()))
+        if last.search.current.effects and last.others and predicts_better(last.others, best.search, last.search):
+            best = last
+    return best
 
 
 def _searched(search: Search) -> bool:

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from functools import partial
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from greybox_torch.diagnose.candidates import attach
-from greybox_torch.diagnose.confirm import _simplified
-from greybox_torch.diagnose.held_out import held_out_fits
+from greybox_torch.diagnose.confirm import _idle, _simplified
+from greybox_torch.diagnose.held_out import Gain, Others
 from greybox_torch.diagnose.leaders import Leader
 from greybox_torch.diagnose.name import judged
 from greybox_torch.diagnose.rounds import Round
 from greybox_torch.diagnose.select import Search
-from greybox_torch.estimate.problem import all_starts_free, make_problem
+from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
 
 
@@ -38,17 +38,34 @@ def chose_stribeck(motor_data, motor, begun) -> Any:
             ranked.append(judged(Leader(effect, (), 0.9), search.plain, fitted))
         search.rounds = [Round((), search.plain, tuple(ranked), ranked[0])]
         search.current = ranked[0].fitted
-        others = all_starts_free(data, make_problem(data, motor, data.validation()))
-        return search, partial(held_out_fits, problem=others, substeps=1)
+        return search, Others(data, search.problem, 1)
 
     return make
 
 
 @pytest.mark.parametrize(("extra", "meant"), [(0.0, "coulomb_friction"), (0.1, "stribeck_friction")])
 def test_the_contained_law_is_meant_where_the_larger_one_predicts_no_better(chose_stribeck, extra, meant) -> None:
-    search, on_others = chose_stribeck(extra)
-    _simplified(search, on_others)
+    search, others = chose_stribeck(extra)
+    _simplified(search, others)
     (effect,) = search.current.effects
     assert effect.mechanism.name == meant
     assert search.rounds[0].taken.leader.attachment.mechanism.name == meant
     assert search.round_of(effect.prefix) is search.rounds[0]
+
+
+@pytest.mark.parametrize("elsewhere_too", [True, False])
+def test_what_only_frees_the_other_parameters_is_idle_on_other_experiments(
+    motor_data, motor, begun, elsewhere_too
+) -> None:
+    """A bias of one experiment: with it the other parameters are right, so it predicts others better than the model without."""
+    biased = motor_data(torque=lambda q, v: 0.1)
+    others = biased if elsewhere_too else motor_data(torque=lambda q, v: 0.0)
+    recordings = (biased.recordings[0], others.recordings[1])
+    data = replace(biased, recordings=recordings)
+    search, effect = begun(data, motor), attach(motor, "rotor", ConstantBias())
+    search.current = search._refitted((effect,), search.plain)
+    search.without = {effect.prefix: search.plain}
+    held_out = Others(data, search.problem, 1)
+    found = _idle(search, {effect.prefix: Gain(0.5, 0.1)}, held_out.fits(search.current), held_out)
+    assert found == (None if elsewhere_too else effect.prefix)
+    assert _idle(search, {effect.prefix: Gain(0.95, 0.1)}, held_out.fits(search.current), held_out) is None
