@@ -50,7 +50,8 @@ PROTOCOL = """\
 3. The tool is run on each case by its command line. It sees the card, the recordings and the nominal model. The hash of each verdict goes
    on record as it comes; a verdict that comes later, or is changed, is refused.
 4. The seal is opened, the commitment checked, and every verdict scored by the rules in
-   [`proof/scores.py`]({root}/experiments/concealed/proof/scores.py). A case without a verdict counts as missed.
+   [`proof/scores.py`]({root}/experiments/concealed/proof/scores.py). A case without a verdict counts as missed. Where the tool says
+   that it took a validation experiment to choose with as well, the share of the error closed is that over the experiments left.
 
 The seed is public and the generator deterministic, so whoever runs the proof could look up the answers: what is blind is the tool, not the
 person. The record keeps anybody from choosing among verdicts afterwards without leaving a trace in it."""
@@ -111,8 +112,15 @@ def _about(proof: Proof, found: Sequence[Row]) -> str:
         f"Written by `{command}` ({short}) from its run: {len(found)} cases, seed {sealed['seed']}, sealed {sealed['time']}, "
         f"opened {opened.get('time')}. Tool: commit `{sealed['tool']['commit'][:12]}`, sources "
         f"`{sealed['tool']['sources'][:12]}`. Commitment to the answers: `{sealed['commitment']}`. One thread a case on "
-        f"{os.cpu_count()} cores ({platform.machine()}): median {statistics.median(seconds):.0f} s a case, slowest {max(seconds):.0f} s."
+        f"{os.cpu_count()} cores ({platform.machine()}): median {statistics.median(seconds):.0f} s a case, slowest {max(seconds):.0f} s. "
+        f"In {sum(map(_took_more, found))} cases the tool took a validation experiment to choose with as well."
     )
+
+
+def _took_more(row: Row) -> bool:
+    """Whether fewer experiments are left to judge than the three that every case has."""
+    judged = {fit["experiment"] for fit in row.verdict["fit"] if fit["role"] == "validation"} if row.verdict else ()
+    return row.verdict is not None and len(judged) < 3
 
 
 def _beside(folder: Path) -> list[str]:
