@@ -19,6 +19,9 @@ LEAST_HELD_OUT = 1.0
 BEYOND_CHANCE = 3.0
 """Standard errors by which a free curve must beat named effects on held-out experiments, or a law one that it contains, to be preferred."""
 
+LEAST_OWN = 3.0
+"""Standard errors by which leaving an effect out of held-out experiments, all else as it is, must raise the error there."""
+
 PARTLY = 0.9
 """Share of the held-out error below which it is asked whether an effect itself removes it."""
 
@@ -53,9 +56,9 @@ def confirmed(search: Search, others: Others | None, progress: Callable[[str], N
     return {}
 
 
-def _borne_out(gain: Gain) -> bool:
-    """Whether held-out experiments bear an effect out, or do not exercise it."""
-    return gain.errors_away > LEAST_HELD_OUT or abs(gain.share) + gain.error < UNEXERCISED
+def _borne_out(gain: Gain, least: float = LEAST_HELD_OUT) -> bool:
+    """Whether held-out experiments bear an effect out by so many standard errors, or do not exercise it."""
+    return gain.errors_away > least or abs(gain.share) + gain.error < UNEXERCISED
 
 
 def _idle(search: Search, gains: Mapping[str, Gain], full: tuple[WindowFit, ...], others: Others) -> str | None:
@@ -67,7 +70,7 @@ def _idle(search: Search, gains: Mapping[str, Gain], full: tuple[WindowFit, ...]
     values = search.current.values()
     for prefix in (p for p, found in gains.items() if found.share < PARTLY):
         own = gain(others.fits_at(search.without[prefix], values), full)
-        if not _borne_out(own):
+        if not _borne_out(own, LEAST_OWN):
             return prefix
     return None
 

@@ -9,6 +9,7 @@ from functools import partial, reduce
 import numpy as np
 
 from greybox_torch.data import DataSet
+from greybox_torch.diagnose.noise import noise_floor
 from greybox_torch.diagnose.placed import placed
 from greybox_torch.diagnose.refit import WINDOW_SETTINGS, Hypothesis, lengths
 from greybox_torch.diagnose.verdict import Timeline
@@ -52,6 +53,16 @@ class Others:
         if id(hypothesis) not in self._kept:
             self._kept[id(hypothesis)] = hypothesis, held_out_fits(hypothesis, self.problem, self.substeps)
         return self._kept[id(hypothesis)][1]
+
+    def times_noise(self, hypothesis: Hypothesis) -> np.ndarray:
+        """Root mean square errors in units of the noise, over the windows where they are largest, by experiment, shape (J,).
+
+        Infinite where the hypothesis cannot be simulated at all.
+        """
+        squares = [_mean_squares(fit) for fit in self.fits(hypothesis)] or [
+            np.full(len(self.problem.tape.first), np.inf)
+        ]
+        return np.sqrt(np.max(squares, axis=0) / max(noise_floor(self.problem), 1e-300))
 
     def fits_at(self, hypothesis: Hypothesis, values: Mapping[str, float]) -> tuple[WindowFit, ...]:
         """The hypothesis with other parameters."""
@@ -105,6 +116,14 @@ def _window_by_window(one: WindowFit | None, other: WindowFit | None) -> WindowF
     share = float(energies.sum()) / max(float(one.energies.sum()), 1e-300)
     starts = np.where(better[:, None], other.starts, one.starts)
     return replace(one, starts=starts, energies=energies, mean_square=share * one.mean_square)
+
+
+def _mean_squares(fit: WindowFit) -> np.ndarray:
+    """Mean squared weighted errors by experiment, shape (J,)."""
+    tape = fit.problem.tape
+    of = np.searchsorted(tape.first, fit.windows.start, side="right") - 1
+    known = [int(np.sum(~np.isnan(tape.y[:, tape.span(e)]))) for e in range(len(tape.first))]
+    return np.bincount(of, weights=fit.energies, minlength=len(known)) / np.maximum(known, 1)
 
 
 def gain(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> Gain:

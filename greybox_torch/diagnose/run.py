@@ -18,12 +18,12 @@ from greybox_torch.diagnose.final import finish
 from greybox_torch.diagnose.held_out import Gain, Others
 from greybox_torch.diagnose.judgement import Judgement
 from greybox_torch.diagnose.locate import window_errors
-from greybox_torch.diagnose.noise import far_above_noise, floor_known, times_noise
+from greybox_torch.diagnose.noise import FAR_ABOVE_NOISE, floor_known, times_noise
 from greybox_torch.diagnose.probability import confidence, of_a_stopped_search
 from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.diagnose.select import Search
 from greybox_torch.diagnose.verdict import Verdict
-from greybox_torch.diagnose.widen import predicts_better, widened
+from greybox_torch.diagnose.widen import serves, widened
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
 from greybox_torch.model import GreyBoxModel
@@ -112,7 +112,7 @@ def diagnose(
     traces = judged.traces(bool(effects))
     detected = detect(judged.problem, traces)
     clock.stage("validation and report data", at)
-    unexplained = None if effects else _unexplained(search)
+    unexplained = None if effects else _unexplained(search, found.others)
     verdict = Verdict(
         dataset=dataset.name,
         model=model.title,
@@ -185,7 +185,7 @@ def _found_with_more(first: _Found, model: GreyBoxModel, device: str, clock: _Cl
         clock.report(f"searching again, {more.taken} among the experiments to choose with")
         found = _found(more.dataset, model, device, clock)
         last = replace(found, more=(*last.more, more.sentence()))
-        if last.search.current.effects and last.others and predicts_better(last.others, best.search, last.search):
+        if last.search.current.effects and last.others and serves(last.others, best.search, last.search):
             best = last
     return best
 
@@ -207,10 +207,12 @@ def _searched(search: Search) -> bool:
     return False
 
 
-def _unexplained(search: Search) -> float | None:
-    """How many times the noise the model's error is, if that is too much to be chance or badly determined friction."""
-    known = floor_known(search.problem) and far_above_noise(search.plain)
-    return times_noise(search.problem, search.plain) if known else None
+def _unexplained(search: Search, others: Others | None) -> float | None:
+    """How many times the noise the model's error is on the worst experiment, if that is too much for badly determined friction."""
+    errors = [times_noise(search.problem, search.plain)] if floor_known(search.problem) else []
+    if others is not None and floor_known(others.problem):
+        errors += list(others.times_noise(search.plain))
+    return max((e for e in errors if FAR_ABOVE_NOISE < e < np.inf), default=None)
 
 
 def _noise_weights(search: Search) -> np.ndarray:

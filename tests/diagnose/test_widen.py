@@ -9,7 +9,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.diagnose.candidates import attach
 from greybox_torch.diagnose.held_out import Others
 from greybox_torch.diagnose.run import diagnose
-from greybox_torch.diagnose.widen import predicts_better, widened
+from greybox_torch.diagnose.widen import serves, widened
 from greybox_torch.mechanisms.friction import QuadraticDrag
 
 from .conftest import STEP, turned
@@ -71,4 +71,5 @@ def test_what_explains_the_others_is_left_as_it_is(drag_at_speed, motor, begun) 
     complete = begun(data, motor)
     complete.current = complete._refitted((attach(motor, "rotor", QuadraticDrag()),), complete.plain)
     assert widened(data, complete, others) is None
-    assert predicts_better(others, search, complete) and not predicts_better(others, complete, search)
+    assert serves(others, search, complete) and not serves(others, complete, search)
+    assert serves(others, complete, complete) is False and serves(others, search, search)
