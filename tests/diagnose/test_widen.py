@@ -73,3 +73,18 @@ def test_what_explains_the_others_is_left_as_it_is(drag_at_speed, motor, begun) 
     assert widened(data, complete, others) is None
     assert serves(others, search, complete) and not serves(others, complete, search)
     assert serves(others, complete, complete) is False and serves(others, search, search)
+
+
+def test_what_only_the_last_experiment_shows_is_said_to_be_missing_without_a_name(drag_at_speed, motor) -> None:
+    """It has to be left to judge, so it cannot say what."""
+    verdict = diagnose(drag_at_speed((SLOW, FAST)), motor).verdict
+    assert verdict.mismatch and not verdict.effects
+    assert verdict.unexplained is not None and verdict.unexplained > 3
+    assert verdict.sentence.startswith("Something is missing")
+
+
+def test_the_noise_of_other_experiments_is_the_unit_of_their_errors(drag_at_speed, motor, begun) -> None:
+    data = drag_at_speed((FAST, FAST, SLOW), drag=0.0)
+    search = begun(data, motor)
+    errors = Others(data, search.problem, 1).times_noise(search.current)
+    assert errors == pytest.approx([1.0, 1.0], abs=0.1)
