@@ -121,7 +121,7 @@ def _window_by_window(one: WindowFit | None, other: WindowFit | None) -> WindowF
 def _mean_squares(fit: WindowFit) -> np.ndarray:
     """Mean squared weighted errors by experiment, shape (J,)."""
     tape = fit.problem.tape
-    of = np.searchsorted(tape.first, fit.windows.start, side="right") - 1
+    of = tape.experiments(fit.windows.start)
     known = [int(np.sum(~np.isnan(tape.y[:, tape.span(e)]))) for e in range(len(tape.first))]
     return np.bincount(of, weights=fit.energies, minlength=len(known)) / np.maximum(known, 1)
 
@@ -157,7 +157,7 @@ def timelines(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> tu
     old, new = found
     removed = np.maximum(old.energies - new.energies, 0.0)
     shares, tape, windows = removed / max(float(removed.sum()), 1e-300), old.problem.tape, old.windows
-    of = np.searchsorted(tape.first, windows.start, side="right") - 1
+    of = tape.experiments(windows.start)
     result = []
     for e, name in enumerate(tape.names):
         time, first = tape.time(e), int(tape.first[e])

@@ -44,7 +44,7 @@ def placed(
     places = [i for i, s in enumerate(problem.model.states) if s.name in trials[0]]
     names = [problem.model.states[i].name for i in places]
     grid = np.array([[t[n] for n in names] for t in trials])
-    experiments = np.searchsorted(problem.tape.first, fit.windows.start, side="right") - 1
+    experiments = problem.tape.experiments(fit.windows.start)
     step = np.ptp(grid, axis=0) / max(len(grid) - 1, 1)
     best = np.zeros((len(problem.tape.first), len(places)))
     known = [problem.initial[:, places]]

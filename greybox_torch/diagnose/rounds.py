@@ -244,9 +244,8 @@ class Rounds:
         if not ranked or ranked[0].gain < LEAST_GAIN:
             return list(ranked)
         tied = sum(not r.unknown and r.gain > ranked[0].gain - TIE for r in ranked)
-        close = [
-            r for r in ranked if r.gain > CLOSE * ranked[0].gain
-        ]  # not always the first: in order there is a price
+        # Not always the first of the ranking: that has a price for every parameter.
+        close = [r for r in ranked if r.gain > CLOSE * ranked[0].gain]
         front = close[: max(FRONT_RUNNERS, min(tied, MOST_TIED))]
         polish = side_by_side(
             partial(self._polished, r.fitted, restarts(looks, r, self._card(), self.surroundings)) for r in front

@@ -143,7 +143,7 @@ class Screen:
         problem = problem_for(
             fitted.problem, self.model, dict(zip((p.name for p in self.model.declared_parameters), values, strict=True))
         )
-        experiment = np.searchsorted(problem.tape.first, fitted.windows.start, side="right") - 1
+        experiment = problem.tape.experiments(fitted.windows.start)
         starts = problem.initial[experiment]
         starts[:, own] = fitted.starts
         starts = self.model.begun(starts, problem.driving_tape, fitted.windows.start, values)

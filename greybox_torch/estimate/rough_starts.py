@@ -10,7 +10,7 @@ from greybox_torch.simulate.stepper import Windows
 
 def rough_starts(problem: Problem, windows: Windows) -> np.ndarray:
     """Start states (W, n_x) from the measurement where a state is measured, else the value at the experiment's start."""
-    experiment = np.searchsorted(problem.tape.first, windows.start, side="right") - 1
+    experiment = problem.tape.experiments(windows.start)
     states = problem.initial[experiment].copy()
     outputs = {o.name for o in problem.model.outputs}
     for i, state in enumerate(problem.model.states):

@@ -145,7 +145,7 @@ def carried_starts(
     if not problem.carried.any():
         return starts
     starts, tape = starts.copy(), problem.driving_tape
-    experiment = np.searchsorted(tape.first, windows.start, side="right") - 1
+    experiment = tape.experiments(windows.start)
     chains = [np.flatnonzero(experiment == e) for e in range(len(tape.first))]
     for k in range(max(len(c) for c in chains) - 1):
         now = np.array([c[k] for c in chains if len(c) > k + 1])

@@ -32,6 +32,10 @@ class Tape:
     def lengths(self) -> np.ndarray:
         return self.last - self.first + 1
 
+    def experiments(self, samples: np.ndarray) -> np.ndarray:
+        """Index of the experiment that each of ``samples`` (W,) belongs to, shape (W,)."""
+        return np.searchsorted(self.first, samples, side="right") - 1
+
     def span(self, experiment: int) -> slice:
         """The samples of one experiment."""
         return slice(int(self.first[experiment]), int(self.last[experiment]) + 1)
