@@ -49,6 +49,8 @@ class Ranked:
     fitted: Hypothesis
     gain: float
     surely: float
+    cost: float | None = None
+    """Negative logarithm of the likelihood of whole records, errors coloured, where others fit windows alike and noise alone is left."""
 
     @property
     def unknown(self) -> bool:

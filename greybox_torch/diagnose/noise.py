@@ -47,6 +47,12 @@ def reaches_noise(problem: Problem, fit: WindowFit) -> bool:
     return floor_known(problem) and fit.mean_square < NOISE_REACHED**2 * noise_floor(problem)
 
 
+def noise_over_windows(fitted: Hypothesis) -> bool:
+    """Whether a fit leaves hardly more than noise over windows, the longest aside, where slow disturbances of the machine show."""
+    shorter, known = fitted.fits[:-1] or fitted.fits, floor_known(fitted.problem)
+    return known and max(f.mean_square for f in shorter) < ABOVE_NOISE**2 * noise_floor(fitted.problem)
+
+
 def only_noise(problem: Problem, fitted: Hypothesis) -> bool:
     """Whether nothing but noise is left at any window length, where the recordings tell how much of it there is."""
     return floor_known(problem) and max(f.mean_square for f in fitted.fits) < AT_NOISE * noise_floor(problem)

@@ -73,10 +73,17 @@ def shared(chosen: Ranked, ranked: Sequence[Ranked]) -> tuple[float, tuple[Alter
 def _weight(chosen: Ranked, rival: Ranked) -> float:
     if rival.gain <= 0:
         return 0.0
-    behind = 0.0 if _twins(chosen, rival) else surely_better(rival.fitted, chosen.fitted)
+    behind = 0.0 if _twins(chosen, rival) else _behind(chosen, rival)
     share = min(1.0, rival.gain / max(chosen.gain, 1e-12))
     simpler = np.exp(-max(0, rival.size - chosen.size))
     return float(np.exp(-0.5 * (behind / TEMPERATURE) ** 2) * share * simpler)
+
+
+def _behind(chosen: Ranked, rival: Ranked) -> float:
+    """Standard errors by which the chosen one is better: by the likelihood of whole records, where that told them apart."""
+    if chosen.cost is None or rival.cost is None:
+        return surely_better(rival.fitted, chosen.fitted)
+    return float(np.sqrt(2.0 * max(0.0, rival.cost - chosen.cost)))
 
 
 def _twins(chosen: Ranked, rival: Ranked) -> bool:

@@ -16,6 +16,7 @@ from greybox_torch.diagnose.orders import distinct_orders, scan_orders
 from greybox_torch.diagnose.refit import POLISH_SETTINGS, WINDOW_SETTINGS, Hypothesis, hypothesis
 from greybox_torch.diagnose.restarts import restarts
 from greybox_torch.diagnose.screen import Look, Screen
+from greybox_torch.diagnose.ties import told_apart
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.shifted_states import shifted_states
@@ -145,7 +146,7 @@ class Rounds:
 
     def _take(self, looks: Sequence[Sequence[Look]], ranked: Sequence[Ranked]) -> bool:
         """End a round: compare what was refitted fairly, and take the best if it pays. Whether one was taken."""
-        ranked = self._fairly(looks, ranked)
+        ranked = told_apart(self._fairly(looks, ranked), self.substeps, device=self.device)
         paying = (r for r in ranked if r.gain > least_gain(r.fitted) and r.surely > LEAST_SURENESS)
         taken = chosen([r for r in paying if not r.unknown or self._substantial(r)])
         self.rounds.append(Round(tuple(tuple(at) for at in looks), self.current, tuple(ranked), taken))

@@ -121,7 +121,11 @@ def diagnose(
         confidence=confidence(search, effects, not interrupted, unexplained),
         effects=effects,
         scores={name: comparison.scores for name, comparison in judged.comparisons(bool(effects)).items()},
-        evidence=(*sentences(dataset, search, effects, gains, detected, interrupted), *found.more),
+        evidence=(
+            *sentences(dataset, search, effects, gains, detected, interrupted),
+            *augmented.sentences(),
+            *found.more,
+        ),
         stages=clock.stages,
         ranking=_ranking(search),
         traces=traces,

@@ -90,6 +90,12 @@ class FreeRun:
         tape = point.driving_tape
         return self._parallel.normals(tape, point.values, point.initial, self._rough, self.problem.weights)
 
+    def errors(self, z: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]] | None:
+        """Weighted errors (N_e, n_y) and sensitivities (N_e, n_y, d_e) of every experiment, sample by sample, see :class:`ParallelRun`."""
+        point = self.at(z)
+        tape = point.driving_tape
+        return self._parallel.errors(tape, point.values, point.initial, self._rough, self.problem.weights)
+
     @cached_property
     def _parallel(self) -> ParallelRun:
         estimated = np.flatnonzero(self.problem.free)

@@ -59,6 +59,13 @@ def uncertainty(run: FreeRun, z: np.ndarray, penalty: np.ndarray | None = None) 
     return Uncertainty(variance * root @ root.T, root @ meat @ root.T, undetermined)
 
 
+def of_information(information: np.ndarray) -> Uncertainty:
+    """Covariance of the estimates of greatest likelihood, from their ``information`` (d, d): the errors' colour is in it already."""
+    root, undetermined = _root_of_inverse(information)
+    covariance = root @ root.T
+    return Uncertainty(covariance, covariance, undetermined)
+
+
 def _without_leverage(stretches: np.ndarray, root: np.ndarray) -> np.ndarray:
     """Scores (C, r) of stretches in unknowns of unit covariance, as if a stretch had not drawn the estimate to itself.
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from greybox_torch.simulate.continuous import Chain, chain, continuous, propagated, sequential_starts
-from greybox_torch.simulate.stepper import Stepper
+from greybox_torch.simulate.stepper import Run, Stepper
 from greybox_torch.simulate.tape import Tape
 
 
@@ -63,6 +63,51 @@ class ParallelRun:
         Returns:
             None where the simulation is not finite.
         """
+        found = self._run(tape, p, x0, rough, weights)
+        if found is None:
+            return None
+        run, starts, slopes = found
+        assert run.normal is not None
+        with np.errstate(all="ignore"):
+            normal = _condensed(run.normal, slopes, len(self.estimated))
+        if not np.isfinite(normal).all():
+            return None
+        self._learn(float(normal[:, -1, -1].sum()), p, x0, run, starts, slopes)
+        return [normal[row[row >= 0]] for row in self.links.order]
+
+    def errors(
+        self, tape: Tape, p: np.ndarray, x0: np.ndarray, rough: np.ndarray, weights: np.ndarray
+    ) -> list[tuple[np.ndarray, np.ndarray]] | None:
+        """Of every experiment, sample by sample, the weighted errors e (N_e, n_y) and sensitivities J (N_e, n_y, n_d), see :meth:`normals`.
+
+        Both are zero where the measurement is missing.
+        """
+        found = self._run(tape, p, x0, rough, None)
+        if found is None:
+            return None
+        run, starts, slopes = found
+        assert run.dy is not None
+        n_p, steps = len(self.estimated), self.links.windows.steps
+        with np.errstate(all="ignore"):
+            dy = np.einsum("wkys,wds->wkyd", run.dy[:, :, :, n_p:], slopes)
+            dy[..., :n_p] += run.dy[..., :n_p]
+        result = []
+        for e, row in enumerate(self.links.order):
+            own, measured = row[row >= 0], tape.y[:, tape.span(e)].T
+            known = ~np.isnan(measured)
+            y = run.y[own, :steps].reshape(-1, measured.shape[1])[: len(known)]
+            slope = dy[own, :steps].reshape(-1, *dy.shape[2:])[: len(known)]
+            if not (np.isfinite(y).all() and np.isfinite(slope).all()):
+                return None
+            errors = np.where(known, measured - y, 0.0) * weights
+            result.append((errors, np.where(known[:, :, None], slope, 0.0) * weights[:, None]))
+        self._learn(sum(float((e**2).sum()) for e, _ in result), p, x0, run, starts, slopes)
+        return result
+
+    def _run(
+        self, tape: Tape, p: np.ndarray, x0: np.ndarray, rough: np.ndarray, weights: np.ndarray | None
+    ) -> tuple[Run, np.ndarray, np.ndarray] | None:
+        """A pass over the windows of the continuous trajectory, its window starts (W, n_x), and their derivatives (W, n_d, n_x)."""
         starts = self._starts(tape, p, x0, rough)
         if not np.isfinite(starts).all():
             return None
@@ -77,22 +122,23 @@ class ParallelRun:
             substeps=self.substeps,
             weights=weights,
         )
-        assert run.normal is not None and run.dx_end is not None
+        assert run.dx_end is not None
         n_p = len(self.estimated)
         own = np.zeros((count, n_p + len(self.states), run.dx_end.shape[2]))
         own[:, :n_p] = run.dx_end[:, :n_p]
         first = np.zeros((len(x0), n_p + len(self.states), n_x))
         first[:, n_p + np.arange(len(self.states)), self.states] = 1.0
-        transitions = run.dx_end[:, n_p:]
         with np.errstate(all="ignore"):
-            slopes = propagated(self.links, first, own, transitions)
-            normal = _condensed(run.normal, slopes, n_p)
-        if not np.isfinite(normal).all():
-            return None
-        cost = float(normal[:, -1, -1].sum())
+            slopes = propagated(self.links, first, own, run.dx_end[:, n_p:])
+        return run, starts, slopes
+
+    def _learn(
+        self, cost: float, p: np.ndarray, x0: np.ndarray, run: Run, starts: np.ndarray, slopes: np.ndarray
+    ) -> None:
+        """Keep the best trajectory so far, which the next one begins from."""
         if self._known is None or cost <= self._known.cost:
-            self._known = _Known(cost, p, x0, starts, transitions, slopes)
-        return [normal[row[row >= 0]] for row in self.links.order]
+            assert run.dx_end is not None
+            self._known = _Known(cost, p, x0, starts, run.dx_end[:, len(self.estimated) :], slopes)
 
     def _starts(self, tape: Tape, p: np.ndarray, x0: np.ndarray, rough: np.ndarray) -> np.ndarray:
         """Window starts (W, n_x) of the continuous trajectory; not finite where it overflows."""

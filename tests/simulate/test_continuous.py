@@ -78,6 +78,12 @@ def test_the_parallel_run_is_the_sequential_one(lengths: tuple[int, ...], hold: 
         for parts, whole in zip(normals, exact, strict=True):
             size = np.sqrt(np.outer(np.diag(whole), np.diag(whole)))
             np.testing.assert_allclose(parts.sum(axis=0) / size, whole / size, atol=1e-9)
+        found = parallel.errors(tape, p * factor, x0 * factor, rough, np.array([0.7]))
+        assert found is not None
+        for (errors, slopes), whole in zip(found, exact, strict=True):
+            both = np.concatenate([slopes, errors[..., None]], axis=2).reshape(len(errors), -1)
+            size = np.sqrt(np.outer(np.diag(whole), np.diag(whole)))
+            np.testing.assert_allclose(both.T @ both / size, whole / size, atol=1e-9)
     assert parallel.sequential <= 1  # at most the one from nothing
 
 
@@ -102,6 +108,7 @@ def test_a_run_that_overflows_is_none() -> None:
     rough = np.zeros((len(parallel.links.windows.start), 1))
     assert parallel.normals(tape, np.array([5.0]), np.array([[3.0]]), rough, np.ones(1)) is None
     assert parallel.sequential == 1
+    assert parallel.errors(tape, np.array([5.0]), np.array([[3.0]]), rough, np.ones(1)) is None
 
 
 def test_where_newton_fails_the_sequential_run_serves() -> None:
