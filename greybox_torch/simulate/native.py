@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -96,16 +98,17 @@ class NativeStepper:
         n_d = n_p + n_s
         n_t = self.equations.n_tangent
 
-        rows = np.broadcast_to(np.atleast_2d(p), (count, self.equations.n_parameters))
+        rows = np.broadcast_to(p, (count, self.equations.n_parameters))
         dx0 = np.zeros((count, n_d, n_t))
         if n_p and tangents0 is not None:
             dx0[:, :n_p] = tangents0[..., :n_t]
         if start_directions is not None:
             dx0[:, n_p:] = start_directions[..., :n_t]
         width = (n_d + _TILE) // _TILE * _TILE
+        signals = _signals(tape, real)
         packed = {
-            "u": _aligned(np.atleast_2d(tape.u) if len(tape.u) else np.zeros((1, len(tape.dt))), real),
-            "dt": _aligned(tape.dt, real),
+            "u": signals["u"],
+            "dt": signals["dt"],
             "start": _lanes(windows.start, lanes, np.int64),
             "last": _lanes(windows.last, lanes, np.int64),
             "column": np.array([*range(n_p), *([len(self.sensitive)] * n_s)], dtype=np.int64),
@@ -115,7 +118,7 @@ class NativeStepper:
             "y": _empty((groups, windows.steps, n_y, lanes), real),
             "dy": _empty((groups, windows.steps, n_y, n_d, lanes), real) if n_d and weights is None else None,
             "trace": _empty((groups, windows.steps, n_x, lanes), real) if keep_states else None,
-            "measured": None if weights is None else _aligned(tape.y, real),
+            "measured": None if weights is None else signals["y"],
             "weight": None if weights is None else _aligned(weights, real),
             "normal": None if weights is None else _zeros((groups, width, width, lanes), real),
         }
@@ -143,9 +146,18 @@ def _threads(groups: int, work: int) -> int:
     return max(1, min(groups, cores(), groups * work // WORTH_A_THREAD))
 
 
+def _signals(tape: Tape, real: type) -> dict[str, np.ndarray]:
+    """The tape's signals as the machine code reads them: copied once, as a tape is simulated many times."""
+    kept = tape.__dict__.setdefault("_signals", {})
+    if real not in kept:
+        u = tape.u if len(tape.u) else np.zeros((1, len(tape.dt)))
+        kept[real] = {"u": _aligned(u, real), "dt": _aligned(tape.dt, real), "y": _aligned(tape.y, real)}
+    return kept[real]
+
+
 def _empty(shape: tuple[int, ...], real: type) -> np.ndarray:
     """An uninitialised array whose data begin on a cache line, as vector loads need."""
-    size = int(np.prod(shape)) * np.dtype(real).itemsize
+    size = math.prod(shape) * np.dtype(real).itemsize
     raw = np.empty(size + 64, dtype=np.uint8)
     offset = -raw.ctypes.data % 64
     return raw[offset : offset + size].view(real).reshape(shape)
@@ -174,13 +186,19 @@ def _aligned(values: np.ndarray, real: type) -> np.ndarray:
 def _lanes(values: np.ndarray, lanes: int, real: type) -> np.ndarray:
     """(W, ...) -> (groups, ..., lanes); the last group is filled up with copies of the last window."""
     values = np.asarray(values)
-    groups = -(-len(values) // lanes)
-    index = np.minimum(np.arange(groups * lanes), len(values) - 1)
-    shaped = values[index].reshape(groups, lanes, *values.shape[1:])
-    return _aligned(np.moveaxis(shaped, 1, -1), real)
+    if len(values) % lanes:
+        values = values[_filled_up(len(values), lanes)]
+    shaped = values.reshape(len(values) // lanes, lanes, *values.shape[1:])
+    return _aligned(shaped.transpose(0, *range(2, shaped.ndim), 1), real)
+
+
+@lru_cache(maxsize=64)
+def _filled_up(count: int, lanes: int) -> np.ndarray:
+    """Indices of ``count`` windows, the last one repeated until the lanes of all groups are taken."""
+    return np.minimum(np.arange(-(-count // lanes) * lanes), count - 1)
 
 
 def _windows(packed: np.ndarray, count: int) -> np.ndarray:
     """(groups, ..., lanes) -> (W, ...), a view where there is one group."""
-    moved = np.moveaxis(packed, -1, 1)
+    moved = packed.transpose(0, -1, *range(1, packed.ndim - 1))
     return moved.reshape(-1, *moved.shape[2:])[:count] if len(packed) > 1 else moved[0, :count]
