@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -73,7 +73,7 @@ def finish(hypothesis: Hypothesis, substeps: int, *, device: str = "cpu") -> Fin
     ended = _descended(run, point, SETTINGS)
     point = point if ended is None else ended.point
     if hypothesis.effects and noise_over_windows(hypothesis):
-        weighed = coloured(hypothesis, substeps, [run.at(point), problems[0]], device=device)
+        weighed = coloured([replace(run, problem=run.at(point)), replace(runs[0])])
         if weighed is not None:
             run, fit = weighed
             return Final(run.at(fit.point), of_information(fit.information), weighed=True)

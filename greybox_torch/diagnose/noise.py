@@ -42,15 +42,14 @@ def far_above_noise(fitted: Hypothesis) -> bool:
     return times_noise(fitted.problem, fitted) > FAR_ABOVE_NOISE
 
 
-def reaches_noise(problem: Problem, fit: WindowFit) -> bool:
+def reaches_noise(problem: Problem, fit: WindowFit, times: float = NOISE_REACHED) -> bool:
     """Whether a fit leaves white noise alone, where the recordings tell how much of it there is."""
-    return floor_known(problem) and fit.mean_square < NOISE_REACHED**2 * noise_floor(problem)
+    return floor_known(problem) and fit.mean_square < times**2 * noise_floor(problem)
 
 
 def noise_over_windows(fitted: Hypothesis) -> bool:
     """Whether a fit leaves hardly more than noise over windows, the longest aside, where slow disturbances of the machine show."""
-    shorter, known = fitted.fits[:-1] or fitted.fits, floor_known(fitted.problem)
-    return known and max(f.mean_square for f in shorter) < ABOVE_NOISE**2 * noise_floor(fitted.problem)
+    return all(reaches_noise(fitted.problem, fit, ABOVE_NOISE) for fit in fitted.fits[:-1] or fitted.fits)
 
 
 def only_noise(problem: Problem, fitted: Hypothesis) -> bool:

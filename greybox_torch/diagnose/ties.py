@@ -13,7 +13,7 @@ import numpy as np
 
 from greybox_torch.diagnose.name import MOST_TIED, TIE, Ranked
 from greybox_torch.diagnose.sureness import white_samples
-from greybox_torch.diagnose.whole_records import coloured, from_windows
+from greybox_torch.diagnose.whole_records import coloured, from_windows, whole_runs
 
 
 def told_apart(ranked: Sequence[Ranked], substeps: int, *, device: str = "cpu") -> list[Ranked]:
@@ -41,5 +41,5 @@ def told_apart(ranked: Sequence[Ranked], substeps: int, *, device: str = "cpu") 
 
 
 def _cost(tied: Ranked, substeps: int, device: str) -> float:
-    found = coloured(tied.fitted, substeps, [from_windows(tied.fitted.fits[-1])], device=device)
+    found = coloured(whole_runs(tied.fitted, [from_windows(tied.fitted.fits[-1])], substeps, device=device))
     return np.inf if found is None else found[1].cost

@@ -43,11 +43,8 @@ def from_windows(fit: WindowFit) -> Problem:
     return replace(problem, initial=initial)
 
 
-def coloured(
-    hypothesis: Hypothesis, substeps: int, problems: Sequence[Problem], *, device: str = "cpu"
-) -> tuple[FreeRun, Coloured] | None:
-    """The likeliest fit with coloured errors, from each of ``problems``; None where none can be simulated."""
-    runs = whole_runs(hypothesis, problems, substeps, device=device)
+def coloured(runs: Sequence[FreeRun]) -> tuple[FreeRun, Coloured] | None:
+    """The likeliest fit with coloured errors, of one hypothesis begun in several ways; None where none can be simulated."""
     fits = side_by_side(partial(fit_coloured, run, run.start) for run in runs)
     found = [(run, fit) for run, fit in zip(runs, fits, strict=True) if fit is not None]
     return min(found, key=lambda pair: pair[1].cost, default=None)

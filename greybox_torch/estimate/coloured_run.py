@@ -56,16 +56,12 @@ class ColouredRun:
         found = self.run.errors(z)
         if found is None:
             return None
-        size, n_p = len(z), self.run.n_parameters
-        cost, gradient, hessian = 0.0, np.zeros(size), np.zeros((size, size))
-        for e, ((errors, slopes), sizes) in enumerate(zip(found, self.sizes, strict=True)):
-            white = (transformed(errors) / sizes).ravel()
-            columns = (transformed(slopes) / sizes[:, :, None]).reshape(len(white), -1)
-            index = self.run.columns(e, n_p, columns.shape[1] - n_p)
-            hessian[np.ix_(index, index)] += columns.T @ columns
-            gradient[index] -= columns.T @ white
-            cost += 0.5 * float(white @ white)
-        return Quadratic(cost, gradient, hessian, coloured_cost([errors for errors, _ in found]))
+        frequencies, matrices = [transformed(errors) for errors, _ in found], []
+        for own, (_, slopes), sizes in zip(frequencies, found, self.sizes, strict=True):
+            columns = np.concatenate([transformed(slopes), own[..., None]], axis=2) / sizes[..., None]
+            rows = columns.reshape(own.size, -1)
+            matrices.append(rows.T @ rows)
+        return self.run.assembled(matrices, _cost(frequencies))
 
 
 def fit_coloured(run: FreeRun, start: np.ndarray) -> Coloured | None:
@@ -94,7 +90,17 @@ def transformed(signals: np.ndarray) -> np.ndarray:
 
 def spectrum(errors: np.ndarray) -> np.ndarray:
     """Standard deviation (N, n_y) at every frequency of ``errors`` (N, n_y), smoothed over neighbours."""
-    power, count = transformed(errors) ** 2, len(errors)
+    return _smoothed(transformed(errors))
+
+
+def coloured_cost(errors: Sequence[np.ndarray]) -> float:
+    """Negative logarithm of the likelihood of ``errors`` [e] (N_e, n_y) with their own spectrum, but for a constant."""
+    return _cost([transformed(own) for own in errors])
+
+
+def _smoothed(frequencies: np.ndarray) -> np.ndarray:
+    """Root mean square (N, n_y) of the transform (N, n_y) over neighbouring frequencies."""
+    power, count = frequencies**2, len(frequencies)
     k = np.arange(count)
     low = np.maximum(np.floor(k / WIDTH).astype(int) - LEAST_WIDTH, 0)
     high = np.minimum(np.ceil(k * WIDTH).astype(int) + LEAST_WIDTH, count - 1)
@@ -103,10 +109,10 @@ def spectrum(errors: np.ndarray) -> np.ndarray:
     return np.sqrt(np.maximum(mean, 1e-12 * mean.max(axis=0) + 1e-300))
 
 
-def coloured_cost(errors: Sequence[np.ndarray]) -> float:
-    """Negative logarithm of the likelihood of ``errors`` [e] (N_e, n_y) with their own spectrum, but for a constant."""
+def _cost(frequencies: Sequence[np.ndarray]) -> float:
+    """:func:`coloured_cost` of transforms."""
     total = 0.0
-    for own in errors:
-        sizes = spectrum(own)
-        total += float(np.log(sizes).sum() + 0.5 * ((transformed(own) / sizes) ** 2).sum())
+    for own in frequencies:
+        sizes = _smoothed(own)
+        total += float(np.log(sizes).sum() + 0.5 * ((own / sizes) ** 2).sum())
     return total

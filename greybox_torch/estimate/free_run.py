@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from greybox_torch.estimate.levenberg_marquardt import Quadratic
+from greybox_torch.estimate.levenberg_marquardt import Extra, Quadratic
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.rough_starts import rough_starts
 from greybox_torch.simulate.parallel_run import ParallelRun
@@ -74,15 +75,18 @@ class FreeRun:
         normals = self.normals(z)
         if normals is None:
             return None
-        size, n_p = len(z), self.n_parameters
+        return self.assembled([stretches.sum(axis=0) for stretches in normals], None)
+
+    def assembled(self, matrices: Sequence[np.ndarray], extra: Extra) -> Quadratic[Extra]:
+        """Cost, gradient and Hessian in all unknowns from [J e]ᵀ[J e] (d_e + 1, d_e + 1) of every experiment."""
+        size, n_p = len(self.start), self.n_parameters
         cost, gradient, hessian = 0.0, np.zeros(size), np.zeros((size, size))
-        for e, stretches in enumerate(normals):
-            matrix = stretches.sum(axis=0)
+        for e, matrix in enumerate(matrices):
             index = self.columns(e, n_p, matrix.shape[0] - 1 - n_p)
             hessian[np.ix_(index, index)] += matrix[:-1, :-1]
             gradient[index] -= matrix[:-1, -1]
             cost += 0.5 * float(matrix[-1, -1])
-        return Quadratic(cost, gradient, hessian, None)
+        return Quadratic(cost, gradient, hessian, extra)
 
     def normals(self, z: np.ndarray) -> list[np.ndarray] | None:
         """Gauss-Newton matrices (C_e, d_e + 1, d_e + 1) of every experiment, stretch by stretch, see :class:`ParallelRun`."""
