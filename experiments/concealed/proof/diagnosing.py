@@ -77,14 +77,16 @@ def _diagnose(case: Path, out: Path, time_limit: float) -> dict[str, Any]:
         return {"sha256": None, "said": failure or "no verdict.json was written", "seconds": seconds}
     content = verdict.read_bytes()
     attempt.rename(out)
-    return {"sha256": sha256(content), "said": _sentence(json.loads(content)), "seconds": seconds}
+    return {"sha256": sha256(content), "said": sentence(json.loads(content)), "seconds": seconds}
 
 
-def _sentence(verdict: dict[str, Any]) -> str:
-    if not verdict["effects"] and verdict.get("complete") is False:
-        return "no answer before the time limit"
-    found = [f"{e['mechanism']} at {e['port']} ({e['probability']:.2f})" for e in verdict["effects"]]
-    return ", ".join(found) or "nothing missing"
+def sentence(verdict: dict[str, Any]) -> str:
+    """What a verdict says, in a few words."""
+    if verdict["effects"]:
+        return ", ".join(f"{e['mechanism']} at {e['port']} ({e['probability']:.2f})" for e in verdict["effects"])
+    if verdict["mismatch"]:
+        return "something missing, without a name"
+    return "no answer before the time limit" if verdict.get("complete") is False else "nothing missing"
 
 
 def _last_line(text: str) -> str:

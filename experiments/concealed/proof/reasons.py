@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from experiments.concealed.proof.diagnosing import sentence
 from experiments.concealed.proof.scores import Row
 from experiments.concealed.visibility import MODERATE
 
 NOT_SHOWN = 1.5
 """Times the floor below which the refitted model's error in the estimation experiment shows nothing."""
+
+
+def said(row: Row) -> str:
+    """What the tool said of a case, or why it said nothing."""
+    return row.entry["said"] if row.verdict is None else sentence(row.verdict)
 
 
 def reasons(row: Row) -> list[str]:
@@ -42,7 +48,7 @@ def _answers(row: Row) -> list[str]:
     assert scored is not None
     found = []
     if not scored.findings:
-        found.append("nothing was found")
+        found.append("found missing, but not what" if row.verdict and row.verdict["mismatch"] else "nothing was found")
     for finding in scored.findings:
         said = f"{finding.mechanism} at {finding.port}"
         if finding.spurious:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from experiments.concealed.proof.protocol import Proof
-from experiments.concealed.proof.reasons import reasons
+from experiments.concealed.proof.reasons import reasons, said
 from experiments.concealed.proof.scores import Promise, Row
 
 
@@ -26,7 +26,7 @@ def results(proof: Proof, found: Sequence[Row], kept: Sequence[Promise]) -> dict
                 "effects": list(r.effects),
                 "strength": r.strength,
                 "visibility": r.key["visibility"],
-                "said": r.entry["said"],
+                "said": said(r),
                 "detected": r.detected,
                 "located": r.located,
                 "named": r.named,

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 from experiments.concealed.proof.plan import EXCITATION, NOISE
 from experiments.concealed.proof.rates import Rate
-from experiments.concealed.proof.reasons import reasons
+from experiments.concealed.proof.reasons import reasons, said
 from experiments.concealed.proof.scores import Promise, Row
 
 
@@ -68,7 +68,7 @@ def sweeps(found: Sequence[Row]) -> list[str]:
                     _concealed(r),
                     r.key[varied],
                     f"{r.key['visibility']:.1f}",
-                    r.entry["said"],
+                    said(r),
                     _yes(r.right),
                 )
                 lines.append("| " + " | ".join(map(str, cells)) + " |")
@@ -82,7 +82,7 @@ def misses(found: Sequence[Row]) -> str:
         return "Nothing did."
     lines = ["| case | machine | concealed | visibility | said | why |", "|---|---|---|---|---|---|"]
     for r in missed:
-        cells = (r.name, r.key["machine"], _concealed(r), _visibility(r), r.entry["said"], "; ".join(reasons(r)))
+        cells = (r.name, r.key["machine"], _concealed(r), _visibility(r), said(r), "; ".join(reasons(r)))
         lines.append("| " + " | ".join(map(str, cells)) + " |")
     return "\n".join(lines)
 
@@ -100,7 +100,7 @@ def case_table(found: Sequence[Row]) -> str:
             _concealed(r),
             r.strength,
             _visibility(r),
-            r.entry["said"],
+            said(r),
             _yes(r.right),
             closed,
             r.entry["seconds"],

@@ -82,7 +82,7 @@ def test_the_tool_is_called_as_a_user_would(drawn, tmp_path: Path):
     entry = diagnosing._diagnose(case, tmp_path / "out", 5.0)
     verdict = tmp_path / "out" / "verdict.json"
     assert entry["sha256"] == sha256(verdict.read_bytes())
-    assert entry["said"] == diagnosing._sentence(json.loads(verdict.read_text()))
+    assert entry["said"] == diagnosing.sentence(json.loads(verdict.read_text()))
     assert digest(case) == before
     assert [f.name for f in tmp_path.iterdir()] == ["out"]  # nothing is left of the attempt's own folder
 

@@ -13,7 +13,7 @@ from scipy.stats import binom
 
 from experiments.concealed.proof import __main__ as command
 from experiments.concealed.proof.confusion import kind, matrix
-from experiments.concealed.proof.diagnosing import _sentence
+from experiments.concealed.proof.diagnosing import sentence
 from experiments.concealed.proof.errors import ProofError
 from experiments.concealed.proof.figures import draw_all
 from experiments.concealed.proof.plan import NOISES, by_mechanism, mechanism, plans
@@ -92,8 +92,16 @@ def test_silence_by_the_time_limit_is_told():
     row = rows({"c": ANSWERS["c000"]}, {"c": said}, {"c": ENTRIES["c000"]})
     assert row[0].cut_short
     assert promises(row)[0].measured.endswith("1 silent only because the time limit stopped the search")
-    assert _sentence(said) == "no answer before the time limit"
-    assert _sentence(verdict("arm")) == "nothing missing"
+    assert sentence(said) == "no answer before the time limit"
+    assert sentence(verdict("arm")) == "nothing missing"
+
+
+def test_something_without_a_name_is_not_nothing():
+    said = verdict("arm") | {"mismatch": True}
+    row = rows({"c": ANSWERS["c002"]}, {"c": said}, {"c": ENTRIES["c002"]})[0]
+    assert row.detected and not row.right
+    assert sentence(said) == "something missing, without a name"
+    assert "found missing, but not what" in reasons(row)
 
 
 def test_one_false_alarm_breaks_the_promise():
