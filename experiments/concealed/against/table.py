@@ -115,9 +115,8 @@ def table(rows: Sequence[Row]) -> str:
     for method in METHODS:
         own = [r for r in silent if r.method == method and r.scored is not None]
         if own:
-            alarms = sum(bool(r.scored and r.scored.findings) for r in own) if own[0].can_name else "cannot name"
-            quiet = f"{len(own) - alarms}/{len(own)}" if isinstance(alarms, int) else "cannot name"
-            cells = ("without effect", METHODS[method], "", str(alarms), quiet, "", "", _seconds(own))
+            alarms, quiet = _alarms(own) if own[0].can_name else ("cannot name",) * 2
+            cells = ("without effect", METHODS[method], "", alarms, quiet, "", "", _seconds(own))
             lines.append(f"| {' | '.join(cells)} |")
     return "\n".join([*lines, "", *_case_by_case(rows), *_failures(rows)]) + "\n"
 
@@ -130,8 +129,14 @@ def _totals(rows: Sequence[Row]) -> tuple[str, ...]:
     words: tuple[str, ...] = ("cannot name",) * 3
     if rows[0].can_name:
         named, wrong = sum(s.named for s in scored), sum(len(s.findings) - s.named for s in scored)
-        words = (f"{named}/{effects}", str(wrong), f"{sum(not s.findings for s in scored)}/{cases}")
+        words = (f"{named}/{effects}", str(wrong), f"{sum(not s.detected for s in scored)}/{cases}")
     return (*words, f"{statistics.median(closed):.2f}", f"{worse}/{cases}", _seconds(rows))
+
+
+def _alarms(rows: Sequence[Row]) -> tuple[str, str]:
+    """Of cases without effect: how many were given a name, and how many were said to lack nothing."""
+    scored = [r.scored for r in rows if r.scored is not None]
+    return str(sum(bool(s.findings) for s in scored)), f"{sum(s.detected for s in scored)}/{len(scored)}"
 
 
 def _seconds(rows: Sequence[Row]) -> str:
@@ -158,7 +163,9 @@ def _cell(row: Row) -> str:
     if row.scored is None:
         return "failed"
     names = [f"**{f.mechanism}** at {f.port}" if f.right else f"{f.mechanism} at {f.port}" for f in row.scored.findings]
-    words = (", ".join(names) or "nothing missing") if row.can_name else ""
+    missing = row.scored.detected == bool(row.concealed)
+    unnamed = "something missing, without a name" if missing else "nothing missing"
+    words = (", ".join(names) or unnamed) if row.can_name else ""
     closed = "" if row.scored.closed is None else f"{row.scored.closed:.2f}"
     return "; ".join(part for part in (words, closed) if part)
 

@@ -61,6 +61,14 @@ def test_counts(out: Path) -> None:
     assert "- b, neural residual: it overflows" in text
 
 
+def test_something_without_a_name_is_not_nothing(out: Path) -> None:
+    file = out / "out" / "a" / "sindy.json"
+    file.write_text(json.dumps({**said("sindy"), "mismatch": True}))
+    text = table(compared(out / "keys", out / "out", None))
+    assert "| one effect | sparse regression (pysindy), as regressed | 0/1 | 0 | 0/1 | 0.50 | 0/1 | 2 |" in text
+    assert "| a | drag | something missing, without a name; 0.50 |" in text
+
+
 def test_only_cases_on_which_all_methods_have_a_result_are_compared(out: Path) -> None:
     (out / "out" / "a" / "network.json").unlink()
     assert {row.case for row in compared(out / "keys", out / "out", None)} == {"b"}
