@@ -163,8 +163,8 @@ def _cell(row: Row) -> str:
     if row.scored is None:
         return "failed"
     names = [f"**{f.mechanism}** at {f.port}" if f.right else f"{f.mechanism} at {f.port}" for f in row.scored.findings]
-    missing = row.scored.detected == bool(row.concealed)
-    unnamed = "something missing, without a name" if missing else "nothing missing"
+    silent = row.scored.detected != bool(row.concealed)  # right where nothing is concealed, wrong where something is
+    unnamed = "nothing missing" if silent else "something missing, without a name"
     words = (", ".join(names) or unnamed) if row.can_name else ""
     closed = "" if row.scored.closed is None else f"{row.scored.closed:.2f}"
     return "; ".join(part for part in (words, closed) if part)

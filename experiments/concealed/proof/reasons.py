@@ -45,18 +45,18 @@ def _strength(row: Row) -> list[str]:
 
 def _answers(row: Row) -> list[str]:
     scored = row.scored
-    assert scored is not None
+    assert scored is not None and row.verdict is not None
     found = []
     if not scored.findings:
-        found.append("found missing, but not what" if row.verdict and row.verdict["mismatch"] else "nothing was found")
+        found.append("found missing, but not what" if row.verdict["mismatch"] else "nothing was found")
     for finding in scored.findings:
-        said = f"{finding.mechanism} at {finding.port}"
+        answer = f"{finding.mechanism} at {finding.port}"
         if finding.spurious:
-            found.append(f"{said} is spurious")
+            found.append(f"{answer} is spurious")
         elif not finding.right:
             place = "the place is right" if finding.located else "the place is wrong too"
             near = [finding.port, finding.mechanism] in [pair for pairs in row.key["near"] for pair in pairs]
-            found.append(f"{said} is {'a near miss' if near else 'the wrong name'}; {place}")
+            found.append(f"{answer} is {'a near miss' if near else 'the wrong name'}; {place}")
     missing = len(row.effects) - sum(f.right or f.located for f in scored.findings if not f.spurious)
     if scored.findings and missing > 0:
         found.append(f"{missing} of {len(row.effects)} effects without a finding")
