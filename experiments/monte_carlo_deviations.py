@@ -20,7 +20,7 @@ from greybox_torch.data import load_dataset
 from greybox_torch.estimate.fit import fit
 from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.problem import Problem, make_problem
-from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulation.stepper import make_stepper
 from greybox_torch.systems import load_model
 
 ALLOWED = 0.2
@@ -41,8 +41,8 @@ def main() -> int:
     rng = np.random.default_rng(arguments.seed)
     estimates, reported = [], []
     for repeat in range(arguments.repeats):
-        noisy = np.where(np.isnan(problem.tape.y), np.nan, exact + rng.normal(0.0, sigma, exact.shape))
-        again = fit(replace(optimum, tape=replace(optimum.tape, y=noisy)), stepper=stepper)
+        noisy = np.where(np.isnan(problem.records.y), np.nan, exact + rng.normal(0.0, sigma, exact.shape))
+        again = fit(replace(optimum, records=replace(optimum.records, y=noisy)), stepper=stepper)
         assert again.uncertainty is not None
         estimates.append(_vector(again.problem))
         reported.append(again.uncertainty.deviations())
@@ -78,7 +78,7 @@ def _vector(problem: Problem) -> np.ndarray:
 
 def _names(problem: Problem) -> list[str]:
     states = [problem.model.states[i].name for i in problem.free_states]
-    starts = [f"{state} at the start" for _ in problem.tape.first for state in states]
+    starts = [f"{state} at the start" for _ in problem.records.first for state in states]
     return [*problem.free_names, *starts]
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from greybox_torch.report.residuals import plot_residuals
     from greybox_torch.restored import SavedModel, load_saved_model
     from greybox_torch.systems import load_model
-    from greybox_torch.train import TrainingSettings, explain, physics_of, train_hybrid
+    from greybox_torch.train import TrainingSettings, explain, fit_physics, train_hybrid
 
 __version__ = "0.1.0"
 
@@ -42,11 +42,11 @@ __all__ = [
     "TrainingSettings",
     "evaluate",
     "explain",
+    "fit_physics",
     "load_checkpoint",
     "load_dataset",
     "load_model",
     "load_saved_model",
-    "physics_of",
     "plot_comparison",
     "plot_residuals",
     "train_hybrid",
@@ -74,7 +74,7 @@ _HOME_OF = {
     "load_dataset": "greybox_torch.data",
     "load_model": "greybox_torch.systems",
     "load_saved_model": "greybox_torch.restored",
-    "physics_of": "greybox_torch.train",
+    "fit_physics": "greybox_torch.train",
     "plot_comparison": "greybox_torch.report.comparison",
     "plot_residuals": "greybox_torch.report.residuals",
     "train_hybrid": "greybox_torch.train",

@@ -22,8 +22,8 @@ from greybox_torch.estimate.residuals import Residuals, residuals_of
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.rates import rates_at
 from greybox_torch.restored import restored
-from greybox_torch.simulate.stepper import make_stepper
-from greybox_torch.simulate.substeps import choose_substeps
+from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.substeps import choose_substeps
 from greybox_torch.systems import load_model
 
 
@@ -55,7 +55,7 @@ class Evaluation:
     @property
     def simulated(self) -> dict[str, np.ndarray]:
         """The simulated outputs (N, n_y), by experiment."""
-        return dict(zip(self.problem.tape.names, self.comparison.simulated, strict=True))
+        return dict(zip(self.problem.records.names, self.comparison.simulated, strict=True))
 
     @cached_property
     def residuals(self) -> tuple[Residuals, ...]:
@@ -112,7 +112,7 @@ def evaluated(
         found = restored(data, checkpoint, model, model_name)
         data, model_name, problem = found.data, found.model_name, found.problem
     stepper = make_stepper(problem.model, (), device=device, precision=precision)
-    substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
+    substeps = choose_substeps(problem.driving_records, stepper, problem.values, problem.initial) or 1
     comparison = compare(problem, data.recordings, stepper, substeps=substeps)
     found, overflow = first_overflow(problem, comparison.simulated), None
     if found is not None:

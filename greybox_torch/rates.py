@@ -11,7 +11,7 @@ import torch
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import GreyBoxModel, Signals
-from greybox_torch.simulate.tape import Tape
+from greybox_torch.simulation.records import Records
 
 
 def rates_at(
@@ -43,19 +43,19 @@ def rates_at(
     except ValueError as error:
         raise UserError(f"rates: {error}; expected numbers, or arrays of one length") from None
     numbers = np.array([values[p.name] for p in model.declared_parameters])
-    tape = model.prepared(_tape(rows[len(names) :], len(model.outputs)), numbers)
-    begun = model.begun(rows[: len(names)].T.copy(), tape, tape.first, numbers)
+    records = model.prepared(_records(rows[len(names) :], len(model.outputs)), numbers)
+    begun = model.begun(rows[: len(names)].T.copy(), records, records.first, numbers)
     p = Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in values.items()})
     with torch.no_grad():
-        found = model.rates(torch.as_tensor(begun.T.copy()), torch.as_tensor(np.array(tape.u)), p)
+        found = model.rates(torch.as_tensor(begun.T.copy()), torch.as_tensor(np.array(records.u)), p)
     return dict(zip(names, found.numpy(), strict=True))
 
 
-def _tape(u: np.ndarray, outputs: int) -> Tape:
+def _records(u: np.ndarray, outputs: int) -> Records:
     """Every point an experiment of one sample, so that nothing is taken from its neighbour."""
     count = u.shape[1]
     each = np.arange(count)
-    return Tape(u, np.full((outputs, count), np.nan), np.ones(count), each, each, tuple(map(str, each)), "zoh")
+    return Records(u, np.full((outputs, count), np.nan), np.ones(count), each, each, tuple(map(str, each)), "zoh")
 
 
 def _check_names(model: GreyBoxModel, kind: str, names: list[str], given: Mapping[str, Any]) -> None:

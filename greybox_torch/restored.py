@@ -12,9 +12,9 @@ import numpy as np
 
 from greybox_torch.checkpoint import Checkpoint, check_same_parameters, check_same_units, load_checkpoint
 from greybox_torch.data import DataSet
-from greybox_torch.diagnose.restore import restored_model
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
+from greybox_torch.mechanisms.stored import restored_model
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.rates import rates_at
 from greybox_torch.systems import load_model

@@ -10,10 +10,10 @@ import pytest
 
 from greybox_torch import Evaluation, evaluate, load_dataset, load_model
 from greybox_torch.checkpoint import Checkpoint, save_checkpoint
-from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Mechanism, Range, Surroundings
+from greybox_torch.mechanisms.stored import attachment_json
 
 Make = Callable[..., Path]
 UNITS = {"J": "kg m^2", "k": "N m/V", "b": "N m s/rad"}

@@ -10,13 +10,13 @@ import pytest
 
 from greybox_torch import SavedModel, load_saved_model
 from greybox_torch.checkpoint import Checkpoint, save_checkpoint
-from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import AdditionalMode
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.mechanism import Mechanism, Range, Surroundings
+from greybox_torch.mechanisms.stored import attachment_json
 
 UNITS = {"J": "kg m^2", "k": "N m/V", "b": "N m s/rad"}
 TRUE = {"J": 0.02, "k": 0.1, "b": 0.05}

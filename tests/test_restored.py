@@ -19,12 +19,12 @@ from greybox_torch.checkpoint import Checkpoint, save_checkpoint
 from greybox_torch.cli import app
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.demo import DATASET
-from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.mechanisms.actuator import ActuatorDeadzone
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
+from greybox_torch.mechanisms.stored import attachment_json
 from greybox_torch.model import Signals
 from greybox_torch.restored import restored
 from greybox_torch.systems import load_model

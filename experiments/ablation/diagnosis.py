@@ -11,9 +11,9 @@ from typing import Any
 
 from greybox_torch.checkpoint import Checkpoint, load_checkpoint
 from greybox_torch.data import DataSet
-from greybox_torch.diagnose.restore import restored_model
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.stored import restored_model
 from greybox_torch.model import GreyBoxModel
 
 

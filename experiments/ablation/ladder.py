@@ -19,7 +19,7 @@ from greybox_torch.estimate.metrics import fit_percent, root_mean_square
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.train import Physics, Trained, TrainingSettings, physics_of
+from greybox_torch.train import Physics, Trained, TrainingSettings, fit_physics
 
 MODELS = {
     "published": "physics with the card's values",
@@ -57,7 +57,7 @@ class Ladder:
     @cached_property
     def _physics(self) -> tuple[Physics, dict[str, Any]]:
         self.told("physics re-estimated")
-        return timed(lambda: physics_of(self.data, self.model, settings=self.settings))
+        return timed(lambda: fit_physics(self.data, self.model, settings=self.settings))
 
     @cached_property
     def _diagnosed(self) -> Diagnosed:
@@ -74,7 +74,7 @@ class Ladder:
             return None
         self.told("named mechanisms re-estimated")
         values = self._diagnosed.values(model)
-        found, took = timed(partial(physics_of, self.data, model, values=values, settings=self.settings))
+        found, took = timed(partial(fit_physics, self.data, model, values=values, settings=self.settings))
         return model, found, took
 
     @property

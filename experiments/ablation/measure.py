@@ -13,7 +13,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Score, compare
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulation.stepper import make_stepper
 
 Found = TypeVar("Found")
 

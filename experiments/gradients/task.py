@@ -13,8 +13,8 @@ from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulate.stepper import Stepper, make_stepper
-from greybox_torch.simulate.tape import Tape
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.stepper import Stepper, make_stepper
 from greybox_torch.systems import RobotArm
 from greybox_torch.train.gradients import Batch, SequenceGradient
 from greybox_torch.train.gradients.adjoint import AdjointGradient
@@ -33,12 +33,12 @@ def make_task(windows: int, length: int, units: int) -> tuple[Problem, Batch]:
     drawn = network_task(windows, length)
     arm = RobotArm()
     model = AugmentedModel(arm, [attach(arm, "motor", ResidualNet(units=units))], {"motor": AROUND})
-    problem = problem_for(_plain(arm, drawn.tape, drawn.p), model, {})
+    problem = problem_for(_plain(arm, drawn.records, drawn.p), model, {})
     own = np.array([name.startswith("motor.") for name in problem.names])
     rng = np.random.default_rng(0)
     values = np.where(own & problem.free, problem.values + 0.05 * rng.normal(size=len(own)), problem.values)
     problem = replace(problem, free=own & problem.free).with_values(values)
-    return problem, Batch(drawn.tape, drawn.windows, drawn.x0)
+    return problem, Batch(drawn.records, drawn.windows, drawn.x0)
 
 
 def make_way(name: str, problem: Problem) -> SequenceGradient:
@@ -59,17 +59,17 @@ def true_slope(problem: Problem, batch: Batch) -> np.ndarray:
     return TangentsGradient(problem, compiled(problem), substeps=16)(problem.values, batch).slope
 
 
-def _plain(model: GreyBoxModel, tape: Tape, values: np.ndarray) -> Problem:
+def _plain(model: GreyBoxModel, records: Records, values: np.ndarray) -> Problem:
     count = len(model.states)
     return Problem(
         model=model,
-        tape=tape,
+        records=records,
         names=tuple(p.name for p in model.declared_parameters),
         values=values,
         lower=np.array([p.bounds[0] for p in model.declared_parameters]),
         upper=np.array([p.bounds[1] for p in model.declared_parameters]),
         free=np.ones(len(values), dtype=bool),
-        initial=np.zeros((len(tape.first), count)),
+        initial=np.zeros((len(records.first), count)),
         initial_free=np.ones(count, dtype=bool),
         weights=np.ones(1),
         carried=np.zeros(count, dtype=bool),

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from experiments.speed.records import SAMPLES, arm_values, simulated_tape
-from greybox_torch.simulate.stepper import Windows, make_stepper, whole_records
-from greybox_torch.simulate.tape import Tape
+from experiments.speed.records import SAMPLES, arm_values, simulated_records
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.stepper import Windows, make_stepper, whole_records
 from greybox_torch.systems import RobotArm
 
 WIDTH = 16
@@ -22,14 +22,14 @@ SPEED_SCALE = 20.0
 
 @dataclass(frozen=True)
 class NetworkTask:
-    """W windows of K samples of a tape with one record: start states ``x0`` (W, 5), arm parameters ``p`` (13,), and the weights
+    """W windows of K samples of records with one record: start states ``x0`` (W, 5), arm parameters ``p`` (13,), and the weights
     ``hidden`` (16,), ``hidden_bias`` (16,), ``output`` (16,), ``output_bias`` (1,).
 
     The loss is the mean over windows and samples of (simulated − measured motor speed)², in (rad/s)². Its gradient is given in the order
     hidden, hidden_bias, output, output_bias: (49,).
     """
 
-    tape: Tape
+    records: Records
     windows: Windows
     x0: np.ndarray
     p: np.ndarray
@@ -40,21 +40,21 @@ class NetworkTask:
 
     @property
     def index(self) -> np.ndarray:
-        """Samples (W, K) of the tape that the windows cover."""
+        """Samples (W, K) of the records that the windows cover."""
         return self.windows.start[:, None] + np.arange(self.windows.steps)
 
 
 def network_task(windows: int = 64, length: int = 200, *, seed: int = 3) -> NetworkTask:
     """Windows spread evenly over a simulated record, beginning at its true states, and small random weights."""
-    tape = simulated_tape(1, max(SAMPLES, windows * length))
+    records = simulated_records(1, max(SAMPLES, windows * length))
     whole = make_stepper(RobotArm(), ()).run(
-        tape, whole_records(tape), arm_values(), np.array([[0.0, 0.0, -19.0, -22.3, -23.3]]), keep_states=True
+        records, whole_records(records), arm_values(), np.array([[0.0, 0.0, -19.0, -22.3, -23.3]]), keep_states=True
     )
     assert whole.states is not None
-    start = np.linspace(0, tape.u.shape[1] - length, windows).astype(np.int64)
+    start = np.linspace(0, records.u.shape[1] - length, windows).astype(np.int64)
     rng = np.random.default_rng(seed)
     return NetworkTask(
-        tape=tape,
+        records=records,
         windows=Windows(start, start + length - 1, length),
         x0=np.array(whole.states[0, start]),
         p=arm_values(),

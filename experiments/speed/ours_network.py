@@ -10,7 +10,7 @@ import torch
 
 from experiments.speed.network import SPEED_SCALE, WIDTH, NetworkTask
 from greybox_torch.model import Parameter, Signals
-from greybox_torch.simulate.stepper import Stepper, make_stepper
+from greybox_torch.simulation.stepper import Stepper, make_stepper
 from greybox_torch.systems import RobotArm
 
 WEIGHTS = (*(f"{kind}_{k}" for kind in ("hidden", "bias", "output") for k in range(WIDTH)), "output_bias")
@@ -39,7 +39,7 @@ def ours_network_gradient(task: NetworkTask) -> tuple[float, np.ndarray]:
     """Loss and gradient (49,) of :class:`NetworkTask`. What is compiled once is kept between calls."""
     weights = np.concatenate([task.hidden, task.hidden_bias, task.output, task.output_bias])
     run = _stepper().run(
-        task.tape, task.windows, np.concatenate([task.p, weights]), task.x0, tangents=True, weights=np.ones(1)
+        task.records, task.windows, np.concatenate([task.p, weights]), task.x0, tangents=True, weights=np.ones(1)
     )
     assert run.normal is not None
     total, count = run.normal.sum(axis=0), len(task.x0) * task.windows.steps

@@ -9,8 +9,8 @@ import numpy as np
 
 from greybox_torch.data import load_dataset
 from greybox_torch.estimate.problem import Problem, make_problem
-from greybox_torch.simulate.stepper import make_stepper, whole_records
-from greybox_torch.simulate.tape import Tape
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.stepper import make_stepper, whole_records
 from greybox_torch.systems import RobotArm, load_model
 
 SAMPLE_TIME = 0.0005
@@ -57,11 +57,11 @@ def torque(samples: int, seed: int) -> np.ndarray:
     return result
 
 
-def simulated_tape(experiments: int, samples: int, *, noise: float = 1.0, seed: int = 0) -> Tape:
+def simulated_records(experiments: int, samples: int, *, noise: float = 1.0, seed: int = 0) -> Records:
     """``experiments`` records of ``samples`` samples end to end; the measured speed is the simulated one with ``noise`` in rad/s."""
     u = np.concatenate([torque(samples, seed + e) for e in range(experiments)])[None]
     first = samples * np.arange(experiments)
-    silent = Tape(
+    silent = Records(
         u=u,
         y=np.zeros_like(u),
         dt=np.full(u.shape[1], SAMPLE_TIME),
@@ -82,11 +82,11 @@ def starts(experiments: int) -> np.ndarray:
 
 def simulated_problem(experiments: int, samples: int) -> Problem:
     """Simulated records with the arm's 12 parameters free, at their true values."""
-    model, tape = RobotArm(), simulated_tape(experiments, samples)
+    model, records = RobotArm(), simulated_records(experiments, samples)
     bounds = [p.bounds for p in model.declared_parameters]
     return Problem(
         model=model,
-        tape=tape,
+        records=records,
         names=tuple(p.name for p in model.declared_parameters),
         values=arm_values(),
         lower=np.array([b[0] for b in bounds]),
@@ -145,8 +145,8 @@ def published(problem: Problem) -> Published:
     stiffness = problem.values[problem.names.index("k_g1")]  # the size of k_g3, which begins at zero
     unbounded = np.full(len(free_states), np.inf)
     return Published(
-        u=problem.tape.u[0],
-        y=problem.tape.y[0],
+        u=problem.records.u[0],
+        y=problem.records.y[0],
         p=problem.values,
         x0=problem.initial[0],
         free=free,

@@ -12,7 +12,7 @@ from greybox_torch.commands.options import Options
 from greybox_torch.commands.progress import stages
 from greybox_torch.commands.task import Task, check_estimation, load_task
 from greybox_torch.commands.verdict_summary import print_verdict
-from greybox_torch.diagnose.run import Diagnosis, diagnose
+from greybox_torch.diagnosis.pipeline import Diagnosis, diagnose
 from greybox_torch.files import json_text, write_all
 from greybox_torch.report.about import About
 from greybox_torch.report.page import render_page

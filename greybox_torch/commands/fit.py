@@ -20,14 +20,14 @@ from greybox_torch.commands.task import Task, check_estimation, load_task
 from greybox_torch.estimate.comparison import compare
 from greybox_torch.estimate.fit import FitResult, fit
 from greybox_torch.estimate.free_run import FreeRun
-from greybox_torch.estimate.identifiability import Weakness, identifiability
+from greybox_torch.estimate.identifiability import Unidentifiable, identifiability
 from greybox_torch.estimate.levenberg_marquardt import DEFAULT
 from greybox_torch.estimate.precision import settings_for
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.profile import SETTINGS, Profile, check_profiled, profile
 from greybox_torch.files import json_text, replacing, write_text
-from greybox_torch.simulate.stepper import Stepper, make_stepper
-from greybox_torch.simulate.substeps import choose_substeps
+from greybox_torch.simulation.stepper import Stepper, make_stepper
+from greybox_torch.simulation.substeps import choose_substeps
 
 
 def run(dataset: Path, options: Options, profiled: Sequence[str] = (), starts: int | None = None) -> None:
@@ -78,9 +78,9 @@ def run(dataset: Path, options: Options, profiled: Sequence[str] = (), starts: i
     options.print_json(result)
 
 
-def _at_start(task: Task, problem: Problem, stepper: Stepper) -> tuple[Weakness, ...]:
+def _at_start(task: Task, problem: Problem, stepper: Stepper) -> tuple[Unidentifiable, ...]:
     """What the data do not determine, as far as the start values tell."""
-    substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
+    substeps = choose_substeps(problem.driving_records, stepper, problem.values, problem.initial) or 1
     start = FreeRun(problem, stepper, substeps)
     return identifiability(start, start.start, precision=task.precision)
 
@@ -115,7 +115,7 @@ def _scores(task: Task, found: FitResult, stepper: Stepper) -> Scores:
     """
     recordings = task.data.recordings
     start = task.problem()
-    substeps = choose_substeps(start.driving_tape, stepper, start.values, start.initial) or 1
+    substeps = choose_substeps(start.driving_records, stepper, start.values, start.initial) or 1
     before = compare(start, recordings, stepper, substeps=substeps)
     refit = start.with_values(found.problem.values)
     everywhere = compare(refit, recordings, stepper, substeps=found.substeps)

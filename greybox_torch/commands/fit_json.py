@@ -8,7 +8,7 @@ from typing import Any
 from greybox_torch.commands.free_runs import scores_json
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.estimate.fit import FitResult
-from greybox_torch.estimate.identifiability import Weakness
+from greybox_torch.estimate.identifiability import Unidentifiable
 from greybox_torch.estimate.profile import LEVEL, THRESHOLD, Profile
 from greybox_torch.estimate.termination import Termination
 
@@ -23,7 +23,7 @@ def result_json(found: FitResult, scores: Scores, seconds: float) -> dict[str, A
         "schema": "greybox-fit/1",
         "seconds": seconds,
         "parameters": parameters_json(found),
-        "initial": {name: initial_json(found, e) for e, name in enumerate(problem.tape.names)},
+        "initial": {name: initial_json(found, e) for e, name in enumerate(problem.records.names)},
         "fit": [
             {
                 **{k: v for k, v in start.items() if k not in ("fit", "rmse")},
@@ -53,7 +53,7 @@ def status(termination: Termination) -> str:
     return "converged" if termination in both else termination.name
 
 
-def identifiability_json(before: Sequence[Weakness], after: Sequence[Weakness]) -> list[dict[str, Any]]:
+def identifiability_json(before: Sequence[Unidentifiable], after: Sequence[Unidentifiable]) -> list[dict[str, Any]]:
     """What the data do not determine, and whether it was seen at the start values, at the optimum, or at both."""
     result = []
     for where, weaknesses in (("start", before), ("optimum", after)):

@@ -27,7 +27,7 @@ def print_summary(
     console.print(Text(f"{task.data.name}: {task.model.title}", style="bold"))
     console.print(Text("\nParameters", style="bold"))
     _print_parameters(console, found)
-    for e, name in enumerate(found.problem.tape.names):
+    for e, name in enumerate(found.problem.records.names):
         console.print(Text(f"Initial states of {name}", style="bold"))
         _print_initial(console, found, e)
     statistics = {

@@ -19,7 +19,7 @@ from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.evaluation import Evaluation, evaluated
 from greybox_torch.files import replacing
-from greybox_torch.simulate.substeps import LARGEST
+from greybox_torch.simulation.substeps import LARGEST
 
 START = "start"
 """The name of the model with the card's values."""

@@ -19,14 +19,14 @@ from greybox_torch.commands.task import Task, check_estimation, load_task
 from greybox_torch.commands.train_figure import figure_file
 from greybox_torch.commands.train_json import Scores, result_json
 from greybox_torch.commands.train_summary import print_summary
-from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.estimate.comparison import Score, compare
 from greybox_torch.estimate.fit import FitResult
 from greybox_torch.estimate.problem import Problem, all_starts_free, problem_for
 from greybox_torch.files import json_text, write_all
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.simulate.stepper import make_stepper
-from greybox_torch.simulate.substeps import choose_substeps
+from greybox_torch.mechanisms.stored import attachment_json
+from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.substeps import choose_substeps
 from greybox_torch.train import (
     Explanation,
     Hybrid,
@@ -138,7 +138,7 @@ def _scores(task: Task, found: Trained, explained: Explanation | None) -> Scores
     """
     start = task.problem()
     plain = make_stepper(task.model, (), device=task.device)
-    substeps = choose_substeps(start.driving_tape, plain, start.values, start.initial) or 1
+    substeps = choose_substeps(start.driving_records, plain, start.values, start.initial) or 1
     free = all_starts_free(task.data, start)
     refit = free.with_values(found.physics.problem.values)
     recordings = task.data.recordings

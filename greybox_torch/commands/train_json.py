@@ -24,7 +24,7 @@ def result_json(task: Task, found: Trained, scores: Scores, explained: Explanati
         "schema": "greybox-train/1",
         "seconds": found.seconds,
         "parameters": parameters_json(found.result),
-        "initial": {name: initial_json(found.result, e) for e, name in enumerate(problem.tape.names)},
+        "initial": {name: initial_json(found.result, e) for e, name in enumerate(problem.records.names)},
         "fit": _fit_json(scores),
         "statistics": {
             "mse": found.result.mse,

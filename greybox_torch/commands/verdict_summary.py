@@ -11,7 +11,7 @@ from rich.text import Text
 from greybox_torch.commands.free_runs import print_scores
 from greybox_torch.commands.tables import print_table
 from greybox_torch.commands.task import Task
-from greybox_torch.diagnose.verdict import Effect, Verdict
+from greybox_torch.diagnosis.verdict import Effect, Verdict
 
 UNKNOWN = "unknown"
 _COLUMNS = ["port", "mechanism", "probability", "explains [%]", "parameter", "value", "std", "unit"]

@@ -12,7 +12,7 @@ from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.metrics import fit_percent, root_mean_square
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulate.stepper import Stepper
+from greybox_torch.simulation.stepper import Stepper
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def compare(
     """Free-run simulation of every experiment of ``problem`` against its measurement.
 
     Args:
-        recordings: the recordings that the problem's tape was made of, for names and roles.
+        recordings: the recordings that the problem's records was made of, for names and roles.
         estimate_starts: estimate the free start states on the first tenth of each experiment before.
     """
     if estimate_starts:
@@ -54,7 +54,7 @@ def compare(
     scores = []
     for e, recording in enumerate(recordings):
         for k, output in enumerate(problem.model.outputs):
-            measured = problem.tape.y[k, problem.tape.span(e)]
+            measured = problem.records.y[k, problem.records.span(e)]
             values = simulated[e][:, k]
             scores.append(
                 Score(

@@ -15,8 +15,8 @@ from greybox_torch.estimate.metrics import fit_percent
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.termination import Termination
 from greybox_torch.estimate.window_fit import fit_windows
-from greybox_torch.simulate.stepper import Stepper
-from greybox_torch.simulate.substeps import choose_substeps
+from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.substeps import choose_substeps
 
 TOLERABLE = 30.0
 """Fit in % from which a simulation is a place to begin a descent on whole records."""
@@ -67,7 +67,7 @@ class Way:
     seed: int = 0
 
     def substeps(self, problem: Problem) -> int:
-        return choose_substeps(problem.driving_tape, self.stepper, problem.values, problem.initial) or 1
+        return choose_substeps(problem.driving_records, self.stepper, problem.values, problem.initial) or 1
 
 
 def descend(problem: Problem, way: Way, starts: int | None) -> Descent | None:
@@ -99,7 +99,7 @@ def _fits(problem: Problem, stepper: Stepper, substeps: int) -> np.ndarray:
     runs = simulate(problem, stepper, substeps=substeps)
     return np.array(
         [
-            fit_percent(problem.tape.y[k, problem.tape.span(e)], run[:, k])
+            fit_percent(problem.records.y[k, problem.records.span(e)], run[:, k])
             for e, run in enumerate(runs)
             for k in range(run.shape[1])
         ]
@@ -120,7 +120,7 @@ def _default_starts(problem: Problem, stepper: Stepper) -> int:
 
 def _by_windows(problem: Problem, way: Way, substeps: int) -> tuple[Problem, int]:
     """Better parameters by way of windows with free start states; each length is kept only if the one before simulates."""
-    evaluations, longest = 0, int(problem.tape.lengths.max())
+    evaluations, longest = 0, int(problem.records.lengths.max())
     for share in WINDOW_SHARES:
         found = fit_windows(problem, way.stepper, max(20, round(share * longest)), substeps=substeps)
         if found is None:

@@ -9,14 +9,14 @@ import numpy as np
 from greybox_torch.estimate.correlation import CorrelationMatrix, correlation_matrix
 from greybox_torch.estimate.descent import Descent, Progress, Way, descend
 from greybox_torch.estimate.free_run import FreeRun
-from greybox_torch.estimate.identifiability import Weakness, identifiability
+from greybox_torch.estimate.identifiability import Unidentifiable, identifiability
 from greybox_torch.estimate.levenberg_marquardt import DEFAULT, Settings
 from greybox_torch.estimate.notes import notes
 from greybox_torch.estimate.overflow import overflow_error
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.termination import Outcome, Termination
 from greybox_torch.estimate.uncertainty import Uncertainty, uncertainty
-from greybox_torch.simulate.stepper import Stepper, make_stepper
+from greybox_torch.simulation.stepper import Stepper, make_stepper
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class FitResult:
     termination: Termination
     uncertainty: Uncertainty | None
     substeps: int
-    identifiability: tuple[Weakness, ...] = ()
+    identifiability: tuple[Unidentifiable, ...] = ()
     notes: tuple[Outcome, ...] = ()
 
     @property
@@ -109,7 +109,7 @@ def _unmoved(run: FreeRun, samples: int) -> FitResult:
     return FitResult(run.problem, mse, mse, samples, 0, 1, Termination.nothing_free, None, run.substeps)
 
 
-def _result(found: Descent, samples: int, with_uncertainty: bool, weaknesses: tuple[Weakness, ...]) -> FitResult:
+def _result(found: Descent, samples: int, with_uncertainty: bool, weaknesses: tuple[Unidentifiable, ...]) -> FitResult:
     run, optimum = found.run, found.optimum
     mse = 2 * optimum.model.cost / samples
     share, problem = len(optimum.point) / samples, run.at(optimum.point)

@@ -11,30 +11,30 @@ import numpy as np
 from greybox_torch.estimate.levenberg_marquardt import Extra, Quadratic
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.rough_starts import rough_starts
-from greybox_torch.simulate.parallel_run import ParallelRun
-from greybox_torch.simulate.stepper import Stepper, whole_records
+from greybox_torch.simulation.parallel_run import ParallelRun
+from greybox_torch.simulation.stepper import Stepper, whole_records
 
 
 def simulate(problem: Problem, stepper: Stepper, *, substeps: int = 1) -> list[np.ndarray]:
     """Simulated outputs (N_e, n_y) of every experiment from its start state."""
     run = stepper.run(
-        problem.driving_tape, whole_records(problem.tape), problem.values, problem.initial, substeps=substeps
+        problem.driving_records, whole_records(problem.records), problem.values, problem.initial, substeps=substeps
     )
-    return [np.array(run.y[e, :n]) for e, n in enumerate(problem.tape.lengths)]
+    return [np.array(run.y[e, :n]) for e, n in enumerate(problem.records.lengths)]
 
 
 def visited_states(problem: Problem, stepper: Stepper, *, substeps: int = 1) -> list[np.ndarray]:
     """States (N_e, n_x) that every experiment runs through from its start state."""
     run = stepper.run(
-        problem.driving_tape,
-        whole_records(problem.tape),
+        problem.driving_records,
+        whole_records(problem.records),
         problem.values,
         problem.initial,
         substeps=substeps,
         keep_states=True,
     )
     assert run.states is not None
-    return [run.states[e, :n] for e, n in enumerate(problem.tape.lengths)]
+    return [run.states[e, :n] for e, n in enumerate(problem.records.lengths)]
 
 
 @dataclass(frozen=True)
@@ -91,19 +91,19 @@ class FreeRun:
     def normals(self, z: np.ndarray) -> list[np.ndarray] | None:
         """Gauss-Newton matrices (C_e, d_e + 1, d_e + 1) of every experiment, stretch by stretch, see :class:`ParallelRun`."""
         point = self.at(z)
-        tape = point.driving_tape
-        return self._parallel.normals(tape, point.values, point.initial, self._rough, self.problem.weights)
+        records = point.driving_records
+        return self._parallel.normals(records, point.values, point.initial, self._rough, self.problem.weights)
 
     def errors(self, z: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]] | None:
         """Weighted errors (N_e, n_y) and sensitivities (N_e, n_y, d_e) of every experiment, sample by sample, see :class:`ParallelRun`."""
         point = self.at(z)
-        tape = point.driving_tape
-        return self._parallel.errors(tape, point.values, point.initial, self._rough, self.problem.weights)
+        records = point.driving_records
+        return self._parallel.errors(records, point.values, point.initial, self._rough, self.problem.weights)
 
     @cached_property
     def _parallel(self) -> ParallelRun:
         estimated = np.flatnonzero(self.problem.free)
-        return ParallelRun(self.stepper, self.problem.tape, estimated, self.problem.free_states, self.substeps)
+        return ParallelRun(self.stepper, self.problem.records, estimated, self.problem.free_states, self.substeps)
 
     @cached_property
     def _rough(self) -> np.ndarray:

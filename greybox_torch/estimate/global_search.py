@@ -15,9 +15,9 @@ import numpy as np
 
 from greybox_torch.estimate.population import Members, Population, improve
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulate.stepper import Stepper
-from greybox_torch.simulate.substeps import choose_substeps
-from greybox_torch.simulate.tape import Tape
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.substeps import choose_substeps
 
 SPREAD, WIDE_SPREAD = 6.0, 15.0
 """Factors up or down within which start values are drawn, and those of parameters that do not matter at the best place found."""
@@ -79,8 +79,8 @@ def look_around(
 
 def _followed(problem: Problem, stepper: Stepper, people: Population, substeps: int) -> Population:
     """Where descents from ``people`` end, the distinct ones, best first."""
-    part = _beginning(problem.driving_tape, ROUGH_SHARE, ROUGH_SAMPLES)
-    rough = Members(replace(problem, tape=part), part, stepper, substeps)
+    part = _beginning(problem.driving_records, ROUGH_SHARE, ROUGH_SAMPLES)
+    rough = Members(replace(problem, records=part), part, stepper, substeps)
     people = _distinct(rough, improve(rough, people, ROUGH_ITERATIONS))
     if not len(people):
         return people
@@ -101,13 +101,13 @@ def _promising(members: Members, people: Population, most: int) -> Population:
 
 
 def _whole(problem: Problem, stepper: Stepper, substeps: int) -> Members:
-    part = _beginning(problem.driving_tape, 1.0, FINE_SAMPLES)
-    return Members(replace(problem, tape=part), part, stepper, substeps)
+    part = _beginning(problem.driving_records, 1.0, FINE_SAMPLES)
+    return Members(replace(problem, records=part), part, stepper, substeps)
 
 
 def _finer(members: Members, people: Population) -> int:
     """Sub-steps that the best of ``people`` needs: a place must not be good for the errors of its integration."""
-    needed = choose_substeps(members.tape, members.stepper, people.values[0], people.initial[0])
+    needed = choose_substeps(members.records, members.stepper, people.values[0], people.initial[0])
     return min(FINEST, max(members.substeps, needed or FINEST))
 
 
@@ -168,13 +168,14 @@ def _distinct(members: Members, people: Population) -> Population:
     return people.members(order[chosen])
 
 
-def _beginning(tape: Tape, share: float, most: int) -> Tape:
+def _beginning(records: Records, share: float, most: int) -> Records:
     """The first part of every experiment, ``most`` samples in all."""
-    share = min(share, most / int(tape.lengths.sum()))
+    share = min(share, most / int(records.lengths.sum()))
     if share >= 1.0:
-        return tape
-    lengths = np.maximum(10, (share * tape.lengths).astype(int))
+        return records
+    lengths = np.maximum(10, (share * records.lengths).astype(int))
     spans = [
-        slice(int(a), int(a + min(n, whole))) for a, n, whole in zip(tape.first, lengths, tape.lengths, strict=True)
+        slice(int(a), int(a + min(n, whole)))
+        for a, n, whole in zip(records.first, lengths, records.lengths, strict=True)
     ]
-    return tape.part(spans, tape.names)
+    return records.part(spans, records.names)

@@ -28,7 +28,7 @@ NEARBY = 0.1
 
 
 @dataclass(frozen=True)
-class Weakness:
+class Unidentifiable:
     """What the data do not determine.
 
     ``kind`` is "unmoved" (nothing the parameter does shows in the outputs), "together" (only a combination shows), "start" (either of
@@ -50,7 +50,7 @@ class Weakness:
 
 def identifiability(
     run: FreeRun, z: np.ndarray, here: Quadratic[None] | None = None, *, precision: str = "double"
-) -> tuple[Weakness, ...]:
+) -> tuple[Unidentifiable, ...]:
     """What the data do not determine of the unknowns ``z`` (d,) of ``run``; nothing where the simulation overflows there.
 
     Args:
@@ -94,16 +94,16 @@ def _nearby(view: Information, here: Quadratic[None], only: int | None = None) -
     return None
 
 
-def _unmoved(view: Information, index: int, nearby: Information | None, here: Quadratic[None]) -> Weakness:
+def _unmoved(view: Information, index: int, nearby: Information | None, here: Quadratic[None]) -> Unidentifiable:
     name = _names(view.run)[index]
     step = Direction((name,), (1.0,), (view.z[index] != 0,))
     if nearby is None or index in nearby.unmoved():
-        return Weakness("unmoved", (name,), step.changes, sentence("unmoved", step))
+        return Unidentifiable("unmoved", (name,), step.changes, sentence("unmoved", step))
     zeros = _culprits(view, here, lambda there: index not in there.unmoved())
-    return Weakness("start", (name,), step.changes, sentence("start", step, zeros=zeros))
+    return Unidentifiable("start", (name,), step.changes, sentence("start", step, zeros=zeros))
 
 
-def _together(view: Information, step: np.ndarray, nearby: Information | None, here: Quadratic[None]) -> Weakness:
+def _together(view: Information, step: np.ndarray, nearby: Information | None, here: Quadratic[None]) -> Unidentifiable:
     members = np.flatnonzero(step)
     nonzero = (view.z[members] != 0) & (members < view.run.n_parameters)
     changes = step[members] / np.where(nonzero, view.z[members], 1.0)
@@ -112,13 +112,13 @@ def _together(view: Information, step: np.ndarray, nearby: Information | None, h
     direction = Direction(names, tuple(changes.tolist()), tuple(nonzero.tolist()), absolute=tuple(absolute.tolist()))
     if nearby is not None and not nearby.is_flat_within(members):
         zeros = _culprits(view, here, lambda there: not there.is_flat_within(members))
-        return Weakness("start", names, direction.changes, sentence("start", direction, zeros=zeros))
+        return Unidentifiable("start", names, direction.changes, sentence("start", direction, zeros=zeros))
     if nearby is not None:
         scaled = np.zeros(len(step))
         scaled[members] = changes * nearby.z[members]
         law = "factor" if nonzero.all() and nearby.is_flat(scaled) else "shift" if nearby.is_flat(step) else "local"
         direction = replace(direction, law=law)
-    return Weakness("together", names, direction.changes, sentence("together", direction))
+    return Unidentifiable("together", names, direction.changes, sentence("together", direction))
 
 
 def _culprits(view: Information, here: Quadratic[None], helps: Callable[[Information], bool]) -> tuple[str, ...]:
@@ -129,7 +129,7 @@ def _culprits(view: Information, here: Quadratic[None], helps: Callable[[Informa
     return tuple(names[k] for k, there in views.items() if there is not None and helps(there))
 
 
-def _weak(view: Information, here: Quadratic[None], held: set[int]) -> list[Weakness]:
+def _weak(view: Information, here: Quadratic[None], held: set[int]) -> list[Unidentifiable]:
     """Directions in which the parameters' relative standard deviation exceeds one, the ``held`` unknowns fixed.
 
     The errors' variance is what a linear model leaves after the best step from here, so that poor start values are not taken for noise.
@@ -153,7 +153,7 @@ def _weak(view: Information, here: Quadratic[None], held: set[int]) -> list[Weak
         involved = tuple(names[kept[own[i]]] for i in members)
         step = Direction(involved, tuple((row[members] / np.abs(row).max()).tolist()), (True,) * len(members))
         deviation = float(np.sqrt(spread[members[0], members[0]]))
-        found.append(Weakness("weak", involved, step.changes, sentence("weak", step, deviation=deviation)))
+        found.append(Unidentifiable("weak", involved, step.changes, sentence("weak", step, deviation=deviation)))
     return found
 
 
@@ -166,4 +166,4 @@ def _largest(changes: np.ndarray) -> float:
 def _names(run: FreeRun) -> list[str]:
     problem = run.problem
     states = [problem.model.states[i].name for i in problem.free_states]
-    return [*problem.free_names, *[f"{s} at the start of '{e}'" for e in problem.tape.names for s in states]]
+    return [*problem.free_names, *[f"{s} at the start of '{e}'" for e in problem.records.names for s in states]]

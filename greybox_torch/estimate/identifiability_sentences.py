@@ -28,7 +28,7 @@ class Direction:
 
 
 def sentence(kind: str, step: Direction, *, zeros: Sequence[str] = (), deviation: float = np.nan) -> str:
-    """One sentence or two on a weakness of this kind, see :class:`greybox_torch.estimate.identifiability.Weakness`.
+    """One sentence or two on a weakness of this kind, see :class:`greybox_torch.estimate.identifiability.Unidentifiable`.
 
     Args:
         zeros: the parameters whose being zero takes the others' effect away.

@@ -84,5 +84,5 @@ def echelon(null: np.ndarray, negligible: float = NEGLIGIBLE) -> np.ndarray:
 
 def _energy(run: FreeRun) -> float:
     """Sum of squares of the weighted outputs about their means."""
-    y = run.problem.tape.y * run.problem.weights[:, None]
+    y = run.problem.records.y * run.problem.weights[:, None]
     return float(np.nansum((y - np.nanmean(y, axis=1, keepdims=True)) ** 2))

@@ -11,8 +11,8 @@ from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Settings, minimise
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import fit_windows
-from greybox_torch.simulate.stepper import Stepper, Windows
-from greybox_torch.simulate.tape import Tape
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.stepper import Stepper, Windows
 
 SHORT = 6
 """Into how many windows the beginning of a record is cut for a first guess of its start states."""
@@ -35,10 +35,10 @@ def estimate_initial(problem: Problem, stepper: Stepper, *, fraction: float = 0.
     if not free.any():
         return problem
     rows = []
-    for e in range(len(problem.tape.first)):
+    for e in range(len(problem.records.first)):
         part = replace(
             problem,
-            tape=_beginning(problem.tape, e, fraction),
+            records=_beginning(problem.records, e, fraction),
             initial=problem.initial[e : e + 1],
             initial_free=free,
             free=np.zeros_like(problem.free),
@@ -69,9 +69,9 @@ def _promising(part: Problem, rows: np.ndarray, stepper: Stepper, substeps: int)
     """Those of the start states ``rows`` (K, n_x) that simulate best, the states that are not tried from short windows."""
     others = part.initial_free & (np.ptp(rows, axis=0) == 0)
     rows = np.where(others, _from_short_windows(part, stepper, substeps), rows)
-    first, last = (np.repeat(end, len(rows)) for end in (part.tape.first, part.tape.last))
-    windows = Windows(first, last, int(part.tape.lengths[0]))
-    run = stepper.run(part.driving_tape, windows, part.values, rows, substeps=substeps, weights=part.weights)
+    first, last = (np.repeat(end, len(rows)) for end in (part.records.first, part.records.last))
+    windows = Windows(first, last, int(part.records.lengths[0]))
+    run = stepper.run(part.driving_records, windows, part.values, rows, substeps=substeps, weights=part.weights)
     assert run.normal is not None
     energies = np.nan_to_num(run.normal[:, -1, -1], nan=np.inf)
     return rows[np.argsort(energies, kind="stable")[:MOST_TRIALS]]
@@ -79,7 +79,7 @@ def _promising(part: Problem, rows: np.ndarray, stepper: Stepper, substeps: int)
 
 def _from_short_windows(part: Problem, stepper: Stepper, substeps: int) -> np.ndarray:
     """Start states (1, n_x) from a short stretch at the beginning, where a wrong guess has no time to lead astray."""
-    length = max(20, int(part.tape.lengths[0]) // SHORT)
+    length = max(20, int(part.records.lengths[0]) // SHORT)
     fit = fit_windows(
         part, _AllFixed(stepper), length, substeps=substeps, settings=Settings(iterations=15, tolerance=1e-4)
     )
@@ -100,8 +100,8 @@ class _AllFixed:
         return self._stepper.run(*args, tangents=False, **options)
 
 
-def _beginning(tape: Tape, experiment: int, fraction: float) -> Tape:
-    span = tape.span(experiment)
+def _beginning(records: Records, experiment: int, fraction: float) -> Records:
+    span = records.span(experiment)
     length = max(10, int(np.ceil(fraction * (span.stop - span.start))))
     part = slice(span.start, min(span.start + length, span.stop))
-    return tape.part([part], [tape.names[experiment]])
+    return records.part([part], [records.names[experiment]])

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from greybox_torch.estimate.identifiability import Weakness
+from greybox_torch.estimate.identifiability import Unidentifiable
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.termination import Outcome, Termination, listed
 
 
-def notes(problem: Problem, weaknesses: Sequence[Weakness]) -> tuple[Outcome, ...]:
+def notes(problem: Problem, weaknesses: Sequence[Unidentifiable]) -> tuple[Outcome, ...]:
     """Whether the data leave some of the free parameters undetermined, and whether some ended at a bound; which ones."""
     lost = {name for weakness in weaknesses if weakness.undetermined for name in weakness.parameters}
     at_bound = at_bounds(problem)

@@ -11,7 +11,7 @@ from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.termination import Outcome, Termination, listed
-from greybox_torch.simulate.stepper import Stepper, Windows
+from greybox_torch.simulation.stepper import Stepper, Windows
 
 FACTORS = (0.5, 2.0, 0.1, 10.0, 1e-2, 1e2, 1e-3, 1e3, 0.0, -1.0)
 """What a parameter's value is multiplied by in search of one with which the simulation stays finite, the nearest first."""
@@ -30,7 +30,7 @@ class Overflow:
 
 
 @dataclass(frozen=True)
-class Remedy:
+class Suggestion:
     """One parameter's value with which all experiments are simulated to their end."""
 
     name: str
@@ -49,11 +49,11 @@ def first_overflow(problem: Problem, simulated: Sequence[np.ndarray]) -> Overflo
         broken = np.flatnonzero(~np.isfinite(values).all(axis=1))
         if broken.size:
             sample = int(broken[0])
-            return Overflow(problem.tape.names[e], float(problem.tape.time(e)[sample]), sample)
+            return Overflow(problem.records.names[e], float(problem.records.time(e)[sample]), sample)
     return None
 
 
-def remedies(problem: Problem, stepper: Stepper, substeps: int = 1) -> tuple[Remedy, ...]:
+def remedies(problem: Problem, stepper: Stepper, substeps: int = 1) -> tuple[Suggestion, ...]:
     """Parameter values, one changed at a time and within its bounds, with which no experiment overflows: the nearest to the present ones.
 
     Tried on the free parameters, or on all where none is free; empty where no single one helps.
@@ -66,7 +66,7 @@ def remedies(problem: Problem, stepper: Stepper, substeps: int = 1) -> tuple[Rem
         finite = _finite(problem, stepper, np.array([rows[i] for i in allowed]), substeps) if allowed else []
         units = {p.name: p.unit for p in problem.model.declared_parameters}
         found = tuple(
-            Remedy(problem.names[k], value, float(problem.values[k]), units[problem.names[k]])
+            Suggestion(problem.names[k], value, float(problem.values[k]), units[problem.names[k]])
             for (k, value), good in zip([candidates[i] for i in allowed], finite, strict=True)
             if good
         )
@@ -75,7 +75,7 @@ def remedies(problem: Problem, stepper: Stepper, substeps: int = 1) -> tuple[Rem
     return ()
 
 
-def avoidance(found: Sequence[Remedy]) -> str:
+def avoidance(found: Sequence[Suggestion]) -> str:
     """The remedies as a clause."""
     if not found:
         return (
@@ -113,15 +113,17 @@ def _allowed(problem: Problem, row: np.ndarray) -> bool:
 
 def _finite(problem: Problem, stepper: Stepper, rows: np.ndarray, substeps: int) -> np.ndarray:
     """Which of the parameter sets (C, n_p) simulate every experiment to its end, (C,)."""
-    tape, count = problem.driving_tape, len(problem.tape.first)
+    records, count = problem.driving_records, len(problem.records.first)
     together = max(1, LANES // count)
     result = []
     for begin in range(0, len(rows), together):
         part = rows[begin : begin + together]
-        windows = Windows(np.tile(tape.first, len(part)), np.tile(tape.last, len(part)), int(tape.lengths.max()))
+        windows = Windows(
+            np.tile(records.first, len(part)), np.tile(records.last, len(part)), int(records.lengths.max())
+        )
         starts = np.tile(problem.initial, (len(part), 1))
-        y = stepper.run(tape, windows, np.repeat(part, count, axis=0), starts, substeps=substeps).y
-        inside = np.arange(y.shape[1]) < np.tile(tape.lengths, len(part))[:, None]
+        y = stepper.run(records, windows, np.repeat(part, count, axis=0), starts, substeps=substeps).y
+        inside = np.arange(y.shape[1]) < np.tile(records.lengths, len(part))[:, None]
         good = (np.isfinite(y).all(axis=2) | ~inside).all(axis=1)
         result += good.reshape(len(part), count).all(axis=1).tolist()
     return np.array(result)

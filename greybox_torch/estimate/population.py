@@ -8,8 +8,8 @@ import numpy as np
 
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulate.stepper import Stepper, Windows
-from greybox_torch.simulate.tape import Tape
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.stepper import Stepper, Windows
 
 
 @dataclass(frozen=True)
@@ -32,13 +32,13 @@ class Members:
     """The free runs of a population on the experiments of a problem; unknowns z (M, d) as in :class:`FreeRun`."""
 
     problem: Problem
-    tape: Tape
+    records: Records
     stepper: Stepper
     substeps: int
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        free, open_ended = self.problem.free, np.full(len(self.tape.first) * len(self.problem.free_states), np.inf)
+        free, open_ended = self.problem.free, np.full(len(self.records.first) * len(self.problem.free_states), np.inf)
         low = np.concatenate([self.problem.lower[free], -open_ended])
         return low, np.concatenate([self.problem.upper[free], open_ended])
 
@@ -56,7 +56,7 @@ class Members:
     def outputs(self, people: Population) -> np.ndarray:
         """Weighted outputs (M, E·K·n_y) of the free runs, zero where a sample is missing or beyond the end of an experiment."""
         rows, starts = self._lanes(people)
-        y = self.stepper.run(self.tape, self._windows(len(people)), rows, starts, substeps=self.substeps).y
+        y = self.stepper.run(self.records, self._windows(len(people)), rows, starts, substeps=self.substeps).y
         recorded, known = self._recorded()
         y = np.where(known, y.reshape(len(people), *recorded.shape), 0.0) * self.problem.weights
         return y.reshape(len(people), -1)
@@ -76,7 +76,7 @@ class Members:
         directions = np.zeros((len(rows), len(states), starts.shape[1]))
         directions[:, np.arange(len(states)), states] = 1.0
         run = self.stepper.run(
-            self.tape,
+            self.records,
             self._windows(count),
             rows,
             starts,
@@ -103,7 +103,7 @@ class Members:
         """The measured outputs (E, K, n_y) side by side, and which are known: neither missing nor beyond the end of an experiment."""
         windows = self._windows(1)
         index = windows.start[:, None] + np.arange(windows.steps)
-        recorded = np.moveaxis(self.tape.y[:, np.minimum(index, windows.last[:, None])], 0, -1)
+        recorded = np.moveaxis(self.records.y[:, np.minimum(index, windows.last[:, None])], 0, -1)
         return recorded, (index <= windows.last[:, None])[..., None] & ~np.isnan(recorded)
 
     def _lanes(self, people: Population) -> tuple[np.ndarray, np.ndarray]:
@@ -111,7 +111,9 @@ class Members:
         return np.repeat(people.values, experiments, axis=0), people.initial.reshape(len(people) * experiments, -1)
 
     def _windows(self, count: int) -> Windows:
-        return Windows(np.tile(self.tape.first, count), np.tile(self.tape.last, count), int(self.tape.lengths.max()))
+        return Windows(
+            np.tile(self.records.first, count), np.tile(self.records.last, count), int(self.records.lengths.max())
+        )
 
 
 def improve(members: Members, people: Population, iterations: int) -> Population:

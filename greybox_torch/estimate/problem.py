@@ -12,7 +12,7 @@ import torch
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel, Parameter, Signals, State
-from greybox_torch.simulate.tape import Tape, make_tape
+from greybox_torch.simulation.records import Records, make_records
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Problem:
     """
 
     model: GreyBoxModel
-    tape: Tape
+    records: Records
     names: tuple[str, ...]
     values: np.ndarray
     lower: np.ndarray
@@ -46,12 +46,12 @@ class Problem:
     @property
     def samples(self) -> int:
         """How many measured values there are to compare with, missing ones not counted."""
-        return int((~np.isnan(self.tape.y)).sum())
+        return int((~np.isnan(self.records.y)).sum())
 
     @property
-    def driving_tape(self) -> Tape:
-        """The tape with the inputs that drive the model at the present values."""
-        return self.model.prepared(self.tape, self.values)
+    def driving_records(self) -> Records:
+        """The records with the inputs that drive the model at the present values."""
+        return self.model.prepared(self.records, self.values)
 
     @property
     def free_states(self) -> np.ndarray:
@@ -94,22 +94,22 @@ def make_problem(
         UserError: a name in the card that the model does not have, a start value outside its bounds or constraints, channels that
             do not match.
     """
-    tape = make_tape(dataset, model, recordings)
+    records = make_records(dataset, model, recordings)
     parameters = [_from_card(p, dataset) for p in model.declared_parameters]
     _check_names(dataset, "parameters", dataset.parameters, [p.name for p in parameters], model)
     _check_names(dataset, "initial", dataset.initial, [s.name for s in model.states], model)
     numbers = {p.name: p.value for p in parameters} | dict(values or {})
     problem = Problem(
         model=model,
-        tape=tape,
+        records=records,
         names=tuple(p.name for p in parameters),
         values=np.array([numbers[p.name] for p in parameters], dtype=float),
         lower=np.array([p.bounds[0] for p in parameters]),
         upper=np.array([p.bounds[1] for p in parameters]),
         free=np.array([not p.fixed for p in parameters], dtype=bool),
-        initial=_start_states(dataset, model, tape),
+        initial=_start_states(dataset, model, records),
         initial_free=np.array([not _initial_fixed(s, dataset) for s in model.states], dtype=bool),
-        weights=_weights(tape),
+        weights=_weights(records),
         carried=np.zeros(len(model.states), dtype=bool),
         expected=np.array([p.value for p in parameters], dtype=float),
     )
@@ -141,7 +141,7 @@ def problem_for(problem: Problem, model: GreyBoxModel, values: Mapping[str, floa
     extra = np.zeros((len(problem.initial), len(model.states) - count))
     fresh = Problem(
         model=model,
-        tape=problem.tape,
+        records=problem.records,
         names=tuple(p.name for p in declared),
         values=np.array(
             [values.get(p.name, problem.values[own[p.name]] if p.name in own else p.value) for p in declared]
@@ -158,7 +158,7 @@ def problem_for(problem: Problem, model: GreyBoxModel, values: Mapping[str, floa
     begun = np.clip(fresh.values, fresh.lower, fresh.upper)
     expected = [problem.expected[own[p.name]] if p.name in own else v for p, v in zip(declared, begun, strict=True)]
     fresh = replace(fresh, values=begun, expected=np.array(expected))
-    return replace(fresh, initial=model.begun(fresh.initial, fresh.driving_tape, fresh.tape.first, fresh.values))
+    return replace(fresh, initial=model.begun(fresh.initial, fresh.driving_records, fresh.records.first, fresh.values))
 
 
 def _tensors(problem: Problem) -> Signals:
@@ -194,36 +194,36 @@ def _initial_fixed(state: State, dataset: DataSet) -> bool:
     return state.fixed if entry is None or entry.fixed is None else bool(entry.fixed)
 
 
-def _start_states(dataset: DataSet, model: GreyBoxModel, tape: Tape) -> np.ndarray:
+def _start_states(dataset: DataSet, model: GreyBoxModel, records: Records) -> np.ndarray:
     """Start states (E, n_x): the card's, else the model's, measured where the model says so."""
-    rows = np.zeros((len(tape.first), len(model.states)))
+    rows = np.zeros((len(records.first), len(model.states)))
     for i, state in enumerate(model.states):
         entry = dataset.initial.get(state.name)
         if entry is not None and entry.value is not None:
             rows[:, i] = entry.value
         elif state.initial == "measured":
-            rows[:, i] = measured_at(model, state, tape, tape.first)
+            rows[:, i] = measured_at(model, state, records, records.first)
         else:
             rows[:, i] = float(state.initial)
     return rows
 
 
-def measured_at(model: GreyBoxModel, state: State, tape: Tape, samples: np.ndarray) -> np.ndarray:
+def measured_at(model: GreyBoxModel, state: State, records: Records, samples: np.ndarray) -> np.ndarray:
     """The measured value of a state at some samples (W,), or where that is missing the next known one.
 
     Raises:
         UserError: no signal measures the state, see :class:`State`.
     """
-    values = _measuring_signal(model, state, tape)
+    values = _measuring_signal(model, state, records)
     known = np.flatnonzero(~np.isnan(values))
     return values[known[np.minimum(np.searchsorted(known, samples), len(known) - 1)]]
 
 
-def _measuring_signal(model: GreyBoxModel, state: State, tape: Tape) -> np.ndarray:
+def _measuring_signal(model: GreyBoxModel, state: State, records: Records) -> np.ndarray:
     names = [o.name for o in model.outputs]
     if state.name in names:
-        return tape.y[names.index(state.name)]
-    for signals, rows in ((model.outputs, tape.y), (model.inputs, tape.u)):
+        return records.y[names.index(state.name)]
+    for signals, rows in ((model.outputs, records.y), (model.inputs, records.u)):
         same = [i for i, signal in enumerate(signals) if signal.unit == state.unit]
         if len(same) == 1:
             return rows[same[0]]
@@ -235,9 +235,9 @@ def _measuring_signal(model: GreyBoxModel, state: State, tape: Tape) -> np.ndarr
     )
 
 
-def _weights(tape: Tape) -> np.ndarray:
+def _weights(records: Records) -> np.ndarray:
     """Unit weight for a single output; otherwise the inverse spread of each, so that outputs in different units count alike."""
-    if len(tape.y) == 1:
+    if len(records.y) == 1:
         return np.ones(1)
-    spread = np.nanstd(tape.y, axis=1)
+    spread = np.nanstd(records.y, axis=1)
     return 1.0 / np.where(spread > 0, spread, 1.0)

@@ -19,7 +19,7 @@ from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.estimate.fit import FitResult
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimise
-from greybox_torch.simulate.stepper import Stepper
+from greybox_torch.simulation.stepper import Stepper
 
 LEVEL = 0.95
 """Confidence of the interval."""

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from greybox_torch.estimate.problem import Problem, measured_at
-from greybox_torch.simulate.stepper import Windows
+from greybox_torch.simulation.stepper import Windows
 
 
 def rough_starts(problem: Problem, windows: Windows) -> np.ndarray:
     """Start states (W, n_x) from the measurement where a state is measured, else the value at the experiment's start."""
-    experiment = problem.tape.experiments(windows.start)
+    experiment = problem.records.experiments(windows.start)
     states = problem.initial[experiment].copy()
     outputs = {o.name for o in problem.model.outputs}
     for i, state in enumerate(problem.model.states):
         if state.initial == "measured" or state.name in outputs:
-            states[:, i] = measured_at(problem.model, state, problem.tape, windows.start)
-    return problem.model.begun(states, problem.driving_tape, windows.start, problem.values)
+            states[:, i] = measured_at(problem.model, state, problem.records, windows.start)
+    return problem.model.begun(states, problem.driving_records, windows.start, problem.values)

@@ -24,7 +24,7 @@ def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, poin
     generator = torch.Generator().manual_seed(0)
     n_x, n_u = len(model.states), len(model.inputs)
     scale_u = (
-        torch.as_tensor(np.maximum(np.abs(problem.tape.u).max(axis=1), 1e-9))
+        torch.as_tensor(np.maximum(np.abs(problem.records.u).max(axis=1), 1e-9))
         if n_u
         else torch.ones(0, dtype=torch.float64)
     )

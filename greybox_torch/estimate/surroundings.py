@@ -11,7 +11,7 @@ from greybox_torch.mechanisms.augmented_model import position_unit
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
-from greybox_torch.simulate.stepper import Stepper
+from greybox_torch.simulation.stepper import Stepper
 
 
 def survey(model: GreyBoxModel, problem: Problem, stepper: Stepper, substeps: int) -> dict[str, Surroundings]:
@@ -22,12 +22,12 @@ def survey(model: GreyBoxModel, problem: Problem, stepper: Stepper, substeps: in
 def surroundings_along(model: GreyBoxModel, problem: Problem, states: np.ndarray) -> dict[str, Surroundings]:
     """Ranges of the signals around every port of ``model``, along states (N, n_x or more) at the samples of the problem's records."""
     x = Signals("state", {s.name: torch.as_tensor(states[:, i]) for i, s in enumerate(model.states)})
-    u = Signals("input", {s.name: torch.as_tensor(problem.tape.u[i]) for i, s in enumerate(model.inputs)})
+    u = Signals("input", {s.name: torch.as_tensor(problem.records.u[i]) for i, s in enumerate(model.inputs)})
     values = dict(zip(problem.names, problem.values, strict=True))
     p = Signals(
         "parameter", {q.name: torch.tensor(values[q.name], dtype=torch.float64) for q in model.declared_parameters}
     )
-    times = np.concatenate([problem.tape.time(e) for e in range(len(problem.tape.first))])
+    times = np.concatenate([problem.records.time(e) for e in range(len(problem.records.first))])
     return {port.name: _around(model, port, x, u, p, times, problem) for port in model.all_ports}
 
 
@@ -50,14 +50,14 @@ def _around(
         values["speed"] = _evaluated(body.speed, x, u, p, times)
     if isinstance(port, Sensor):
         row = [o.name for o in model.outputs].index(port.output)
-        values["output"] = problem.tape.y[row][~np.isnan(problem.tape.y[row])]
+        values["output"] = problem.records.y[row][~np.isnan(problem.records.y[row])]
     values["time"] = times
     units = _units(model, port)
     return Surroundings(
         {name: _range(v) for name, v in values.items()},
         units,
         _force_unit(port, units),
-        float(np.median(problem.tape.dt)),
+        float(np.median(problem.records.dt)),
     )
 
 
@@ -75,9 +75,9 @@ def _evaluated(signal: Signal, x: Signals, u: Signals, p: Signals, times: np.nda
 
 
 def _integrated(speed: np.ndarray, problem: Problem) -> np.ndarray:
-    dt, done, pieces = problem.tape.dt, 0, []
-    for e, n in enumerate(problem.tape.lengths):
-        step = dt[problem.tape.span(e)]
+    dt, done, pieces = problem.records.dt, 0, []
+    for e, n in enumerate(problem.records.lengths):
+        step = dt[problem.records.span(e)]
         pieces.append(np.concatenate([[0.0], np.cumsum(speed[done : done + n - 1] * step[:-1])]))
         done += n
     return np.concatenate(pieces)

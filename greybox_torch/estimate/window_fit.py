@@ -17,7 +17,7 @@ from greybox_torch.estimate.levenberg_marquardt import ROUGH, Settings
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.rough_starts import rough_starts
 from greybox_torch.estimate.window_step import Hold, WindowModel, held, stepped
-from greybox_torch.simulate.stepper import Stepper, Windows, cut
+from greybox_torch.simulation.stepper import Stepper, Windows, cut
 
 SHRINKING = 30.0
 """Samples' worth of error that a shrunk parameter costs when it is as large as it began."""
@@ -65,7 +65,7 @@ def fit_windows(
         shorter: a fit on shorter windows, of this model or of the model that it extends.
         size: the size at which a shrunk parameter costs :data:`SHRINKING` samples' worth of error; the largest start value by default.
     """
-    windows = cut(problem.tape, length)
+    windows = cut(problem.records, length)
     states = starts
     if states is None and shorter is not None:
         states = _starts_of(shorter, problem, stepper, windows, substeps)
@@ -130,9 +130,9 @@ def _starts_of(shorter: WindowFit, problem: Problem, stepper: Stepper, windows: 
 def states_along(fit: WindowFit, stepper: Stepper, substeps: int) -> np.ndarray:
     """States (N, n_x) at the samples of the records, every window from its own start."""
     problem, windows = fit.problem, fit.windows
-    run = stepper.run(problem.driving_tape, windows, problem.values, fit.starts, substeps=substeps, keep_states=True)
+    run = stepper.run(problem.driving_records, windows, problem.values, fit.starts, substeps=substeps, keep_states=True)
     assert run.states is not None
-    states = np.zeros((problem.tape.u.shape[1], run.states.shape[2]))
+    states = np.zeros((problem.records.u.shape[1], run.states.shape[2]))
     for w, (first, last) in enumerate(zip(windows.start, windows.last, strict=True)):
         states[first : last + 1] = run.states[w, : last - first + 1]
     return states
@@ -144,15 +144,15 @@ def carried_starts(
     """``starts`` (W, n_x) with the carried states brought along from window to window of each experiment."""
     if not problem.carried.any():
         return starts
-    starts, tape = starts.copy(), problem.driving_tape
-    experiment = tape.experiments(windows.start)
-    chains = [np.flatnonzero(experiment == e) for e in range(len(tape.first))]
+    starts, records = starts.copy(), problem.driving_records
+    experiment = records.experiments(windows.start)
+    chains = [np.flatnonzero(experiment == e) for e in range(len(records.first))]
     for k in range(max(len(c) for c in chains) - 1):
         now = np.array([c[k] for c in chains if len(c) > k + 1])
         following = np.array([c[k + 1] for c in chains if len(c) > k + 1])
         ahead = windows.start[following] - windows.start[now]
         part = Windows(windows.start[now], windows.last[now], int(ahead.max()) + 1)
-        run = stepper.run(tape, part, problem.values, starts[now], substeps=substeps, keep_states=True)
+        run = stepper.run(records, part, problem.values, starts[now], substeps=substeps, keep_states=True)
         assert run.states is not None
         reached = np.nan_to_num(run.states[np.arange(len(now)), ahead])
         starts[np.ix_(following, problem.carried)] = reached[:, problem.carried]
@@ -164,12 +164,12 @@ def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: 
     times what is expected of them (without which a friction law's shape can wander off where no speed is visited; held where each fit
     of many begins, it would still get there by and by).
     """
-    measured = problem.tape.y * problem.weights[:, None]
+    measured = problem.records.y * problem.weights[:, None]
     mean_square = min(
         mean_square, float(np.nanvar(measured, axis=1).mean())
     )  # start values that explode must not freeze all
     spread = np.nanstd(states, axis=0)
-    spread = np.where(spread > 1e-9, spread, max(float(np.nanstd(problem.tape.y)), 1e-6))
+    spread = np.where(spread > 1e-9, spread, max(float(np.nanstd(problem.records.y)), 1e-6))
     values = problem.expected[problem.free]
     value_weights = np.where(values != 0.0, 10.0 * mean_square / np.where(values != 0.0, values, 1.0) ** 2, 0.0)
     declared = {p.name: p.shrunk for p in problem.model.declared_parameters}
@@ -194,7 +194,7 @@ def _evaluate(
     open_states = np.flatnonzero(~problem.carried)
     eye = np.broadcast_to(np.eye(n_x)[open_states], (count, len(open_states), n_x))
     run = stepper.run(
-        problem.driving_tape,
+        problem.driving_records,
         windows,
         problem.values,
         states,
@@ -226,6 +226,6 @@ def _evaluate(
 
 def _weighted_samples(problem: Problem, windows: Windows) -> int:
     """How many samples the windows compare, missing ones not counted."""
-    known = np.concatenate([[0], np.cumsum((~np.isnan(problem.tape.y)).sum(axis=0))])
+    known = np.concatenate([[0], np.cumsum((~np.isnan(problem.records.y)).sum(axis=0))])
     ends = np.minimum(windows.start + windows.steps, windows.last + 1)
     return int((known[ends] - known[windows.start]).sum())

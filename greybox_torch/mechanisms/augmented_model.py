@@ -112,34 +112,34 @@ class AugmentedModel(GreyBoxModel):
     def admissible(self, p: Any) -> dict[str, Any]:
         return self.base.admissible(p)
 
-    def prepared(self, tape: Any, values: Any) -> Any:
-        """The tape with the delayed inputs appended: value at the present delay, its slope, and the delay itself.
+    def prepared(self, records: Any, values: Any) -> Any:
+        """The records with the delayed inputs appended: value at the present delay, its slope, and the delay itself.
 
         What acts during the first T of a record was put in before it and is not known: outputs carry no weight there.
         """
-        tape = self.base.prepared(tape, values)
+        records = self.base.prepared(records, values)
         names = [p.name for p in self.declared_parameters]
-        rows, y = [], tape.y
+        rows, y = [], records.y
         for a in self._delays():
             site = self.base_ports[a.port]
             assert isinstance(site, Actuator)
             channel = [i.name for i in self.base.inputs].index(site.input)
             delay = float(values[names.index(f"{a.prefix}.T")])
-            rows += delayed(tape, channel, delay)
+            rows += delayed(records, channel, delay)
             if a.prefix not in self.probed:  # a look at a long delay must not hide records from the other looks
-                y = np.where(after(tape, delay), y, np.nan)
-        return tape if not rows else replace(tape, u=np.concatenate([tape.u, np.array(rows)]), y=y)
+                y = np.where(after(records, delay), y, np.nan)
+        return records if not rows else replace(records, u=np.concatenate([records.u, np.array(rows)]), y=y)
 
-    def begun(self, states: np.ndarray, tape: Any, samples: np.ndarray, values: np.ndarray) -> np.ndarray:
+    def begun(self, states: np.ndarray, records: Any, samples: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Start states (W, n_x) with the memories that begin as their surroundings say."""
         names = [s.name for s in self.states]
         x = Signals("state", {n: torch.as_tensor(states[:, i]) for i, n in enumerate(names)})
-        u = Signals("input", {s.name: torch.as_tensor(tape.u[i, samples]) for i, s in enumerate(self.inputs)})
+        u = Signals("input", {s.name: torch.as_tensor(records.u[i, samples]) for i, s in enumerate(self.inputs)})
         pairs = zip(self.declared_parameters, values, strict=True)
         p = Signals("parameter", {q.name: torch.tensor(float(v), dtype=torch.float64) for q, v in pairs})
         own = len(self.base.states), len(self.base.declared_parameters)
         result = states.copy()
-        result[:, : own[0]] = self.base.begun(states[:, : own[0]], tape, samples, values[: own[1]])
+        result[:, : own[0]] = self.base.begun(states[:, : own[0]], records, samples, values[: own[1]])
         for a in self.attachments:
             for name, value in a.mechanism.starts(self._local(a, x, u, p)[0]).items():
                 result[:, names.index(f"{a.prefix}.{name}")] = np.asarray(value)

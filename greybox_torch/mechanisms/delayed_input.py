@@ -1,4 +1,4 @@
-"""An input that acts later: what a tape has to carry for it."""
+"""An input that acts later: what records has to carry for it."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from typing import Any
 import numpy as np
 
 
-def after(tape: Any, delay: float) -> np.ndarray:
+def after(records: Any, delay: float) -> np.ndarray:
     """Which samples (N,) lie ``delay`` s or more behind the beginning of their record."""
-    return np.concatenate([(time := tape.time(e)) - time[0] >= delay for e in range(len(tape.first))])
+    return np.concatenate([(time := records.time(e)) - time[0] >= delay for e in range(len(records.first))])
 
 
-def delayed(tape: Any, channel: int, delay: float) -> list[np.ndarray]:
+def delayed(records: Any, channel: int, delay: float) -> list[np.ndarray]:
     """An input shifted later by ``delay`` s (linear between samples, held before the record), its slope, and the delay."""
-    value, slope = np.empty(tape.u.shape[1]), np.empty(tape.u.shape[1])
-    for e in range(len(tape.first)):
-        span = tape.span(e)
-        time, signal = tape.time(e), tape.u[channel, span]
+    value, slope = np.empty(records.u.shape[1]), np.empty(records.u.shape[1])
+    for e in range(len(records.first)):
+        span = records.span(e)
+        time, signal = records.time(e), records.u[channel, span]
         value[span] = np.interp(time - delay, time, signal)
         rate = np.append(np.diff(signal) / np.diff(time), 0.0)
         index = np.clip(np.searchsorted(time, time - delay, side="right") - 1, 0, len(time) - 1)
         slope[span] = np.where(time - delay < 0, 0.0, -rate[index])
-    return [value, slope, np.full(tape.u.shape[1], delay)]
+    return [value, slope, np.full(records.u.shape[1], delay)]

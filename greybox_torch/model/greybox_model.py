@@ -61,16 +61,16 @@ class GreyBoxModel(torch.nn.Module):
         """Quantities that must stay positive, by a name for messages (for constraints that join several parameters)."""
         return {}
 
-    def prepared(self, tape: Any, values: Any) -> Any:
-        """The tape that drives the model at parameter ``values`` (n_p,): the recorded one, unless an effect shifts signals in time."""
-        return tape
+    def prepared(self, records: Any, values: Any) -> Any:
+        """The records that drives the model at parameter ``values`` (n_p,): the recorded one, unless an effect shifts signals in time."""
+        return records
 
     def start_trials(self, values: Any) -> list[dict[str, float]]:
         """Start states to be tried one by one, where the data determine them only up to several possibilities."""
         return []
 
-    def begun(self, states: Any, tape: Any, samples: Any, values: Any) -> Any:
-        """Start states (W, n_x) at ``samples`` (W,) of a tape, with those that follow from the others filled in."""
+    def begun(self, states: Any, records: Any, samples: Any, values: Any) -> Any:
+        """Start states (W, n_x) at ``samples`` (W,) of records, with those that follow from the others filled in."""
         return states
 
     def carried_states(self) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from greybox_torch.diagnose.verdict import Verdict
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report import text
 from greybox_torch.report.about import About
 from greybox_torch.report.sections.effects import Effects

@@ -2,7 +2,7 @@
 
 from greybox_torch.train.explain import Explanation, explain
 from greybox_torch.train.hybrid import Hybrid, attach_network, default_port
-from greybox_torch.train.physics import Physics, physics_of
+from greybox_torch.train.physics import Physics, fit_physics
 from greybox_torch.train.settings import TrainingSettings
 from greybox_torch.train.trained import Report, Trained
 from greybox_torch.train.training import train_hybrid
@@ -17,6 +17,6 @@ __all__ = [
     "attach_network",
     "default_port",
     "explain",
-    "physics_of",
+    "fit_physics",
     "train_hybrid",
 ]

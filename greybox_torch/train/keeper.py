@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from greybox_torch.train.lessons import Course
+from greybox_torch.train.curriculum import Curriculum
 from greybox_torch.train.physics import Physics
 from greybox_torch.train.snapshot import Snapshot, save_snapshot
 from greybox_torch.train.state import TrainingState
@@ -20,7 +20,7 @@ SNAPSHOT_SECONDS = 0.5
 class Keeper:
     """Writes snapshots, but not more often than every :data:`SNAPSHOT_SECONDS`."""
 
-    def __init__(self, path: Path | None, about: Mapping[str, Any], physics: Physics, course: Course) -> None:
+    def __init__(self, path: Path | None, about: Mapping[str, Any], physics: Physics, course: Curriculum) -> None:
         self._path, self._about, self._physics, self._course = path, about, physics, course
         self._due, self._waiting = 0.0, None
 

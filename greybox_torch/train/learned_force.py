@@ -60,13 +60,13 @@ def visited_signals(found: Trained) -> dict[str, np.ndarray]:
     """What the network reads (N,) along the free run of the estimation experiments."""
     problem, model = found.result.problem, found.result.problem.model
     assert isinstance(model, AugmentedModel)
-    tape = problem.driving_tape
+    records = problem.driving_records
     states = np.concatenate(visited_states(problem, found.course.stepper, substeps=found.result.substeps))
-    spans = [tape.span(e) for e in range(len(tape.lengths))]
+    spans = [records.span(e) for e in range(len(records.lengths))]
     index = np.concatenate([np.arange(span.start, span.stop) for span in spans])
     kept = slice(None, None, max(1, -(-len(index) // MOST_SAMPLES)))
     x = Signals("state", {s.name: torch.as_tensor(states[kept, i]) for i, s in enumerate(model.states)})
-    u = Signals("input", {s.name: torch.as_tensor(tape.u[i, index[kept]]) for i, s in enumerate(model.inputs)})
+    u = Signals("input", {s.name: torch.as_tensor(records.u[i, index[kept]]) for i, s in enumerate(model.inputs)})
     local = model.local_signals(found.hybrid.network, x, u, _parameters(found))
     shape = index[kept].shape
     return {n: np.broadcast_to(np.asarray(local[n], dtype=float), shape) for n in found.hybrid.network.mechanism.needs}

@@ -11,10 +11,10 @@ from greybox_torch.estimate.fit import FitResult, fit
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.simulate.stepper import Stepper, make_stepper
-from greybox_torch.train.course import without_samples
+from greybox_torch.simulation.stepper import Stepper, make_stepper
 from greybox_torch.train.physics import estimate_physics
 from greybox_torch.train.polish import held_out_error
+from greybox_torch.train.stages import without_samples
 from greybox_torch.train.trained import Trained
 
 
@@ -77,5 +77,5 @@ def on_all_samples(term: NamedTerm, found: Trained) -> FitResult:
     Raises:
         NumericalError: the simulation overflows.
     """
-    problem = replace(term.problem, tape=found.physics.problem.tape)
+    problem = replace(term.problem, records=found.physics.problem.records)
     return fit(problem, stepper=term.stepper, seed=found.settings.seed, starts=1)

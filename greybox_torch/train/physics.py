@@ -15,10 +15,10 @@ from greybox_torch.estimate.problem import Problem, all_starts_free, make_proble
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulate.stepper import Stepper, make_stepper
-from greybox_torch.simulate.substeps import choose_substeps
-from greybox_torch.train.course import window_lengths
+from greybox_torch.simulation.stepper import Stepper, make_stepper
+from greybox_torch.simulation.substeps import choose_substeps
 from greybox_torch.train.settings import TrainingSettings
+from greybox_torch.train.stages import window_lengths
 
 SETTINGS = Settings(iterations=25, tolerance=1e-3, trials=6)
 
@@ -33,7 +33,7 @@ class Physics:
     values: np.ndarray
 
 
-def physics_of(
+def fit_physics(
     data: DataSet,
     model: GreyBoxModel,
     *,
@@ -53,7 +53,7 @@ def physics_of(
     settings = settings or TrainingSettings()
     problem = training_problem(data, model, values)
     stepper = make_stepper(model, problem.free_names, device=device)
-    return estimate_physics(problem, stepper, window_lengths(problem.tape, settings), settings.seed)
+    return estimate_physics(problem, stepper, window_lengths(problem.records, settings), settings.seed)
 
 
 def training_problem(data: DataSet, model: GreyBoxModel, values: Mapping[str, float] | None = None) -> Problem:
@@ -75,7 +75,7 @@ def estimate_physics(problem: Problem, stepper: Stepper, lengths: Sequence[int],
     Raises:
         NumericalError: the simulation overflows either way.
     """
-    substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
+    substeps = choose_substeps(problem.driving_records, stepper, problem.values, problem.initial) or 1
     chain = windows_in_turn(problem, stepper, lengths, substeps, None)
     found = []
     if chain:
@@ -115,7 +115,7 @@ def windows_in_turn(
 
 def on_whole_records(windows: WindowFit, problem: Problem) -> Problem:
     """``problem`` with the parameters of a window fit, its experiments beginning as their first windows do."""
-    first = np.searchsorted(windows.windows.start, problem.tape.first)
+    first = np.searchsorted(windows.windows.start, problem.records.first)
     initial = np.where(problem.initial_free, windows.starts[first], problem.initial)
     return problem.with_values(windows.problem.values, initial)
 

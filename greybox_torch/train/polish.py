@@ -15,10 +15,10 @@ import numpy as np
 from greybox_torch.estimate.free_run import FreeRun, simulate
 from greybox_torch.estimate.levenberg_marquardt import Optimum, Quadratic, Settings, minimise
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulate.stepper import Stepper
-from greybox_torch.train.course import without_samples
-from greybox_torch.train.lessons import Course
+from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.train.curriculum import Curriculum
 from greybox_torch.train.physics import on_whole_records, windows_in_turn, with_physics
+from greybox_torch.train.stages import without_samples
 from greybox_torch.train.unknowns import Unknowns
 
 WEIGHTS = (1.0, 10.0, 100.0, 1000.0)
@@ -97,7 +97,7 @@ class PenalisedRun:
         )
 
 
-def polish(course: Course, z: np.ndarray, physics: Problem, plain: Stepper, told: Told) -> Polished:
+def polish(course: Curriculum, z: np.ndarray, physics: Problem, plain: Stepper, told: Told) -> Polished:
     """From the unknowns ``z`` (d,) that the windows were left with to the optimum of whole records.
 
     Args:
@@ -122,7 +122,7 @@ def polish(course: Course, z: np.ndarray, physics: Problem, plain: Stepper, told
         return Polished(_at_rest(course.unknowns, hybrid, physics), chosen, choices, None)
     told(f"Gauss-Newton on all samples, penalty {chosen.weight:g}")
     best = next(problem for choice, problem in trials if choice is chosen)
-    run = FreeRun(replace(best, tape=hybrid.tape), course.stepper, course.substeps)
+    run = FreeRun(replace(best, records=hybrid.records), course.stepper, course.substeps)
     optimum = PenalisedRun(run, course.unknowns, chosen.weight * course.mean_square).minimum(LAST_SETTINGS)
     return Polished(run.problem if optimum is None else run.at(optimum.point), chosen, choices, optimum)
 
@@ -134,17 +134,17 @@ def plainest(choices: Sequence[Choice]) -> Choice:
     return max(worthy, key=lambda c: np.inf if c.weight is None else c.weight)
 
 
-def _by_windows(course: Course, values: np.ndarray) -> Problem:
+def _by_windows(course: Curriculum, values: np.ndarray) -> Problem:
     """The hybrid begun at ``values`` (n_p,), led through windows of rising lengths without the held-out stretches."""
     masked = without_samples(course.unknowns.hybrid.problem, course.mask).with_values(values)
-    longest = max(course.lengths[-1], int(masked.tape.lengths.max()) // LONGEST_PART)
+    longest = max(course.lengths[-1], int(masked.records.lengths.max()) // LONGEST_PART)
     lengths = [*course.lengths, *([longest] if longest > course.lengths[-1] else [])]
     size = course.unknowns.force
     found = windows_in_turn(masked, course.stepper, lengths, course.substeps, size, WINDOW_SETTINGS)
     return on_whole_records(found[-1], masked) if found else masked
 
 
-def _trial(course: Course, start: Problem, weight: float) -> tuple[Choice, Problem] | None:
+def _trial(course: Curriculum, start: Problem, weight: float) -> tuple[Choice, Problem] | None:
     run = FreeRun(start, course.stepper, course.substeps)
     optimum = PenalisedRun(run, course.unknowns, weight * course.mean_square).minimum(RECORD_SETTINGS)
     if optimum is None:
@@ -153,16 +153,16 @@ def _trial(course: Course, start: Problem, weight: float) -> tuple[Choice, Probl
     return Choice(weight, held_out_error(course.unknowns.hybrid.problem, at, course.stepper, course)), at
 
 
-def held_out_error(complete: Problem, at: Problem, stepper: Stepper, course: Course) -> float:
+def held_out_error(complete: Problem, at: Problem, stepper: Stepper, course: Curriculum) -> float:
     """Mean squared weighted error of the free run of ``at`` on the held-out samples of ``complete``; infinite where it overflows."""
     simulated, mask = np.concatenate(simulate(at, stepper, substeps=course.substeps)).T, course.mask
     with np.errstate(all="ignore"):
-        errors = ((complete.tape.y - simulated) * complete.weights[:, None])[:, mask]
+        errors = ((complete.records.y - simulated) * complete.weights[:, None])[:, mask]
         value = float(np.nanmean(errors**2)) if np.isfinite(simulated).all() else float("inf")
     return value if np.isfinite(value) else float("inf")
 
 
-def _physics_alone(course: Course, physics: Problem, plain: Stepper) -> Choice:
+def _physics_alone(course: Curriculum, physics: Problem, plain: Stepper) -> Choice:
     """The plain model on the same footing: estimated without the held-out stretches, unless it is frozen."""
     run = FreeRun(without_samples(physics, course.mask), plain, course.substeps)
     optimum = (

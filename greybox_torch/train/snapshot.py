@@ -22,7 +22,7 @@ from greybox_torch.train.state import Epoch, TrainingState
 
 SCHEMA = "greybox-training/1"
 ARRAYS = ("z", "best", "first", "second", "starts")
-NUMBERS = ("lesson", "epoch", "best_loss", "waited", "steps", "caution")
+NUMBERS = ("stage", "epoch", "best_loss", "waited", "steps", "caution")
 
 
 @dataclass(frozen=True)

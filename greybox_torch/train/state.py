@@ -14,7 +14,7 @@ class Epoch:
     the held-out windows, learning rate.
     """
 
-    lesson: int
+    stage: int
     epoch: int
     loss: float
     held_out: float
@@ -26,7 +26,7 @@ class Epoch:
 class TrainingState:
     """Where a training stands, at the end of an epoch.
 
-    ``lesson`` and ``epoch`` count window lengths and passes over the present one; ``z`` (d,) the unknowns, ``best`` (d,) those of the
+    ``stage`` and ``epoch`` count window lengths and passes over the present one; ``z`` (d,) the unknowns, ``best`` (d,) those of the
     lowest held-out loss ``best_loss`` at this length, ``waited`` epochs ago; ``first`` and ``second`` (d,) the moments of Adam after
     ``steps`` steps; ``starts`` (W, n_x) of the windows; ``caution`` a factor on the learning rate that halves where a step diverges;
     ``generator`` the state of the random generator.
@@ -34,7 +34,7 @@ class TrainingState:
 
     z: np.ndarray
     generator: dict[str, Any]
-    lesson: int = 0
+    stage: int = 0
     epoch: int = 0
     best: np.ndarray = field(default_factory=lambda: np.zeros(0))
     best_loss: float = float("inf")

@@ -28,7 +28,7 @@ def tensorboard_log(folder: Path) -> Iterator[Callable[[Epoch], None]]:
     def log(epoch: Epoch) -> None:
         nonlocal count
         count += 1
-        for name in ("loss", "held_out", "fit", "learning_rate", "lesson"):
+        for name in ("loss", "held_out", "fit", "learning_rate", "stage"):
             writer.add_scalar(name, getattr(epoch, name), count)
 
     try:

@@ -10,8 +10,8 @@ import torch
 from greybox_torch.estimate.fit import FitResult
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import Signals
+from greybox_torch.train.curriculum import Curriculum
 from greybox_torch.train.hybrid import Hybrid
-from greybox_torch.train.lessons import Course
 from greybox_torch.train.physics import Physics
 from greybox_torch.train.polish import Polished
 from greybox_torch.train.settings import TrainingSettings
@@ -50,7 +50,7 @@ class Trained:
     history: tuple[Epoch, ...]
     settings: TrainingSettings
     seconds: float
-    course: Course
+    course: Curriculum
 
     @property
     def physics_chosen(self) -> bool:

@@ -19,17 +19,17 @@ from greybox_torch.estimate.surroundings import survey
 from greybox_torch.estimate.termination import Termination
 from greybox_torch.estimate.uncertainty import uncertainty
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulate.stepper import Stepper, make_stepper
-from greybox_torch.train.course import fitted_starts, held_out_samples, lesson, window_lengths
+from greybox_torch.simulation.stepper import Stepper, make_stepper
+from greybox_torch.train.curriculum import Curriculum, descend
 from greybox_torch.train.gradients import make_gradient
 from greybox_torch.train.gradients.tangents import TangentsGradient
 from greybox_torch.train.hybrid import Hybrid, attach_network, default_port, make_network, port_named
 from greybox_torch.train.keeper import Keeper
-from greybox_torch.train.lessons import Course, descend
 from greybox_torch.train.physics import Physics, estimate_physics, training_problem, with_physics
 from greybox_torch.train.polish import Polished, polish
 from greybox_torch.train.settings import TrainingSettings
 from greybox_torch.train.snapshot import Snapshot, check_snapshot, load_snapshot
+from greybox_torch.train.stages import fitted_starts, held_out_samples, stage, window_lengths
 from greybox_torch.train.state import TrainingState
 from greybox_torch.train.trained import Report, Trained
 from greybox_torch.train.unknowns import Unknowns
@@ -57,7 +57,7 @@ def train_hybrid(
         port: where; the driving body by default.
         signals: what it reads, by their names at the port.
         network: further arguments of :class:`FrictionNet` or :class:`ResidualNet`: units, seed, odd, dissipative.
-        physics: ``model`` as :func:`physics_of` has estimated it before, so that several trainings share that; estimated here otherwise.
+        physics: ``model`` as :func:`fit_physics` has estimated it before, so that several trainings share that; estimated here otherwise.
         progress: is called with what is being done, and at the end of every epoch.
         snapshot: a file that the training can be taken up from; it is written at most every half a second.
         resume: take it up from there.
@@ -71,7 +71,7 @@ def train_hybrid(
     site = port_named(model, port or default_port(model, net))
     learner = make_network(net, site, signals, **{"seed": settings.seed, **(network or {})})
     problem = training_problem(data, model) if physics is None else physics.result.problem
-    lengths = tuple(window_lengths(problem.tape, settings))
+    lengths = tuple(window_lengths(problem.records, settings))
     about = {
         "data": data.sha256,
         "model": model.title,
@@ -99,8 +99,8 @@ def train_hybrid(
 
     def on_epoch(now: TrainingState) -> None:
         kept(now)
-        share = (now.lesson + now.epoch / settings.epochs) / len(lengths)
-        tell(Report(f"windows of {lengths[now.lesson]} samples", share, now.history[-1]))
+        share = (now.stage + now.epoch / settings.epochs) / len(lengths)
+        tell(Report(f"windows of {lengths[now.stage]} samples", share, now.history[-1]))
 
     try:
         descend(course, state, on_epoch)
@@ -137,12 +137,12 @@ def _course(
     physics: FitResult,
     device: str,
     before: Snapshot | None,
-) -> Course:
+) -> Curriculum:
     problem, substeps = hybrid.problem, physics.substeps
-    mask = held_out_samples(problem.tape, lengths[-1], settings)
+    mask = held_out_samples(problem.records, lengths[-1], settings)
     if before is None:
         starts = fitted_starts(problem, stepper, lengths[0], substeps)
-        batch = lesson(problem, lengths[0], starts, mask, settings.warm_up).training_batch
+        batch = stage(problem, lengths[0], starts, mask, settings.warm_up).training_batch
         run = TangentsGradient(problem, stepper, substeps).normal(problem.values, batch)
         samples = max(batch.samples, 1)
         mean_square = max(float(run[-1, -1]) / samples, 1e-12 * _spread(problem) ** 2)
@@ -152,12 +152,12 @@ def _course(
         heights, own = hybrid.heights[problem.free], hybrid.is_network[problem.free]
         unknowns = Unknowns(hybrid, before.scale, np.where(heights, 0.0, rest), own)
     gradient = make_gradient(settings.gradient, problem, stepper, substeps=substeps, device=device)
-    return Course(unknowns, stepper, gradient, settings, lengths, mask, mean_square, _spread(problem), substeps)
+    return Curriculum(unknowns, stepper, gradient, settings, lengths, mask, mean_square, _spread(problem), substeps)
 
 
 def _spread(problem: Problem) -> float:
     """Root mean square of the weighted outputs about their means."""
-    return float(np.sqrt(np.mean(np.nanvar(problem.tape.y * problem.weights[:, None], axis=1))))
+    return float(np.sqrt(np.mean(np.nanvar(problem.records.y * problem.weights[:, None], axis=1))))
 
 
 def _result(polished: Polished, stepper: Stepper, physics: FitResult) -> FitResult:

@@ -15,14 +15,14 @@ from experiments.ablation.page import figure_of, markdown, spread
 from experiments.ablation.results import Case, Entry, load_case, read_case
 from greybox_torch.checkpoint import Checkpoint, save_checkpoint
 from greybox_torch.data import load_dataset
-from greybox_torch.diagnose.restore import attachment_json
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.mechanisms.actuator import ActuatorDeadzone
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.stored import attachment_json
 from greybox_torch.mechanisms.unknown import Unknown
-from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulation.stepper import make_stepper
 from greybox_torch.systems import RobotArm, load_model
 from greybox_torch.train.physics import training_problem
 

@@ -12,10 +12,10 @@ import torch
 from greybox_torch.codegen import build
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.simulate.eager import EagerStepper
-from greybox_torch.simulate.native import NativeStepper
-from greybox_torch.simulate.stepper import Stepper, make_stepper, whole_records
-from greybox_torch.simulate.tape import Tape
+from greybox_torch.simulation.eager import EagerStepper
+from greybox_torch.simulation.native import NativeStepper
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.stepper import Stepper, make_stepper, whole_records
 from greybox_torch.systems import RobotArm
 
 
@@ -46,22 +46,22 @@ def with_hypot(x: Any, u: Any, p: Any) -> Any:
 
 
 @pytest.fixture
-def tape() -> Tape:
+def records() -> Records:
     u = np.sin(0.3 * np.arange(50))[None]
-    return Tape(u, np.zeros((1, 50)), np.full(50, 0.1), np.array([0]), np.array([49]), ("one",), "zoh")
+    return Records(u, np.zeros((1, 50)), np.full(50, 0.1), np.array([0]), np.array([49]), ("one",), "zoh")
 
 
-def simulated(stepper: Stepper, tape: Tape) -> tuple[np.ndarray, np.ndarray]:
-    run = stepper.run(tape, whole_records(tape), np.array([0.7]), np.ones((1, 1)), tangents=True)
+def simulated(stepper: Stepper, records: Records) -> tuple[np.ndarray, np.ndarray]:
+    run = stepper.run(records, whole_records(records), np.array([0.7]), np.ones((1, 1)), tangents=True)
     assert run.dy is not None
     return run.y, run.dy
 
 
-def test_operation_that_is_not_traced_falls_back(tape: Tape) -> None:
+def test_operation_that_is_not_traced_falls_back(records: Records) -> None:
     compiled, fallen = make_stepper(lag(plain), ("k",)), make_stepper(lag(with_hypot), ("k",))
     assert isinstance(compiled, NativeStepper)
     assert isinstance(fallen, EagerStepper)
-    for one, other in zip(simulated(compiled, tape), simulated(fallen, tape), strict=True):
+    for one, other in zip(simulated(compiled, records), simulated(fallen, records), strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12)
 
 
@@ -72,14 +72,14 @@ def test_form_of_an_operation_that_is_not_traced_falls_back() -> None:
     assert isinstance(make_stepper(lag(rate), ()), EagerStepper)
 
 
-def test_without_a_compiler(tape: Tape, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_compiler(records: Records, monkeypatch: pytest.MonkeyPatch) -> None:
     compiled = make_stepper(lag(plain), ("k",))
     monkeypatch.setenv("GREYBOX_COMPILER", "off")
     build.library.cache_clear()
     eager = make_stepper(lag(plain), ("k",))
     build.library.cache_clear()
     assert isinstance(eager, EagerStepper)
-    for one, other in zip(simulated(compiled, tape), simulated(eager, tape), strict=True):
+    for one, other in zip(simulated(compiled, records), simulated(eager, records), strict=True):
         np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12)
 
 
@@ -111,14 +111,14 @@ def test_equations_that_raise_are_refused() -> None:
         make_stepper(lag(lambda x, u, p: x.stage), ())
 
 
-def test_every_parameter_and_state_constant_is_allowed(tape: Tape) -> None:
+def test_every_parameter_and_state_constant_is_allowed(records: Records) -> None:
     model = lag(lambda x, u, p: torch.zeros((), dtype=torch.float64))
-    y, dy = simulated(make_stepper(model, ("k",)), tape)
+    y, dy = simulated(make_stepper(model, ("k",)), records)
     assert (y == 1.0).all()
     assert (dy == 0.0).all()
 
 
-def test_compiled_code_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tape: Tape) -> None:
+def test_compiled_code_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, records: Records) -> None:
     monkeypatch.setenv("GREYBOX_CACHE", str(tmp_path))
     build.library.cache_clear()
     compiled = make_stepper(lag(plain), ("k",))
@@ -135,12 +135,12 @@ def test_compiled_code_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
     build.library.cache_clear()
     assert isinstance(again, NativeStepper)
     assert file.stat().st_mtime_ns == before
-    np.testing.assert_array_equal(simulated(compiled, tape)[0], simulated(again, tape)[0])
+    np.testing.assert_array_equal(simulated(compiled, records)[0], simulated(again, records)[0])
 
 
-def test_damaged_cache_is_compiled_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tape: Tape) -> None:
+def test_damaged_cache_is_compiled_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, records: Records) -> None:
     monkeypatch.setenv("GREYBOX_CACHE", str(tmp_path))
-    expected = simulated(make_stepper(lag(plain), ("k",)), tape)[0]
+    expected = simulated(make_stepper(lag(plain), ("k",)), records)[0]
     build.library.cache_clear()
     make_stepper(lag(plain), ("k",))
     (file,) = tmp_path.glob("*.so")
@@ -150,15 +150,17 @@ def test_damaged_cache_is_compiled_again(tmp_path: Path, monkeypatch: pytest.Mon
     again = make_stepper(lag(plain), ("k",))
     build.library.cache_clear()
     assert isinstance(again, NativeStepper)
-    np.testing.assert_array_equal(simulated(again, tape)[0], expected)
+    np.testing.assert_array_equal(simulated(again, records)[0], expected)
 
 
 def test_stribeck_term_does_not_overflow_at_high_speed() -> None:
     arm = RobotArm()
-    tape = Tape(np.zeros((1, 5)), np.zeros((1, 5)), np.full(5, 5e-4), np.array([0]), np.array([4]), ("one",), "zoh")
+    records = Records(
+        np.zeros((1, 5)), np.zeros((1, 5)), np.full(5, 5e-4), np.array([0]), np.array([4]), ("one",), "zoh"
+    )
     p = np.array([{**arm.values(), "alpha": 50.0}[d.name] for d in arm.declared_parameters])
     run = make_stepper(arm, ("alpha", "F_cs")).run(
-        tape, whole_records(tape), p, np.array([[0.0, 0.0, 50.0, 50.0, 50.0]]), tangents=True
+        records, whole_records(records), p, np.array([[0.0, 0.0, 50.0, 50.0, 50.0]]), tangents=True
     )
     assert run.dy is not None
     assert np.isfinite(run.y).all()

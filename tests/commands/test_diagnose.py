@@ -16,7 +16,7 @@ from greybox_torch.checkpoint import load_checkpoint
 from greybox_torch.cli import app
 from greybox_torch.commands import diagnose as command
 from greybox_torch.data import DataSet
-from greybox_torch.diagnose.verdict import Alternative, Curve, Effect, Trace, Verdict
+from greybox_torch.diagnosis.verdict import Alternative, Curve, Effect, Trace, Verdict
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.files import json_text
@@ -224,7 +224,7 @@ def test_seeds_change_no_verdict(motor_folder: Make) -> None:
 
 def test_stopped(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     """On a clock by which the time is up at once: how far a real one lets the search get depends on the machine."""
-    monkeypatch.setattr("greybox_torch.diagnose.run._Clock.seconds", property(lambda self: 10.0))
+    monkeypatch.setattr("greybox_torch.diagnosis.pipeline._Clock.seconds", property(lambda self: 10.0))
     folder = motor_folder(dead_zone=0.4)
     verdict = json.loads(diagnose(folder, "--json", "--time-limit", "1").stdout)
     assert verdict["complete"] is False and verdict["effects"] == []
@@ -233,7 +233,7 @@ def test_stopped(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_stopped_where_nothing_is_missing(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("greybox_torch.diagnose.run._Clock.seconds", property(lambda self: 10.0))
+    monkeypatch.setattr("greybox_torch.diagnosis.pipeline._Clock.seconds", property(lambda self: 10.0))
     verdict = json.loads(diagnose(motor_folder(), "--json", "--time-limit", "1").stdout)
     assert verdict["mismatch"] is False
 

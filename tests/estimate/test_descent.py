@@ -15,7 +15,7 @@ from greybox_torch.estimate.logarithmic import minimise_on_logarithms
 from greybox_torch.estimate.population import Members, Population, improve
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.simulate.stepper import make_stepper, whole_records
+from greybox_torch.simulation.stepper import make_stepper, whole_records
 
 UNITS = {"torque": "N m", "position": "rad"}
 TRUTH = {"frequency": 2.3, "level": 0.8}
@@ -82,7 +82,7 @@ def test_nothing_finite_is_none(oscillation: Any) -> None:
 def test_a_population_descends_as_its_members_would(oscillation: Any) -> None:
     """Every member, though all share their passes; one that overflows disturbs no other."""
     stepper = make_stepper(oscillation.model, oscillation.free_names)
-    members = Members(oscillation, oscillation.tape, stepper, 1)
+    members = Members(oscillation, oscillation.records, stepper, 1)
     values = np.array([[2.31, 0.7], [np.inf, 1.0], [1.0, 1.0], [2.28, 2.0]])
     people = Population(values, np.zeros((4, 1, 1)), np.full(4, np.inf))
     found = improve(members, people, 40)
@@ -96,7 +96,7 @@ def test_a_population_descends_as_its_members_would(oscillation: Any) -> None:
 
 
 def test_costs_are_those_of_the_normal_matrices(oscillation: Any) -> None:
-    members = Members(oscillation, oscillation.tape, make_stepper(oscillation.model, oscillation.free_names), 1)
+    members = Members(oscillation, oscillation.records, make_stepper(oscillation.model, oscillation.free_names), 1)
     values = np.array([[2.0, 0.7], [1.0, 1.0]])
     people = Population(values, np.zeros((2, 1, 1)), np.full(2, np.inf))
     np.testing.assert_allclose(members.costs(people), members.normals(people)[0], rtol=1e-12)
@@ -148,7 +148,7 @@ def test_the_result_is_the_optimum_of_the_sequential_free_run(data_set: Any) -> 
 
     def sequential(z: np.ndarray) -> Quadratic[None]:
         run = stepper.run(
-            problem.tape, whole_records(problem.tape), z, problem.initial, tangents=True, weights=problem.weights
+            problem.records, whole_records(problem.records), z, problem.initial, tangents=True, weights=problem.weights
         )
         assert run.normal is not None
         matrix = run.normal[0]

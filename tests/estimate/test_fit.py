@@ -17,7 +17,7 @@ from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.termination import Termination
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulation.stepper import make_stepper
 from greybox_torch.systems import load_model
 
 UNITS = {"voltage": "V", "speed": "rad/s"}
@@ -246,8 +246,8 @@ def test_standard_deviations_by_monte_carlo(motor: GreyBoxModel, experiments: li
     stepper = make_stepper(motor, exact.free_names)
     estimates, claims = [], {"plain": [], "sandwich": []}
     for _ in range(150):
-        y = exact.tape.y + rng.normal(0, 0.2, exact.tape.y.shape)
-        found = fit(replace(exact, tape=replace(exact.tape, y=y)), stepper=stepper)
+        y = exact.records.y + rng.normal(0, 0.2, exact.records.y.shape)
+        found = fit(replace(exact, records=replace(exact.records, y=y)), stepper=stepper)
         estimates.append([*found.problem.values[[0, 2]], *found.problem.initial[:, 0]])
         for kind, rows in claims.items():
             rows.append([*found.parameter_deviations(kind).values(), *found.initial_deviations(kind)[:, 0]])
@@ -268,7 +268,7 @@ def test_the_sandwich_allows_for_coloured_noise(motor: GreyBoxModel, experiments
     estimates, plain, sandwich = [], [], []
     for _ in range(60):
         slow = np.convolve(rng.normal(0, 0.2, 400 + 5), np.ones(6) / np.sqrt(6), mode="valid")
-        found = fit(replace(exact, tape=replace(exact.tape, y=exact.tape.y + slow)), stepper=stepper)
+        found = fit(replace(exact, records=replace(exact.records, y=exact.records.y + slow)), stepper=stepper)
         estimates.append(found.problem.values[2])
         plain.append(found.parameter_deviations()["b"])
         sandwich.append(found.parameter_deviations("sandwich")["b"])

@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.fit import fit
 from greybox_torch.estimate.free_run import FreeRun
-from greybox_torch.estimate.identifiability import Weakness, identifiability
+from greybox_torch.estimate.identifiability import Unidentifiable, identifiability
 from greybox_torch.estimate.information import echelon
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.termination import Outcome, Termination
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulation.stepper import make_stepper
 from greybox_torch.systems import load_model
 
 UNITS = {"voltage": "V", "speed": "rad/s"}
@@ -114,7 +114,7 @@ def problem_of(data: DataSet, model: GreyBoxModel) -> Problem:
     return make_problem(data, model, data.estimation())
 
 
-def look(problem: Problem, precision: str = "double", **values: float) -> tuple[Weakness, ...]:
+def look(problem: Problem, precision: str = "double", **values: float) -> tuple[Unidentifiable, ...]:
     numbers = [values.get(n, v) for n, v in zip(problem.names, problem.values, strict=True)]
     problem = problem.with_values(np.array(numbers))
     run = FreeRun(problem, make_stepper(problem.model, problem.free_names, precision=precision))

@@ -13,7 +13,7 @@ from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.overflow import avoidance, first_overflow, overflow_error, remedies
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulation.stepper import make_stepper
 
 
 class Growth(GreyBoxModel):

@@ -15,7 +15,7 @@ from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.profile import THRESHOLD, Profile, check_profiled, profile
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.report.profile import plot_profile
-from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulation.stepper import make_stepper
 from greybox_torch.systems import load_model
 
 UNITS = {"voltage": "V", "speed": "rad/s"}

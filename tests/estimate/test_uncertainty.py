@@ -8,7 +8,7 @@ import pytest
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.uncertainty import uncertainty
-from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulation.stepper import make_stepper
 
 from ..machines.motor import Motor
 

@@ -11,7 +11,7 @@ from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulation.stepper import make_stepper
 
 UNITS = {"voltage": "V", "speed": "rad/s"}
 TIGHT = Settings(iterations=60, tolerance=1e-12, trials=10)
@@ -88,7 +88,7 @@ class WithSpare(TwoGains):
 
 def test_what_the_recordings_do_not_determine_returns_to_what_was_expected(data_set: Any) -> None:
     known = recorded(data_set, 0.7)
-    data = data_set(UNITS, [{"voltage": known.tape.u[0], "speed": known.tape.y[0]}])
+    data = data_set(UNITS, [{"voltage": known.records.u[0], "speed": known.records.y[0]}])
     problem = make_problem(data, WithSpare(), data.estimation())
     found = fitted(problem.with_values(np.array([2.0, 0.7, 3.0, 50.0])))
     assert found.problem.values == pytest.approx([2.0, 0.7, 3.0, 1.0], rel=5e-3)

@@ -21,11 +21,11 @@ from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Surroundings
 from greybox_torch.mechanisms.sensor import SensorGain, SensorLag
 from greybox_torch.mechanisms.transmission import Backlash, TransmissionError
 from greybox_torch.model import Balance, Body, GreyBoxModel, Input, Output, Parameter, Signals, State
-from greybox_torch.simulate.eager import EagerStepper
-from greybox_torch.simulate.native import NativeStepper
-from greybox_torch.simulate.odeint import solve
-from greybox_torch.simulate.stepper import make_stepper, whole_records
-from greybox_torch.simulate.tape import Tape
+from greybox_torch.simulation.eager import EagerStepper
+from greybox_torch.simulation.native import NativeStepper
+from greybox_torch.simulation.odeint import solve
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.stepper import make_stepper, whole_records
 from greybox_torch.systems import RobotArm
 
 STEP = 1e-3
@@ -47,13 +47,13 @@ class Tank(GreyBoxModel):
         return {"level": x.level}
 
 
-def tape_of(samples: int, lengths: tuple[int, ...] = (), hold: str = "zoh", step: float = STEP) -> Tape:
+def records_of(samples: int, lengths: tuple[int, ...] = (), hold: str = "zoh", step: float = STEP) -> Records:
     t = step * np.arange(samples)
     u = 3.0 * np.sin(9.0 * t) + np.sin(170.0 * t + 1.0)
     sizes = np.array(lengths or (samples,))
     last = np.cumsum(sizes) - 1
     steps = np.full(samples, step)
-    return Tape(u[None], np.zeros((1, samples)), steps, last - sizes + 1, last, ("",) * len(sizes), hold)
+    return Records(u[None], np.zeros((1, samples)), steps, last - sizes + 1, last, ("",) * len(sizes), hold)
 
 
 def attached(model: GreyBoxModel, around: Surroundings, *effects: Attachment, **options: Any) -> AugmentedModel:
@@ -74,9 +74,9 @@ def starts(model: GreyBoxModel, base: np.ndarray, **given: float) -> np.ndarray:
     return np.hstack([base, np.tile(rest, (len(base), 1))])
 
 
-def free_run(model: GreyBoxModel, tape: Tape, p: np.ndarray, x0: np.ndarray, stepper: Any = None) -> np.ndarray:
+def free_run(model: GreyBoxModel, records: Records, p: np.ndarray, x0: np.ndarray, stepper: Any = None) -> np.ndarray:
     stepper = stepper or EagerStepper.of(model, (), "cpu", "double")
-    return stepper.run(model.prepared(tape, p), whole_records(tape), p, x0).y[:, :, 0]
+    return stepper.run(model.prepared(records, p), whole_records(records), p, x0).y[:, :, 0]
 
 
 def at(port: str, mechanism: Mechanism, **rest: Any) -> Attachment:
@@ -224,11 +224,13 @@ class ArmWithPlay(RobotArm):
 
 def test_backlash_is_a_dead_zone_in_the_spring_and_nothing_else(around) -> None:
     model = attached(ARM, around, EFFECTS[0])
-    tape = tape_of(300)
-    augmented = free_run(model, tape, values_of(model, half_gap=0.005, k_g3=40.0), ARM_START, make_stepper(model, ()))
+    records = records_of(300)
+    augmented = free_run(
+        model, records, values_of(model, half_gap=0.005, k_g3=40.0), ARM_START, make_stepper(model, ())
+    )
     written = ArmWithPlay()
-    expected = free_run(written, tape, values_of(written, k_g3=40.0), ARM_START, make_stepper(written, ()))
-    without = free_run(ARM, tape, values_of(ARM, k_g3=40.0), ARM_START)
+    expected = free_run(written, records, values_of(written, k_g3=40.0), ARM_START, make_stepper(written, ()))
+    without = free_run(ARM, records, values_of(ARM, k_g3=40.0), ARM_START)
     np.testing.assert_allclose(augmented, expected, rtol=0, atol=1e-12)
     assert np.abs(augmented - without).max() > 0.1
 
@@ -237,12 +239,12 @@ def test_backlash_is_a_dead_zone_in_the_spring_and_nothing_else(around) -> None:
 @pytest.mark.parametrize("samples", [0.0, 3.0, 2.4])
 def test_delay_shifts_the_input(around, samples, hold) -> None:
     model = attached(Tank(), around, at("actuator", InputDelay()))
-    tape = tape_of(90, (50, 40), hold)
-    u, index = tape.u[0], np.arange(50.0)
+    records = records_of(90, (50, 40), hold)
+    u, index = records.u[0], np.arange(50.0)
     shifted = [np.interp(index[:n] - samples, index[:n], part) for n, part in ((50, u[:50]), (40, u[50:]))]
-    late = replace(tape, u=np.concatenate(shifted)[None])
+    late = replace(records, u=np.concatenate(shifted)[None])
     x0 = np.array([[1.0], [0.4]])
-    delayed = free_run(model, tape, values_of(model, T=samples * STEP), x0)
+    delayed = free_run(model, records, values_of(model, T=samples * STEP), x0)
     expected = free_run(Tank(), late, values_of(Tank()), x0)
     known = np.arange(50) < np.array([[50], [40]])
     np.testing.assert_allclose(delayed[known], expected[known], rtol=0, atol=1e-14)
@@ -251,12 +253,12 @@ def test_delay_shifts_the_input(around, samples, hold) -> None:
 def test_what_was_put_in_before_a_record_is_not_known(around) -> None:
     """Seen: a record under way; the torque of its first moments fell on a late actuator, whose delay was then taken for a sensor's."""
     delay = at("actuator", InputDelay())
-    tape = tape_of(90, (50, 40))
+    records = records_of(90, (50, 40))
     model = attached(Tank(), around, delay)
-    missing = np.isnan(model.prepared(tape, values_of(model, T=2.4 * STEP)).y[0])
+    missing = np.isnan(model.prepared(records, values_of(model, T=2.4 * STEP)).y[0])
     assert np.flatnonzero(missing).tolist() == [0, 1, 2, 50, 51, 52]
     looked_at = attached(Tank(), around, delay, probed=[delay])
-    assert not np.isnan(looked_at.prepared(tape, values_of(looked_at, T=2.4 * STEP)).y).any()
+    assert not np.isnan(looked_at.prepared(records, values_of(looked_at, T=2.4 * STEP)).y).any()
 
 
 def of_kind(mechanism: Mechanism) -> tuple[GreyBoxModel, np.ndarray, Attachment]:
@@ -271,8 +273,8 @@ def of_kind(mechanism: Mechanism) -> tuple[GreyBoxModel, np.ndarray, Attachment]
 
 @pytest.fixture(scope="module")
 def plain() -> dict[str, np.ndarray]:
-    tape = tape_of(8)
-    arm, tank = (free_run(m, tape, values_of(m), x) for m, x in ((ARM, ARM_START), (Tank(), np.ones((1, 1)))))
+    records = records_of(8)
+    arm, tank = (free_run(m, records, values_of(m), x) for m, x in ((ARM, ARM_START), (Tank(), np.ones((1, 1)))))
     return {"robot_arm": arm, "Tank": tank}
 
 
@@ -285,7 +287,7 @@ def test_changes_nothing_at_zero_amplitude(mechanism, around, plain) -> None:
     zero = {f"{effect.prefix}.{name}": 0.0 for name in probe.directions}
     own = {f"{effect.prefix}.{name}": value for name, value in probe.values.items()}
     p = values_of(model, **own, **zero)
-    assert np.array_equal(free_run(model, tape_of(8), p, starts(model, x0, lagged=2.0)), plain[base.title])
+    assert np.array_equal(free_run(model, records_of(8), p, starts(model, x0, lagged=2.0)), plain[base.title])
 
 
 @pytest.mark.parametrize("mechanism", [pytest.param(m(), id=m.name) for m in LIBRARY.values()])
@@ -296,17 +298,17 @@ def test_acts_on_the_output(mechanism, around, plain) -> None:
     size |= {name: 0.5 for name in ("limit", "threshold", "where") if name in mechanism.probes(around)[0].values}
     size |= {"side": -1.0} if mechanism.name == "end_stop" else {}
     p = values_of(model, **{f"{effect.prefix}.{n}": v for n, v in size.items()})
-    changed = free_run(model, tape_of(8), p, starts(model, x0, lagged=2.0, bristle=0.1, slip=0.1, stretch=0.1))
+    changed = free_run(model, records_of(8), p, starts(model, x0, lagged=2.0, bristle=0.1, slip=0.1, stretch=0.1))
     assert np.abs(changed - plain[base.title]).max() > 1e-9
 
 
 def test_native_and_eager_agree(full, compiled) -> None:
     model, p, x0 = full
-    tape = tape_of(40)
-    prepared = model.prepared(tape, p)
+    records = records_of(40)
+    prepared = model.prepared(records, p)
     options = {"tangents": True, "start_directions": np.eye(x0.shape[1])[None]}
-    fast = compiled.run(prepared, whole_records(tape), p, x0, **options)
-    slow = EagerStepper.of(model, SENSITIVE, "cpu", "double").run(prepared, whole_records(tape), p, x0, **options)
+    fast = compiled.run(prepared, whole_records(records), p, x0, **options)
+    slow = EagerStepper.of(model, SENSITIVE, "cpu", "double").run(prepared, whole_records(records), p, x0, **options)
     np.testing.assert_allclose(fast.y, slow.y, rtol=1e-11, atol=1e-11)
     assert fast.dy is not None and slow.dy is not None
     scale = np.abs(slow.dy).max(axis=(0, 1, 2))
@@ -317,28 +319,28 @@ def test_native_and_eager_agree(full, compiled) -> None:
 def test_native_and_odeint_agree(full, compiled, around) -> None:
     _, p, x0 = full
     model = attached(ARM, around, *EFFECTS)
-    tape = tape_of(60)
-    prepared = model.prepared(tape, p)
-    fine = compiled.run(prepared, whole_records(tape), p, x0, substeps=16).y[0, :, 0]
+    records = records_of(60)
+    prepared = model.prepared(records, p)
+    fine = compiled.run(prepared, whole_records(records), p, x0, substeps=16).y[0, :, 0]
     model.set_values(dict(zip(model.values(), p, strict=True)))
     with torch.no_grad():
-        reference = solve(model, prepared, whole_records(tape), torch.as_tensor(x0.T), method="dopri5")
+        reference = solve(model, prepared, whole_records(records), torch.as_tensor(x0.T), method="dopri5")
     np.testing.assert_allclose(fine, reference[0, :, 0].numpy(), rtol=0, atol=1e-5)
 
 
 @pytest.mark.parametrize("name", SENSITIVE)
 def test_tangents_are_differences(full, compiled, name) -> None:
     model, p, x0 = full
-    tape, index = tape_of(200), list(model.values()).index(name)
+    records, index = records_of(200), list(model.values()).index(name)
 
     def output(value: float) -> np.ndarray:
         moved = p.copy()
         moved[index] = value
-        return free_run(model, tape, moved, x0, compiled)[0]
+        return free_run(model, records, moved, x0, compiled)[0]
 
     step = 1e-6 * p[index]
     expected = (output(p[index] + step) - output(p[index] - step)) / (2 * step)
-    run = compiled.run(model.prepared(tape, p), whole_records(tape), p, x0, tangents=True)
+    run = compiled.run(model.prepared(records, p), whole_records(records), p, x0, tangents=True)
     assert run.dy is not None
     tangent = run.dy[0, :, 0, SENSITIVE.index(name)]
     assert np.abs(expected).max() * abs(p[index]) > 1e-4
@@ -359,11 +361,11 @@ def test_tangents_of_effects_that_are_not_there(around) -> None:
     names = ["k_a", *(f"{e.prefix}.{SHARE}" for e in effects[:3]), "sensor.sensor_gain.gain_error"]
     names.append("motor.constant_bias.bias")
     p = values_of(model, half_gap=0.005, limit=1.0, **{f"{e.prefix}.{SHARE}": 0.0 for e in effects[:3]})
-    x0, tape = starts(model, ARM_START, lagged=1.0), tape_of(40)
+    x0, records = starts(model, ARM_START, lagged=1.0), records_of(40)
     fast = make_stepper(model, names, at_zero=names[1:])
     assert isinstance(fast, NativeStepper)
     runs = [
-        s.run(tape, whole_records(tape), p, x0, tangents=True).dy
+        s.run(records, whole_records(records), p, x0, tangents=True).dy
         for s in (fast, EagerStepper.of(model, names, "cpu", "double"))
     ]
     assert (np.abs(runs[1]).max(axis=(0, 1, 2)) > 0).all()
@@ -405,10 +407,10 @@ def test_transmission_error_with_its_whole_reaction_neither_makes_nor_loses_ener
     model = attached(ARM, around, error)
     none = {"F_v": 0.0, "F_c": 0.0, "F_cs": 0.0, "d_g": 0.0, "d_a": 0.0}
     p = values_of(model, **none, a=0.02, b=0.01, reaction=share)
-    tape = replace(tape_of(2000), u=np.zeros((1, 2000)))
+    records = replace(records_of(2000), u=np.zeros((1, 2000)))
     x0 = starts(model, np.array([[0.3, 0.0, 6.0, 5.0, 4.0]]))
     stepper = EagerStepper.of(model, (), "cpu", "double")
-    states = stepper.run(tape, whole_records(tape), p, x0, keep_states=True).states
+    states = stepper.run(records, whole_records(records), p, x0, keep_states=True).states
     assert states is not None
     value = dict(zip((q.name for q in model.declared_parameters), p, strict=True))
     gear, arm, *speeds, angle = states[0].T

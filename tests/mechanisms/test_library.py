@@ -142,7 +142,7 @@ def test_every_parameter_moves_the_law(mechanism: Mechanism, around, anywhere, l
         values[name] = min(0.5, 0.6 * next(p for p in parameters if p.name == name).bounds[1])
     if "where" in values:
         values["where"] = 1.0
-    if mechanism.name == "input_delay":  # its time shifts the tape; the law sees the shifted signal
+    if mechanism.name == "input_delay":  # its time shifts the records; the law sees the shifted signal
         return
     for p in parameters:
         other = {**values, p.name: values[p.name] - 0.05 * (abs(values[p.name]) or 1.0)}

@@ -11,7 +11,6 @@ import torch
 from hypothesis import given
 from hypothesis import strategies as st
 
-from greybox_torch.diagnose.restore import attachment_json, restored_model
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
@@ -19,12 +18,13 @@ from greybox_torch.mechanisms.friction_net import FrictionNet
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.network import Network
 from greybox_torch.mechanisms.residual_net import ResidualNet
+from greybox_torch.mechanisms.stored import attachment_json, restored_model
 from greybox_torch.model import Signals
-from greybox_torch.simulate.eager import EagerStepper
-from greybox_torch.simulate.native import NativeStepper
-from greybox_torch.simulate.odeint import solve
-from greybox_torch.simulate.stepper import Windows, make_stepper
-from greybox_torch.simulate.tape import Tape
+from greybox_torch.simulation.eager import EagerStepper
+from greybox_torch.simulation.native import NativeStepper
+from greybox_torch.simulation.odeint import solve
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.stepper import Windows, make_stepper
 from greybox_torch.systems import RobotArm
 
 UNITS = {"speed": "rad/s", "load": "N m", "position": "rad", "time": "s", "deflection": "rad", "rate": "rad/s"}
@@ -133,11 +133,11 @@ def test_any_curve_can_be_drawn(net: Network) -> None:
     assert np.sqrt(np.mean((columns @ heights - target) ** 2)) < limit * np.sqrt(np.mean(target**2))
 
 
-def arm_tape(samples: int = 60) -> Tape:
+def arm_records(samples: int = 60) -> Records:
     t = 5e-4 * np.arange(samples)
     torque = 5.0 * np.sin(40.0 * t) + np.sin(2 * np.pi * 19 * t)
     dt, ends = np.full(samples, 5e-4), (np.array([0]), np.array([samples - 1]))
-    return Tape(torque[None], np.zeros((1, samples)), dt, *ends, ("",), "zoh")
+    return Records(torque[None], np.zeros((1, samples)), dt, *ends, ("",), "zoh")
 
 
 PLACES = [
@@ -163,10 +163,10 @@ def started(model: AugmentedModel) -> np.ndarray:
 
 @pytest.mark.parametrize(("port", "net"), PLACES)
 def test_the_hybrid_begins_as_the_physics(port: str, net: Network) -> None:
-    model, tape = hybrid(port, net), arm_tape()
+    model, records = hybrid(port, net), arm_records()
     windows = Windows(np.array([0]), np.array([59]), 60)
     own, plain = (
-        make_stepper(m, ()).run(tape, windows, np.array(list(m.values().values())), x0).y
+        make_stepper(m, ()).run(records, windows, np.array(list(m.values().values())), x0).y
         for m, x0 in ((model, started(model)), (RobotArm(), started(model)[:, :5]))
     )
     np.testing.assert_array_equal(own, plain)
@@ -175,7 +175,7 @@ def test_the_hybrid_begins_as_the_physics(port: str, net: Network) -> None:
 @pytest.mark.parametrize(("port", "net"), PLACES)
 def test_every_route_gives_the_same(port: str, net: Network) -> None:
     """Compiled, eager and torchdiffeq's, with weights that make a difference; tangents compiled and eager."""
-    model, tape = hybrid(port, net), arm_tape(20)
+    model, records = hybrid(port, net), arm_records(20)
     rng = np.random.default_rng(4)
     numbers = {n: v + 0.3 * rng.uniform() * n.split(".")[-1].startswith("out_") for n, v in model.values().items()}
     model.set_values(numbers)
@@ -183,14 +183,14 @@ def test_every_route_gives_the_same(port: str, net: Network) -> None:
     free = tuple(q.name for q in model.declared_parameters if not q.fixed and q.name.startswith(port))
     native = make_stepper(model, free)
     assert isinstance(native, NativeStepper)
-    compiled = native.run(tape, windows, p, x0, tangents=True)
-    eager = EagerStepper.of(model, free, "cpu", "double").run(tape, windows, p, x0, tangents=True)
+    compiled = native.run(records, windows, p, x0, tangents=True)
+    eager = EagerStepper.of(model, free, "cpu", "double").run(records, windows, p, x0, tangents=True)
     np.testing.assert_allclose(compiled.y, eager.y, rtol=1e-12, atol=1e-12)
     assert compiled.dy is not None and eager.dy is not None
     np.testing.assert_allclose(compiled.dy, eager.dy, rtol=1e-7, atol=1e-12)
     assert np.abs(compiled.dy).max() > 0
     with torch.no_grad():
-        other = solve(model, tape, windows, torch.as_tensor(x0.T.copy())).numpy()
+        other = solve(model, records, windows, torch.as_tensor(x0.T.copy())).numpy()
     np.testing.assert_allclose(compiled.y[0].T, other[:, :, 0], rtol=1e-7, atol=1e-7)
 
 

@@ -108,10 +108,10 @@ def test_a_row_says_what_it_lacks(key: str, monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_a_hundred_columns_are_offered() -> None:
-    from greybox_torch.diagnose.candidates import candidates
+    from greybox_torch.diagnosis.screen.candidates import candidates
     from greybox_torch.estimate.shifted_states import shifted_states
     from greybox_torch.estimate.surroundings import survey
-    from greybox_torch.simulate.stepper import make_stepper
+    from greybox_torch.simulation.stepper import make_stepper
 
     problem = simulated_problem(4, 1000)
     around = survey(problem.model, problem, make_stepper(problem.model, ()), 1)

@@ -10,63 +10,63 @@ from experiments.speed.network import network_task
 from experiments.speed.peers.torchdiffeq_arm import gradient
 from experiments.speed.peers.torchdiffeq_network import NetworkGradient
 from experiments.speed.peers.versus import records_for_peers
-from experiments.speed.records import NAMES, SAMPLE_TIME, SENSITIVE, SENSITIVE_INDEX, Published, simulated_tape
+from experiments.speed.records import NAMES, SAMPLE_TIME, SENSITIVE, SENSITIVE_INDEX, Published, simulated_records
 from experiments.speed.row import apart
-from greybox_torch.simulate.stepper import Run, make_stepper, whole_records
-from greybox_torch.simulate.tape import Tape
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.stepper import Run, make_stepper, whole_records
 from greybox_torch.systems import RobotArm
 
 SAMPLES = 1200
 
 
 @pytest.fixture(scope="module")
-def tape() -> Tape:
-    return simulated_tape(2, SAMPLES)
+def records() -> Records:
+    return simulated_records(2, SAMPLES)
 
 
-def arm(tape: Tape) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def arm(records: Records) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Parameters, start states and torques; slow at first, so that the friction around rest is at work in so short a record."""
-    p, x0, u = records_for_peers(tape)
+    p, x0, u = records_for_peers(records)
     return p, 0.1 * x0, u
 
 
 @pytest.fixture(scope="module")
-def run(tape: Tape) -> Run:
-    p, x0, _ = arm(tape)
-    return make_stepper(RobotArm(), SENSITIVE).run(tape, whole_records(tape), p, x0, tangents=True)
+def run(records: Records) -> Run:
+    p, x0, _ = arm(records)
+    return make_stepper(RobotArm(), SENSITIVE).run(records, whole_records(records), p, x0, tangents=True)
 
 
 @pytest.fixture(scope="module")
 def task() -> Published:
     """The published unknowns on a quiet simulated record, a little off its true values."""
-    tape = simulated_tape(1, 600, noise=0.05)
-    p, x0, u = records_for_peers(tape)
+    records = simulated_records(1, 600, noise=0.05)
+    p, x0, u = records_for_peers(records)
     free, states = np.arange(6, 13), np.arange(2, 5)
     p[free] *= 1.03
     start = np.concatenate([p[free], x0[0, states]])
     low, high = np.full(10, -np.inf), np.full(10, np.inf)
-    return Published(u[0], tape.y[0], p, x0[0], free, states, np.abs(start), low, high)
+    return Published(u[0], records.y[0], p, x0[0], free, states, np.abs(start), low, high)
 
 
 def test_the_record_moves_in_both_directions() -> None:
-    speed = simulated_tape(1, 20000, noise=0.0).y[0]
+    speed = simulated_records(1, 20000, noise=0.0).y[0]
     assert speed.max() > 5 and speed.min() < -5 and np.isfinite(speed).all()
 
 
-def test_numba(peers, tape: Tape, run: Run) -> None:
+def test_numba(peers, records: Records, run: Run) -> None:
     peers("numba")
     from experiments.speed.peers import numba_arm
 
-    p, x0, u = arm(tape)
+    p, x0, u = arm(records)
     speeds = numba_arm.free_run(np.tile(p, (2, 1)), x0, u, SAMPLE_TIME)
     assert apart(run.y[..., 0], speeds) < 1e-9
 
 
-def test_numba_sensitivities(peers, tape: Tape, run: Run) -> None:
+def test_numba_sensitivities(peers, records: Records, run: Run) -> None:
     peers("numba")
     from experiments.speed.peers import numba_sensitivities
 
-    p, x0, u = arm(tape)
+    p, x0, u = arm(records)
     seed = np.eye(len(NAMES))[:, list(SENSITIVE_INDEX)]
     speeds, derivatives = numba_sensitivities.sensitivities(p, x0, u, SAMPLE_TIME, seed, np.zeros((5, len(SENSITIVE))))
     assert apart(run.y[..., 0], speeds) < 1e-9
@@ -75,11 +75,11 @@ def test_numba_sensitivities(peers, tape: Tape, run: Run) -> None:
         assert apart(run.dy[:, :, 0, d], derivatives[..., d]) < 1e-9, name
 
 
-def test_jax(peers, tape: Tape, run: Run) -> None:
+def test_jax(peers, records: Records, run: Run) -> None:
     peers("jax")
     from experiments.speed.peers import jax_arm
 
-    p, x0, u = arm(tape)
+    p, x0, u = arm(records)
     assert apart(run.y[..., 0], jax_arm.free_run(SAMPLE_TIME)(p, x0, u)) < 1e-9
     speeds, derivatives = jax_arm.sensitivities(SAMPLE_TIME, SENSITIVE_INDEX)(p, x0, u)
     assert apart(run.y[..., 0], speeds) < 1e-9
@@ -104,7 +104,7 @@ def test_torchdiffeq_has_our_gradient(task: Published) -> None:
     p, x0 = task.at(task.start)
     names = [NAMES[i] for i in task.free]
     n = len(task.u)
-    own = Tape(task.u[None], task.y[None], np.full(n, SAMPLE_TIME), np.array([0]), np.array([n - 1]), ("",), "zoh")
+    own = Records(task.u[None], task.y[None], np.full(n, SAMPLE_TIME), np.array([0]), np.array([n - 1]), ("",), "zoh")
     directions = np.eye(5)[None, list(task.free_states)]
     ours = make_stepper(RobotArm(), names).run(
         own, whole_records(own), p, x0[None], tangents=True, start_directions=directions

@@ -15,7 +15,7 @@ from greybox_torch.estimate.comparison import compare
 from greybox_torch.estimate.fit import FitResult, fit
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import Body, Coupling, Signals
-from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulation.stepper import make_stepper
 from greybox_torch.systems import RobotArm, load_model
 
 RECORDINGS = Path(__file__).parents[3] / "shared" / "recordings" / "robot_arm"

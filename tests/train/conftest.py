@@ -10,7 +10,7 @@ from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.mechanisms.friction_net import FrictionNet
 from greybox_torch.model import Body, GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.simulate.stepper import make_stepper
+from greybox_torch.simulation.stepper import make_stepper
 from greybox_torch.train.hybrid import Hybrid, attach_network
 
 

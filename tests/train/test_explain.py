@@ -9,7 +9,7 @@ import pytest
 import torch
 
 from greybox_torch.errors import UserError
-from greybox_torch.train import Trained, TrainingSettings, physics_of, train_hybrid
+from greybox_torch.train import Trained, TrainingSettings, fit_physics, train_hybrid
 from greybox_torch.train.explain import Explanation, explain, needless
 from greybox_torch.train.learned_force import force_at, learned_force
 
@@ -97,7 +97,7 @@ def test_several_trainings_widen_the_band(of_no_law: Trained, no_law: Explanatio
         Turntable(),
         settings=replace(SHORT, seed=1),
         network={"units": 5},
-        physics=physics_of(table_data, Turntable(), settings=SHORT),
+        physics=fit_physics(table_data, Turntable(), settings=SHORT),
     )
     both = explain(of_no_law, [other], refit=False)
     assert both.members == 2 and not both.terms
@@ -132,7 +132,7 @@ def test_hybrid_of_an_augmented_model(drag_data, law: Explanation) -> None:
     """A network beside a named law has nothing left to learn; it begins where the estimate of both is."""
     assert law.term is not None
     augmented = law.term.problem.model
-    physics = physics_of(drag_data, augmented, values={"table.quadratic_drag.c": 0.008}, settings=SHORT)
+    physics = fit_physics(drag_data, augmented, values={"table.quadratic_drag.c": 0.008}, settings=SHORT)
     values = dict(zip(physics.result.problem.names, physics.result.problem.values, strict=True))
     assert values["table.quadratic_drag.c"] == pytest.approx(0.01, rel=0.1)
     found = train_hybrid(drag_data, augmented, settings=replace(SHORT, epochs=1), physics=physics)

@@ -39,9 +39,9 @@ def test_better_than_the_physics(trained: Trained) -> None:
 
 
 def test_adam_itself_learns(trained: Trained) -> None:
-    first = [e for e in trained.history if e.lesson == 0]
+    first = [e for e in trained.history if e.stage == 0]
     assert first[-1].loss < 0.9 * first[0].loss
-    assert {e.lesson for e in trained.history} == {0, 1, 2}
+    assert {e.stage for e in trained.history} == {0, 1, 2}
     assert all(e.learning_rate <= SHORT.learning_rate for e in trained.history)
 
 

@@ -11,7 +11,7 @@ import torch
 from greybox_torch.estimate.free_run import visited_states
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.model import Body, GreyBoxModel, Parameter, Signals
-from greybox_torch.simulate.stepper import Stepper
+from greybox_torch.simulation.stepper import Stepper
 
 
 class NetworkModel(GreyBoxModel):
@@ -82,10 +82,10 @@ def network_model(
 ) -> NetworkModel:
     """A network scaled to where the signals of ``problem`` move in free run and to the forces that act there."""
     states = np.concatenate(visited_states(problem, stepper, substeps=substeps))
-    both = np.concatenate([states, problem.tape.u.T], axis=1)
+    both = np.concatenate([states, problem.records.u.T], axis=1)
     spread = np.sqrt(np.mean(both**2, axis=0))
     values = dict(zip(problem.names, problem.values, strict=True))
-    forces = [force_scale(base, place, states, problem.tape.u.T, values) for place in ports_of(base)]
+    forces = [force_scale(base, place, states, problem.records.u.T, values) for place in ports_of(base)]
     return NetworkModel(base, width, np.where(spread > 0, spread, 1.0), forces, seed=seed)
 
 

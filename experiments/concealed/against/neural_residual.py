@@ -20,11 +20,11 @@ import numpy as np
 from experiments.concealed.against.judge import Answer
 from experiments.concealed.against.network import NetworkModel, network_model
 from experiments.concealed.against.plain import CHOSEN_ON, Plain
-from greybox_torch.diagnose.refit import lengths
+from greybox_torch.diagnosis.hypothesis.fit import lengths
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.window_fit import fit_windows
-from greybox_torch.simulate.stepper import Stepper, make_stepper
+from greybox_torch.simulation.stepper import Stepper, make_stepper
 
 WIDTHS = (6, 12)
 """Hidden units tried."""
@@ -96,11 +96,11 @@ def _at_length(plain: Plain, first: Problem, last: Problem, problem: Problem, st
 
 def _parts(problem: Problem) -> tuple[Problem, Problem]:
     """The first part of the estimation experiments and the last."""
-    tape = problem.tape
-    cuts = [int(f) + int((1.0 - CHOSEN_ON) * n) for f, n in zip(tape.first, tape.lengths, strict=True)]
-    first = [slice(int(f), c) for f, c in zip(tape.first, cuts, strict=True)]
-    last = [slice(c, int(end) + 1) for c, end in zip(cuts, tape.last, strict=True)]
-    return tuple(replace(problem, tape=tape.part(spans, tape.names)) for spans in (first, last))  # type: ignore[return-value]
+    records = problem.records
+    cuts = [int(f) + int((1.0 - CHOSEN_ON) * n) for f, n in zip(records.first, records.lengths, strict=True)]
+    first = [slice(int(f), c) for f, c in zip(records.first, cuts, strict=True)]
+    last = [slice(c, int(end) + 1) for c, end in zip(cuts, records.last, strict=True)]
+    return tuple(replace(problem, records=records.part(spans, records.names)) for spans in (first, last))  # type: ignore[return-value]
 
 
 def _left(plain: Plain, last: Problem, stepper: Stepper, length: int) -> float:

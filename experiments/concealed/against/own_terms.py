@@ -22,7 +22,7 @@ def own_columns(problem: Problem, port: str, states: np.ndarray) -> np.ndarray:
     body its friction coefficients, at a coupling its stiffness and damping. Parameters that act elsewhere too have no column.
     """
     model = problem.model
-    x, u = torch.as_tensor(states.T.copy()), torch.as_tensor(problem.driving_tape.u)
+    x, u = torch.as_tensor(states.T.copy()), torch.as_tensor(problem.driving_records.u)
     values = torch.as_tensor(problem.values)
     push = _along(lambda force: _rates(model, x, u, problem, values, port, force), torch.zeros((), dtype=torch.float64))
     strength = (push**2).sum(dim=0)

@@ -10,17 +10,17 @@ from pathlib import Path
 import numpy as np
 
 from greybox_torch.data import DataSet, load_dataset
-from greybox_torch.diagnose.final import finish
-from greybox_torch.diagnose.noise import noise_floor
-from greybox_torch.diagnose.refit import hypothesis, lengths
+from greybox_torch.diagnosis.hypothesis.final import finish
+from greybox_torch.diagnosis.hypothesis.fit import hypothesis, lengths
+from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.comparison import Score, compare
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.simulate.stepper import make_stepper
-from greybox_torch.simulate.substeps import choose_substeps
+from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.substeps import choose_substeps
 from greybox_torch.systems import load_model
 
 CHOSEN_ON = 0.3
@@ -46,10 +46,10 @@ class Plain:
     def noise(self) -> np.ndarray:
         """Standard deviation (n_y,) of each output's noise, from the recordings alone."""
         rows = []
-        for k in range(len(self.problem.tape.y)):
-            alone = replace(self.problem.tape, y=self.problem.tape.y[k : k + 1])
-            rows.append(np.sqrt(noise_floor(replace(self.problem, tape=alone, weights=np.ones(1)))))
-        return np.maximum(np.array(rows), 1e-9 * np.nanstd(self.problem.tape.y, axis=1))
+        for k in range(len(self.problem.records.y)):
+            alone = replace(self.problem.records, y=self.problem.records.y[k : k + 1])
+            rows.append(np.sqrt(noise_floor(replace(self.problem, records=alone, weights=np.ones(1)))))
+        return np.maximum(np.array(rows), 1e-9 * np.nanstd(self.problem.records.y, axis=1))
 
     @property
     def length(self) -> int:
@@ -102,7 +102,7 @@ def retune(card: Path) -> Plain:
     model = load_model(data.model)
     problem = all_starts_free(data, make_problem(data, model, data.estimation()))
     stepper = make_stepper(model, problem.free_names)
-    substeps = choose_substeps(problem.driving_tape, stepper, problem.values, problem.initial) or 1
+    substeps = choose_substeps(problem.driving_records, stepper, problem.values, problem.initial) or 1
     tuned = hypothesis(problem, (), {}, [{}], substeps=substeps, stepper=stepper)
     if tuned is None:
         raise NumericalError(

@@ -23,12 +23,12 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from experiments.concealed.against.plain import Plain
-from greybox_torch.diagnose.candidates import attach
+from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.estimate.problem import problem_for
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
-from greybox_torch.simulate.stepper import Windows, make_stepper
+from greybox_torch.simulation.stepper import Windows, make_stepper
 
 SLACK = 1e-3
 """Share of a state's movement in a sample by which the model may be wrong elsewhere than at the port."""
@@ -84,9 +84,9 @@ class Smoother:
         self.name = model.declared_parameters[-1].name
         self.problem = problem_for(plain.problem, model, {})
         self.stepper = make_stepper(model, (self.name,))
-        self.tape = self.problem.driving_tape
-        count, n_x = self.tape.u.shape[1], len(model.states)
-        last = np.repeat(self.tape.last, self.tape.lengths)
+        self.records = self.problem.driving_records
+        count, n_x = self.records.u.shape[1], len(model.states)
+        last = np.repeat(self.records.last, self.records.lengths)
         samples = np.arange(count)
         self.each = Windows(samples, np.minimum(samples + 1, last), 1)
         self.joined = samples < last  # whether a next sample belongs to the same experiment
@@ -98,7 +98,7 @@ class Smoother:
         fit = self.plain.windows
         stepper = make_stepper(self.plain.problem.model, ())
         run = stepper.run(
-            fit.problem.driving_tape,
+            fit.problem.driving_records,
             fit.windows,
             fit.problem.values,
             fit.starts,
@@ -106,7 +106,7 @@ class Smoother:
             keep_states=True,
         )
         assert run.states is not None
-        sizes = np.diff(np.append(fit.windows.start, self.tape.u.shape[1]))
+        sizes = np.diff(np.append(fit.windows.start, self.records.u.shape[1]))
         states = np.concatenate([s[:n] for s, n in zip(run.states, sizes, strict=True)])
         return Smoothed(states, np.zeros(len(states)))
 
@@ -135,7 +135,7 @@ class Smoother:
         """Outputs (N, n_y), the next states (N, n_x), and their derivatives over state and force (N, n_y or n_x, n_x + 1)."""
         self.values[:, -1] = force
         run = self.stepper.run(
-            self.tape,
+            self.records,
             self.each,
             self.values,
             states,
@@ -166,8 +166,8 @@ class Smoother:
         """The Gauss-Newton step (N, n_x + 1) in states and force."""
         count, n_x = states.shape
         size = n_x + 1
-        error = (np.nan_to_num(self.tape.y.T - y)) / self.plain.noise
-        slope = by_y / self.plain.noise[:, None] * ~np.isnan(self.tape.y.T)[..., None]
+        error = (np.nan_to_num(self.records.y.T - y)) / self.plain.noise
+        slope = by_y / self.plain.noise[:, None] * ~np.isnan(self.records.y.T)[..., None]
         diagonal = np.swapaxes(slope, 1, 2) @ slope
         gradient = (np.swapaxes(slope, 1, 2) @ error[..., None])[..., 0]
         now = np.zeros((count, size, size))  # the links to the next sample, by the state and the force of this one

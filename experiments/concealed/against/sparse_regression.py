@@ -29,9 +29,9 @@ from experiments.concealed.against.residual_force import Smoother
 from experiments.concealed.against.sparse_fit import Sparse, named, regress
 from experiments.concealed.against.sparse_terms import SparseTerms, columns, extended
 from experiments.concealed.against.terms import terms
-from greybox_torch.diagnose.candidates import attach
-from greybox_torch.diagnose.final import finish
-from greybox_torch.diagnose.refit import Hypothesis, hypothesis, lengths
+from greybox_torch.diagnosis.hypothesis.final import finish
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, hypothesis, lengths
+from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.mechanisms.attachment import Attachment
@@ -138,11 +138,13 @@ def _entered(plain: Plain, sparse: Sparse) -> Entry | None:
 
 def _estimated(plain: Plain, effects: Sequence[Attachment]) -> Hypothesis | None:
     """The model with ``effects``, everything estimated over windows of the first part; None where these overflow."""
-    tape, stop = plain.problem.tape, split(plain)
-    spans = [slice(int(f), min(int(f + n), stop)) for f, n in zip(tape.first, tape.lengths, strict=True) if f < stop]
+    records, stop = plain.problem.records, split(plain)
+    spans = [
+        slice(int(f), min(int(f + n), stop)) for f, n in zip(records.first, records.lengths, strict=True) if f < stop
+    ]
     part = replace(
         plain.problem,
-        tape=tape.part(spans, tape.names[: len(spans)]),
+        records=records.part(spans, records.names[: len(spans)]),
         initial=plain.problem.initial[: len(spans)],
     )
     at = lengths(plain.problem)[:2]
@@ -176,8 +178,8 @@ def _on_records(plain: Plain, entry: Entry) -> dict[str, float]:
 
 
 def split(plain: Plain) -> int:
-    """The sample of the tape at which the last part of the estimation experiments begins."""
-    return int((1.0 - CHOSEN_ON) * plain.problem.tape.u.shape[1])
+    """The sample of the records at which the last part of the estimation experiments begins."""
+    return int((1.0 - CHOSEN_ON) * plain.problem.records.u.shape[1])
 
 
 def _by_name(problem: Problem) -> dict[str, float]:

@@ -9,7 +9,7 @@ import numpy as np
 import torch
 
 from experiments.concealed.against.terms import Term
-from greybox_torch.diagnose.candidates import attach
+from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
@@ -62,17 +62,17 @@ def columns(problem: Problem, model: AugmentedModel, attachment: Attachment, sta
         problem: of the plain model, on the experiments that the states belong to.
     """
     restated = problem_for(problem, model, {})
-    tape = restated.driving_tape
+    records = restated.driving_records
     names = [s.name for s in model.states]
     full = torch.zeros(len(names), len(states), dtype=torch.float64)
     full[: states.shape[1]] = torch.as_tensor(states.T.copy())
-    u = torch.as_tensor(tape.u)
+    u = torch.as_tensor(records.u)
     pairs = zip(restated.names, restated.values, strict=True)
     p = Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in pairs})
     with torch.no_grad():
-        rates = model.rates(full, u, p)[states.shape[1] :] * torch.as_tensor(tape.dt)
-        for e in range(len(tape.first)):
-            span = tape.span(e)
+        rates = model.rates(full, u, p)[states.shape[1] :] * torch.as_tensor(records.dt)
+        for e in range(len(records.first)):
+            span = records.span(e)
             full[states.shape[1] :, span] = torch.cumsum(rates[:, span], dim=1) - rates[:, span]
         x = Signals("state", {n: full[i] for i, n in enumerate(names)})
         inputs = Signals("input", {s.name: u[i] for i, s in enumerate(model.inputs)})

@@ -28,7 +28,7 @@ class NetworkGradient:
 
     def __init__(self, task: NetworkTask, *, adjoint: bool) -> None:
         self.adjoint = adjoint
-        self.field = ArmWithNetwork(torch.as_tensor(task.p), torch.as_tensor(task.tape.u[0, task.index]))
+        self.field = ArmWithNetwork(torch.as_tensor(task.p), torch.as_tensor(task.records.u[0, task.index]))
         first, last = self.field.network[0], self.field.network[2]
         self.weights = (first.weight, first.bias, last.weight, last.bias)
         with torch.no_grad():
@@ -37,7 +37,7 @@ class NetworkGradient:
             ):
                 weight.copy_(torch.as_tensor(values).reshape(weight.shape))
         self.x0 = torch.as_tensor(task.x0)
-        self.measured = torch.as_tensor(task.tape.y[0, task.index])
+        self.measured = torch.as_tensor(task.records.y[0, task.index])
         self.times = grid(task.windows.steps)
 
     def __call__(self) -> tuple[float, np.ndarray]:

@@ -7,13 +7,13 @@ from collections.abc import Callable
 import numpy as np
 
 from experiments.speed.peers.versus import records_for_peers
-from experiments.speed.records import SAMPLE_TIME, SAMPLES, simulated_tape
+from experiments.speed.records import SAMPLE_TIME, SAMPLES, simulated_records
 from experiments.speed.row import Entry, Row, Target, apart
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import Settings
 from experiments.speed.timing import interleaved, once
-from greybox_torch.simulate.stepper import make_stepper, whole_records
-from greybox_torch.simulate.tape import Tape
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.stepper import make_stepper, whole_records
 from greybox_torch.systems import RobotArm
 
 TITLE = "Free run, 4 experiments × 19 838 samples"
@@ -25,18 +25,18 @@ Route = Callable[[], np.ndarray]
 JAX = ("JAX, lax.scan, jit, vmap", "JAX, lax.scan, jit, lax.map")
 
 
-def routes(tape: Tape, p: np.ndarray, x0: np.ndarray) -> dict[str, Route]:
+def routes(records: Records, p: np.ndarray, x0: np.ndarray) -> dict[str, Route]:
     """Our ways to the speeds (E, N), by name. The fastest that agrees with the sequential result counts."""
-    stepper, windows = make_stepper(RobotArm(), ()), whole_records(tape)
-    return {"ours, stepper on whole records": lambda: stepper.run(tape, windows, p, x0).y[..., 0]}
+    stepper, windows = make_stepper(RobotArm(), ()), whole_records(records)
+    return {"ours, stepper on whole records": lambda: stepper.run(records, windows, p, x0).y[..., 0]}
 
 
 def measure(settings: Settings, progress: Progress) -> Row:
     from experiments.speed.peers import jax_arm, numba_arm
 
-    tape = simulated_tape(4, 2000 if settings.quick else SAMPLES)
-    p, x0, u = records_for_peers(tape)
-    ours = routes(tape, p, x0)
+    records = simulated_records(4, 2000 if settings.quick else SAMPLES)
+    p, x0, u = records_for_peers(records)
+    ours = routes(records, p, x0)
     side_by_side, in_turn = jax_arm.free_run(SAMPLE_TIME), jax_arm.free_run_in_turn(SAMPLE_TIME)
     rows = np.tile(p, (len(u), 1))
     peers: dict[str, Route] = {

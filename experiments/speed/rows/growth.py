@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from experiments.speed.peers.versus import records_for_peers
-from experiments.speed.records import SAMPLE_TIME, SENSITIVE, SENSITIVE_INDEX, simulated_tape
+from experiments.speed.records import SAMPLE_TIME, SENSITIVE, SENSITIVE_INDEX, simulated_records
 from experiments.speed.row import Entry, Row, Target
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import Settings, missing_peers
 from experiments.speed.timing import interleaved
-from greybox_torch.simulate.stepper import make_stepper, whole_records
+from greybox_torch.simulation.stepper import make_stepper, whole_records
 from greybox_torch.systems import RobotArm
 
 TITLE = "Growth with samples: one record, 12 sensitivities, normal matrices"
@@ -30,12 +30,12 @@ def measure(settings: Settings, progress: Progress) -> Row:
         matrix = jax_arm.normal_matrix(SAMPLE_TIME, SENSITIVE_INDEX)
     for samples in sizes:
         progress(f"{samples} samples")
-        tape = simulated_tape(1, samples)
-        p, x0, u = records_for_peers(tape)
-        windows, weights, measured = whole_records(tape), np.ones(1), tape.y[0]
+        records = simulated_records(1, samples)
+        p, x0, u = records_for_peers(records)
+        windows, weights, measured = whole_records(records), np.ones(1), records.y[0]
 
-        def ours(tape=tape, windows=windows, p=p, x0=x0, weights=weights) -> np.ndarray:
-            normal = stepper.run(tape, windows, p, x0, tangents=True, weights=weights).normal
+        def ours(records=records, windows=windows, p=p, x0=x0, weights=weights) -> np.ndarray:
+            normal = stepper.run(records, windows, p, x0, tangents=True, weights=weights).normal
             assert normal is not None
             return normal[0]
 

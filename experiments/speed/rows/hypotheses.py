@@ -14,15 +14,15 @@ from experiments.speed.row import Entry, Row, Target, apart
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import Settings
 from experiments.speed.timing import interleaved, once
-from greybox_torch.diagnose.candidates import candidates
-from greybox_torch.diagnose.screen import Screen
+from greybox_torch.diagnosis.screen.candidates import candidates
+from greybox_torch.diagnosis.screen.score_test import Screen
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.shifted_states import shifted_states
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.simulate.stepper import cut, make_stepper, whole_records
+from greybox_torch.simulation.stepper import cut, make_stepper, whole_records
 
 TITLE = "100 hypothesis columns over windows of 310 samples, 4 experiments"
 NEEDS = Needs()
@@ -48,7 +48,7 @@ def measure(settings: Settings, progress: Progress) -> Row:
 
     def sensitivities() -> np.ndarray:
         run = plain.run(
-            problem.driving_tape,
+            problem.driving_records,
             fitted.windows,
             problem.values,
             fitted.starts,
@@ -84,12 +84,12 @@ def measure(settings: Settings, progress: Progress) -> Row:
 def _columns_pass(screen: Screen, fitted: WindowFit) -> Callable[[], np.ndarray]:
     """The screen's pass alone: memories begin where carrying them along has put them, once."""
     values, begun = screen.values(fitted.problem), screen.starts(fitted, 1)
-    tape, (count, own) = screen.model.prepared(fitted.problem.tape, values), fitted.starts.shape
+    records, (count, own) = screen.model.prepared(fitted.problem.records, values), fitted.starts.shape
     eye = np.broadcast_to(np.eye(own, begun.shape[1]), (count, own, begun.shape[1]))
 
     def columns() -> np.ndarray:
         run = screen.stepper.run(
-            tape,
+            records,
             fitted.windows,
             values,
             begun,
@@ -121,10 +121,12 @@ def chosen(offered: list[Attachment], around: dict[str, Surroundings], columns: 
 
 def _windows(problem: Problem, stepper) -> WindowFit:
     """Windows that begin on the free run."""
-    windows = cut(problem.tape, LENGTH)
-    run = stepper.run(problem.tape, whole_records(problem.tape), problem.values, problem.initial, keep_states=True)
-    experiment = np.searchsorted(problem.tape.first, windows.start, side="right") - 1
-    begun = np.array(run.states[experiment, windows.start - problem.tape.first[experiment]])
+    windows = cut(problem.records, LENGTH)
+    run = stepper.run(
+        problem.records, whole_records(problem.records), problem.values, problem.initial, keep_states=True
+    )
+    experiment = np.searchsorted(problem.records.first, windows.start, side="right") - 1
+    begun = np.array(run.states[experiment, windows.start - problem.records.first[experiment]])
     return WindowFit(problem, windows, begun, 1.0, np.ones(len(windows.start)), 0)
 
 

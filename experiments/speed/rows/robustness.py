@@ -16,7 +16,7 @@ from greybox_torch.estimate.fit import fit
 from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.metrics import fit_percent
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulate.stepper import Stepper, make_stepper
+from greybox_torch.simulation.stepper import Stepper, make_stepper
 
 TITLE = "Start values within a factor of 2 of the card's, 12 free parameters, real arm"
 NEEDS = Needs(recordings=True)
@@ -79,7 +79,7 @@ def _arrival(problem: Problem, stepper: Stepper) -> Arrival:
             warnings.simplefilter("ignore", RuntimeWarning)  # overflow of a trial step is part of the work
             found = fit(problem, stepper=stepper, with_uncertainty=False)
             simulated = simulate(found.problem, stepper, substeps=found.substeps)[0][:, 0]
-        share = fit_percent(problem.tape.y[0], simulated)
+        share = fit_percent(problem.records.y[0], simulated)
     except Exception as error:  # a crash of any kind is what is counted here
         return Arrival(float("-inf"), time.perf_counter() - began, f"{type(error).__name__}: {error}")
     failure = "" if np.isfinite(share) and np.isfinite(found.mse) else "the estimate does not simulate"

@@ -7,13 +7,13 @@ from collections.abc import Callable
 import numpy as np
 
 from experiments.speed.peers.versus import records_for_peers
-from experiments.speed.records import SAMPLE_TIME, SAMPLES, SENSITIVE, SENSITIVE_INDEX, simulated_tape
+from experiments.speed.records import SAMPLE_TIME, SAMPLES, SENSITIVE, SENSITIVE_INDEX, simulated_records
 from experiments.speed.row import Entry, Row, Target, apart
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import Settings
 from experiments.speed.timing import interleaved, once
-from greybox_torch.simulate.stepper import make_stepper, whole_records
-from greybox_torch.simulate.tape import Tape
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.stepper import make_stepper, whole_records
 from greybox_torch.systems import RobotArm
 
 TITLE = "Free run with 12 forward sensitivities, 4 experiments × 19 838 samples"
@@ -24,12 +24,12 @@ Route = Callable[[], np.ndarray]
 JAX, NUMBA = "JAX, jacfwd of the scan, jit, vmap", "Numba, derivatives by hand"
 
 
-def routes(tape: Tape, p: np.ndarray, x0: np.ndarray) -> dict[str, Route]:
+def routes(records: Records, p: np.ndarray, x0: np.ndarray) -> dict[str, Route]:
     """Our ways to the derivatives (E, N, 12) of the speeds, by name. The fastest that agrees with the peers counts."""
-    stepper, windows = make_stepper(RobotArm(), SENSITIVE), whole_records(tape)
+    stepper, windows = make_stepper(RobotArm(), SENSITIVE), whole_records(records)
 
     def sequential() -> np.ndarray:
-        derivatives = stepper.run(tape, windows, p, x0, tangents=True).dy
+        derivatives = stepper.run(records, windows, p, x0, tangents=True).dy
         assert derivatives is not None
         return derivatives[:, :, 0]
 
@@ -39,9 +39,9 @@ def routes(tape: Tape, p: np.ndarray, x0: np.ndarray) -> dict[str, Route]:
 def measure(settings: Settings, progress: Progress) -> Row:
     from experiments.speed.peers import jax_arm, numba_arm, numba_sensitivities
 
-    tape = simulated_tape(4, 2000 if settings.quick else SAMPLES)
-    p, x0, u = records_for_peers(tape)
-    ours = routes(tape, p, x0)
+    records = simulated_records(4, 2000 if settings.quick else SAMPLES)
+    p, x0, u = records_for_peers(records)
+    ours = routes(records, p, x0)
     jitted = jax_arm.sensitivities(SAMPLE_TIME, SENSITIVE_INDEX)
     seed, fixed = np.zeros((numba_arm.PARAMETERS, len(SENSITIVE))), np.zeros((numba_arm.STATES, len(SENSITIVE)))
     seed[SENSITIVE_INDEX, np.arange(len(SENSITIVE))] = 1.0

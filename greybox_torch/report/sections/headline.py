@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from greybox_torch.diagnose.verdict import Verdict
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report import text
 

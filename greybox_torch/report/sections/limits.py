@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from greybox_torch.diagnose.verdict import Verdict
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.metrics import root_mean_square
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.report import text

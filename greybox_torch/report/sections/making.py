@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from greybox_torch.diagnose.verdict import Verdict
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report import text
 from greybox_torch.report.about import About
 

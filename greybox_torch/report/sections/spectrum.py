@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import welch
 
-from greybox_torch.diagnose.verdict import Trace, Verdict
+from greybox_torch.diagnosis.verdict import Trace, Verdict
 from greybox_torch.report import text
 from greybox_torch.report.chart.marks import line
 from greybox_torch.report.chart.panel import Chart, Key, Panel, side_by_side

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from greybox_torch.diagnose.verdict import Trace, Verdict
+from greybox_torch.diagnosis.verdict import Trace, Verdict
 from greybox_torch.estimate.metrics import root_mean_square
 from greybox_torch.report import text
 from greybox_torch.report.chart.marks import Mark, line, span

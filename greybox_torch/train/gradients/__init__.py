@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulate.stepper import Stepper
+from greybox_torch.simulation.stepper import Stepper
 from greybox_torch.train.gradients.adjoint import AdjointGradient
 from greybox_torch.train.gradients.loss import Batch, Loss, SequenceGradient
 from greybox_torch.train.gradients.recomputation import RecomputationGradient

@@ -11,7 +11,7 @@ import numpy as np
 import torch
 
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulate.odeint import solve
+from greybox_torch.simulation.odeint import solve
 from greybox_torch.train.gradients.loss import Batch, Loss, squared_errors
 
 
@@ -30,8 +30,8 @@ class AdjointGradient:
         p = torch.tensor(values, dtype=torch.float64, device=self.device, requires_grad=True)
         x0 = torch.as_tensor(np.ascontiguousarray(batch.starts.T), device=self.device)
         model = self.problem.model
-        tape = model.prepared(batch.tape, values)
-        y = solve(model, tape, batch.windows, x0, values=p, adjoint=True, substeps=self.substeps)
+        records = model.prepared(batch.records, values)
+        y = solve(model, records, batch.windows, x0, values=p, adjoint=True, substeps=self.substeps)
         energy = squared_errors(y, batch, self.problem.weights)
         energy.backward()
         assert p.grad is not None

@@ -8,21 +8,21 @@ from typing import Protocol
 import numpy as np
 import torch
 
-from greybox_torch.simulate.stepper import Windows
-from greybox_torch.simulate.tape import Tape
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.stepper import Windows
 
 
 @dataclass(frozen=True)
 class Batch:
-    """Windows of ``tape`` with their start states (B, n_x). Samples that carry no weight (warm-up, missing ones) are NaN on the tape."""
+    """Windows of ``records`` with their start states (B, n_x); samples without weight (warm-up, missing ones) are NaN there."""
 
-    tape: Tape
+    records: Records
     windows: Windows
     starts: np.ndarray
 
     @property
     def index(self) -> np.ndarray:
-        """Samples (B, K) of the tape that the windows cover; beyond the end of a window its last one."""
+        """Samples (B, K) of the records that the windows cover; beyond the end of a window its last one."""
         wanted = self.windows.start[:, None] + np.arange(self.windows.steps)
         return np.minimum(wanted, self.windows.last[:, None])
 
@@ -34,7 +34,7 @@ class Batch:
     @property
     def samples(self) -> int:
         """How many measured values the loss compares."""
-        return int((~np.isnan(self.tape.y[:, self.index]) & self.inside).sum())
+        return int((~np.isnan(self.records.y[:, self.index]) & self.inside).sum())
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class SequenceGradient(Protocol):
 def squared_errors(simulated: torch.Tensor, batch: Batch, weights: np.ndarray, first: int = 0) -> torch.Tensor:
     """Sum of the squared weighted errors of ``simulated`` (n_y, K', B): the outputs from the sample ``first`` of each window on."""
     stretch = slice(first, first + simulated.shape[1])
-    measured = torch.as_tensor(np.swapaxes(batch.tape.y[:, batch.index[:, stretch]], 1, 2)).to(simulated)
+    measured = torch.as_tensor(np.swapaxes(batch.records.y[:, batch.index[:, stretch]], 1, 2)).to(simulated)
     known = ~torch.isnan(measured) & torch.as_tensor(batch.inside[:, stretch].T).to(simulated.device)
     error = torch.where(known, torch.nan_to_num(measured) - simulated, torch.zeros_like(simulated))
     return ((error * torch.as_tensor(weights).to(simulated)[:, None, None]) ** 2).sum()

@@ -18,7 +18,7 @@ from torch.utils.checkpoint import checkpoint
 
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.model import Signals
-from greybox_torch.simulate.eager import runge_kutta_step
+from greybox_torch.simulation.eager import runge_kutta_step
 from greybox_torch.train.gradients.loss import Batch, Loss, squared_errors
 
 
@@ -37,7 +37,7 @@ class RecomputationGradient:
 
     def __call__(self, values: np.ndarray, batch: Batch) -> Loss:
         p = torch.tensor(values, dtype=torch.float64, device=self.device, requires_grad=True)
-        inputs = _Inputs(self.problem.model.prepared(batch.tape, values), batch, self.device)
+        inputs = _Inputs(self.problem.model.prepared(batch.records, values), batch, self.device)
         x = torch.as_tensor(np.ascontiguousarray(batch.starts.T), device=self.device)
         steps = batch.windows.steps
         chunk = self.chunk if self.chunk is not None else max(1, isqrt(steps))
@@ -71,11 +71,11 @@ class RecomputationGradient:
 class _Inputs:
     """The inputs of a batch at its samples."""
 
-    def __init__(self, tape, batch: Batch, device: str) -> None:
+    def __init__(self, records, batch: Batch, device: str) -> None:
         index = batch.index
-        following = np.minimum(index + 1, batch.windows.last[:, None]) if tape.hold == "foh" else index
-        self.u0, self.u1 = (torch.as_tensor(tape.u[:, i], device=device) for i in (index, following))
-        self.dt = torch.as_tensor(tape.dt[index], device=device)
+        following = np.minimum(index + 1, batch.windows.last[:, None]) if records.hold == "foh" else index
+        self.u0, self.u1 = (torch.as_tensor(records.u[:, i], device=device) for i in (index, following))
+        self.dt = torch.as_tensor(records.dt[index], device=device)
 
     def at(self, n: int) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
         """Inputs (n_u, B) at both ends of the n-th sample interval, and its length (B,) in s."""

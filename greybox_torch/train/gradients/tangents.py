@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulate.stepper import Stepper
+from greybox_torch.simulation.stepper import Stepper
 from greybox_torch.train.gradients.loss import Batch, Loss
 
 
@@ -30,7 +30,7 @@ class TangentsGradient:
     def normal(self, values: np.ndarray, batch: Batch) -> np.ndarray:
         """[J e]ᵀ[J e] (d + 1, d + 1) of the outputs' sensitivities to the free parameters and the weighted errors."""
         run = self.stepper.run(
-            self.problem.model.prepared(batch.tape, values),
+            self.problem.model.prepared(batch.records, values),
             batch.windows,
             values,
             batch.starts,

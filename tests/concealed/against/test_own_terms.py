@@ -7,7 +7,7 @@ import pytest
 
 from experiments.concealed.against.own_terms import own_columns
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulate.tape import Tape
+from greybox_torch.simulation.records import Records
 from greybox_torch.systems import RobotArm
 
 RNG = np.random.default_rng(0)
@@ -19,7 +19,7 @@ TORQUE = RNG.standard_normal((1, 40))
 def problem() -> Problem:
     model = RobotArm()
     parameters = model.declared_parameters
-    tape = Tape(
+    records = Records(
         TORQUE, np.zeros((1, 40)), np.full(40, 1e-3), np.array([0]), np.array([39]), ("one",), "zoh"
     )  # fmt: skip
     size = len(parameters)
@@ -27,7 +27,7 @@ def problem() -> Problem:
     free = np.array([p.name != "J" for p in parameters])
     unbounded = np.full(size, np.inf)
     return Problem(
-        model, tape, tuple(p.name for p in parameters), values, -unbounded, unbounded, free, np.zeros((1, 5)),
+        model, records, tuple(p.name for p in parameters), values, -unbounded, unbounded, free, np.zeros((1, 5)),
         np.ones(5, dtype=bool), np.ones(1), np.zeros(5, dtype=bool), values,
     )  # fmt: skip
 

@@ -38,7 +38,7 @@ def test_the_missing_force_is_the_drag_and_what_the_tuned_friction_has_taken_of_
     plain = tuned("drag")
     smoother = Smoother(plain, "rotor")
     found = smoother.run(smoother.start(), 300.0)
-    speed, torque = found.states[:, 0], 0.1 * plain.problem.tape.u[0]
+    speed, torque = found.states[:, 0], 0.1 * plain.problem.records.u[0]
     values = dict(zip(plain.problem.names, plain.problem.values, strict=True))
     true_acceleration = (torque - 0.03 * speed - DRAG * speed * abs(speed)) / 0.02
     expected = values["J"] * true_acceleration - (torque - values["b"] * speed)
@@ -49,4 +49,4 @@ def test_the_missing_force_is_the_drag_and_what_the_tuned_friction_has_taken_of_
 def test_a_model_that_lacks_nothing_is_given_no_force_to_speak_of(tuned: Callable[[str], Plain]) -> None:
     smoother = Smoother(tuned("plain"), "rotor")
     force = smoother.run(smoother.start(), 1000.0).force
-    assert np.sqrt(np.mean(force**2)) < 0.02 * 0.1 * np.sqrt(np.mean(smoother.tape.u[0] ** 2))
+    assert np.sqrt(np.mean(force**2)) < 0.02 * 0.1 * np.sqrt(np.mean(smoother.records.u[0] ** 2))

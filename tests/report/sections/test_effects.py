@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from greybox_torch.diagnose.verdict import Timeline, Verdict
+from greybox_torch.diagnosis.verdict import Timeline, Verdict
 from greybox_torch.report.sections.effects import Effects
 
 

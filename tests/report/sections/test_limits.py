@@ -3,7 +3,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from greybox_torch.diagnose.verdict import Verdict
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report.sections.limits import Limits
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greybox_torch.diagnose.verdict import Verdict
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report.sections.spectrum import spectra
 
 

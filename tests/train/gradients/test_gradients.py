@@ -9,7 +9,7 @@ import pytest
 
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulate.stepper import Windows, make_stepper
+from greybox_torch.simulation.stepper import Windows, make_stepper
 from greybox_torch.train.gradients import GRADIENTS, Batch, make_gradient
 from greybox_torch.train.gradients.recomputation import RecomputationGradient
 
@@ -23,10 +23,10 @@ def problem(table_hybrid) -> Problem:
 def batch(problem) -> Batch:
     """Windows of two lengths in two experiments, with missing samples, a warm-up, and one that ends with its experiment."""
     start, last = np.array([13, 200, 1590, 1695]), np.array([26, 210, 1599, 1708])
-    y = problem.tape.y.copy()
+    y = problem.records.y.copy()
     y[0, [15, 16, 205, 1700, 1701]] = np.nan
     windows = Windows(start, last, int((last - start).max()) + 1)
-    return Batch(replace(problem.tape, y=y), windows, problem.tape.y[0, start][:, None] + 0.1)
+    return Batch(replace(problem.records, y=y), windows, problem.records.y[0, start][:, None] + 0.1)
 
 
 def difference(gradient, values: np.ndarray, batch: Batch, direction: np.ndarray) -> float:
@@ -72,8 +72,8 @@ def test_recomputation_changes_nothing(chunk: int, problem, batch) -> None:
 
 @pytest.mark.parametrize("name", GRADIENTS)
 def test_straight_lines_between_samples(name: str, problem, batch) -> None:
-    foh = replace(problem, tape=replace(problem.tape, hold="foh"))
-    other = replace(batch, tape=replace(batch.tape, hold="foh"))
+    foh = replace(problem, records=replace(problem.records, hold="foh"))
+    other = replace(batch, records=replace(batch.records, hold="foh"))
     stepper = make_stepper(problem.model, problem.free_names)
     found = make_gradient(name, foh, stepper)(problem.values, other)
     exact = make_gradient("tangents", foh, stepper)(problem.values, other)

@@ -1,0 +1,1 @@
+"""What held-out experiments say of what was found."""

@@ -1,0 +1,166 @@
+"""What an effect gains on experiments that had no part in choosing it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import partial, reduce
+
+import numpy as np
+
+from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.confirm.start_positions import placed
+from greybox_torch.diagnosis.hypothesis.fit import WINDOW_SETTINGS, Hypothesis, lengths
+from greybox_torch.diagnosis.hypothesis.noise import noise_floor
+from greybox_torch.diagnosis.verdict import Timeline
+from greybox_torch.estimate.initial import estimate_initial
+from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
+from greybox_torch.estimate.window_fit import WindowFit, fit_windows
+
+
+@dataclass(frozen=True)
+class Gain:
+    """The share of the held-out squared error that an effect removes, its standard error over windows, and where along the experiments."""
+
+    share: float
+    error: float
+    timelines: tuple[Timeline, ...] = ()
+
+    @property
+    def errors_away(self) -> float:
+        """How many standard errors the share lies above zero."""
+        return self.share / max(self.error, 1e-12) if np.isfinite(self.error) else 0.0
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """95 % interval of the share."""
+        return self.share - 1.96 * self.error, self.share + 1.96 * self.error
+
+
+class HeldOut:
+    """The validation experiments of a data set, and what hypotheses of a search leave there.
+
+    ``problem`` is the plain model on them, outputs weighted as in the search. Fits are kept: confirming asks for some of them again.
+    """
+
+    def __init__(self, dataset: DataSet, problem: Problem, substeps: int) -> None:
+        others = all_starts_free(dataset, make_problem(dataset, problem.model, dataset.validation()))
+        self.problem, self.substeps = replace(others, weights=problem.weights), substeps
+        self._kept: dict[int, tuple[Hypothesis, tuple[WindowFit, ...]]] = {}
+
+    def fits(self, hypothesis: Hypothesis) -> tuple[WindowFit, ...]:
+        """The hypothesis with the parameters it was fitted with, as :func:`held_out_fits`."""
+        if id(hypothesis) not in self._kept:
+            self._kept[id(hypothesis)] = hypothesis, held_out_fits(hypothesis, self.problem, self.substeps)
+        return self._kept[id(hypothesis)][1]
+
+    def times_noise(self, hypothesis: Hypothesis) -> np.ndarray:
+        """Root mean square errors in units of the noise, over the windows where they are largest, by experiment, shape (J,).
+
+        Infinite where the hypothesis cannot be simulated at all.
+        """
+        squares = [_mean_squares(fit) for fit in self.fits(hypothesis)] or [
+            np.full(len(self.problem.records.first), np.inf)
+        ]
+        return np.sqrt(np.max(squares, axis=0) / max(noise_floor(self.problem), 1e-300))
+
+    def fits_at(self, hypothesis: Hypothesis, values: Mapping[str, float]) -> tuple[WindowFit, ...]:
+        """The hypothesis with other parameters."""
+        return held_out_fits(hypothesis, self.problem, self.substeps, values)
+
+
+def held_out_fits(
+    hypothesis: Hypothesis, problem: Problem, substeps: int, values: Mapping[str, float] | None = None
+) -> tuple[WindowFit, ...]:
+    """The hypothesis on other experiments: parameters as they are, window start states free, at the middle and the longest windows.
+
+    Args:
+        problem: the plain model on the held-out experiments.
+        values: parameter values by name, by default the hypothesis's own.
+    """
+    own = hypothesis.values() if values is None else values
+    known: Mapping[str, float] = {n: own[n] for n in hypothesis.problem.names}
+    restated = (
+        problem_for(problem, hypothesis.model, known)
+        if hypothesis.effects
+        else problem.with_values(np.array([own[n] for n in problem.names]))
+    )
+    fixed = replace(restated, free=np.zeros_like(restated.free))
+    started = estimate_initial(fixed, hypothesis.stepper, substeps=substeps)
+    shortest, *longer = lengths(problem)
+    short = placed(started, hypothesis.stepper, shortest, substeps)
+    if short is None or not longer:
+        return () if short is None else (short,)
+    found: list[WindowFit] = []
+    for length in longer:
+        there = placed(short.problem, hypothesis.stepper, length, substeps, shorter=short) or short
+        fit = partial(
+            fit_windows, there.problem, hypothesis.stepper, length, substeps=substeps, settings=WINDOW_SETTINGS
+        )
+        ended = reduce(_window_by_window, (fit(shorter=there), fit(shorter=short), fit()))
+        if ended is not None:
+            found.append(ended)
+            short = replace(short, problem=ended.problem)
+    return tuple(found)
+
+
+def _window_by_window(one: WindowFit | None, other: WindowFit | None) -> WindowFit | None:
+    """Of two fits of the start states the better one in every window: with the parameters fixed, windows are independent.
+
+    From one start a window or two may end in a local minimum, which would outweigh all the others.
+    """
+    if one is None or other is None:
+        return one or other
+    better = other.energies < one.energies
+    energies = np.where(better, other.energies, one.energies)
+    share = float(energies.sum()) / max(float(one.energies.sum()), 1e-300)
+    starts = np.where(better[:, None], other.starts, one.starts)
+    return replace(one, starts=starts, energies=energies, mean_square=share * one.mean_square)
+
+
+def _mean_squares(fit: WindowFit) -> np.ndarray:
+    """Mean squared weighted errors by experiment, shape (J,)."""
+    records = fit.problem.records
+    of = records.experiments(fit.windows.start)
+    known = [int(np.sum(~np.isnan(records.y[:, records.span(e)]))) for e in range(len(records.first))]
+    return np.bincount(of, weights=fit.energies, minlength=len(known)) / np.maximum(known, 1)
+
+
+def gain(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> Gain:
+    """What ``after`` removes of the error of ``before``, at the window length where that is surest.
+
+    The share is a ratio of sums over windows; its standard error is that of a ratio estimator (W. G. Cochran, Sampling Techniques, 1977).
+    Where the model ``before`` cannot be simulated at all, everything is gained.
+    """
+    if after and not before:
+        return Gain(1.0, 0.0)
+    found = []
+    for old, new in zip(before, after, strict=False):
+        count, total = len(old.energies), float(old.energies.sum())
+        if count == len(new.energies) and total > 0:
+            difference = old.energies - new.energies
+            share = float(difference.sum()) / total
+            scatter = float(np.std(difference - share * old.energies, ddof=1)) if count > 1 else np.inf
+            found.append(Gain(share, float(scatter * np.sqrt(count) / total)))
+    return max(found, key=lambda g: g.errors_away, default=Gain(0.0, float("inf")))
+
+
+def timelines(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> tuple[Timeline, ...]:
+    """Where along the held-out experiments ``after`` removes error of ``before``: over the shortest windows that both could be fitted on.
+
+    Windows in which the effect costs a little count as none.
+    """
+    pairs = zip(before, after, strict=False)
+    found = next(((old, new) for old, new in pairs if old.windows.steps == new.windows.steps), None)
+    if found is None:
+        return ()
+    old, new = found
+    removed = np.maximum(old.energies - new.energies, 0.0)
+    shares, records, windows = removed / max(float(removed.sum()), 1e-300), old.problem.records, old.windows
+    of = records.experiments(windows.start)
+    result = []
+    for e, name in enumerate(records.names):
+        time, first = records.time(e), int(records.first[e])
+        edges = np.append(time[windows.start[of == e] - first], time[-1])
+        result.append(Timeline(name, edges, shares[of == e]))
+    return tuple(result)

@@ -1,0 +1,68 @@
+"""Where the estimation experiments do not show what others do, one of those is taken to choose with as well."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain
+from greybox_torch.diagnosis.confirm.take_back import BEYOND_CHANCE
+from greybox_torch.diagnosis.hypothesis.noise import far_above_noise
+from greybox_torch.diagnosis.select.search import Search
+
+SHOWN = 1.5
+"""How many times the noise the error of another experiment must be to show what nothing was found of."""
+
+SHOWN_BESIDE, LEFT_BESIDE = 2.0, 0.2
+"""The same where something was found, which may be a little wrong and yet right; and the share of the plain model's error that must be
+left besides."""
+
+
+@dataclass(frozen=True)
+class Promotion:
+    """A data set with the experiment ``taken`` among those to choose with, which the model fits ``error`` times the noise."""
+
+    dataset: DataSet
+    taken: str
+    error: float
+
+    def sentence(self) -> str:
+        """What the reader of a verdict has to know of it."""
+        return (
+            f"{self.taken} was taken to choose with as well, as the model found before leaves {self.error:.2g} times the noise there, "
+            "which the estimation experiments do not show so: it no longer counts as validation."
+        )
+
+
+def promote_validation(dataset: DataSet, search: Search, others: HeldOut) -> Promotion | None:
+    """The data set with the validation experiment that the search's model fits worst among those to choose with.
+
+    None where the others show no more than the estimation experiments do, or where no validation experiment would be left. What has had
+    a part in choosing does not score: the experiment changes its role.
+    """
+    recordings, found = dataset.validation(), bool(search.current.effects)
+    if len(recordings) < 2 or (found and far_above_noise(search.current)):
+        return None
+    errors = others.times_noise(search.current)
+    worst = int(np.argmax(errors))
+    if errors[worst] < (SHOWN_BESIDE if found else SHOWN):
+        return None
+    if found and errors[worst] < LEFT_BESIDE * others.times_noise(search.plain)[worst]:
+        return None
+    name = recordings[worst].name
+    changed = tuple(replace(r, role="estimation") if r.name == name else r for r in dataset.recordings)
+    return Promotion(replace(dataset, recordings=changed), name, float(errors[worst]))
+
+
+def serves(others: HeldOut, before: Search, after: Search) -> bool:
+    """Whether the model of ``after`` may stand in the place of that of ``before``, as experiments that had no part in either say.
+
+    Against what was found before it must predict them better. Against nothing it must not be worse than by chance: what was taken shows an
+    effect that they need not show.
+    """
+    fits, fits_before = others.fits(after.current), others.fits(before.current)
+    if before.current.effects:
+        return gain(fits_before, fits).share > 0
+    return gain(fits, fits_before).errors_away < BEYOND_CHANCE

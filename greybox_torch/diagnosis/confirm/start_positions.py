@@ -1,0 +1,97 @@
+"""Where a position that no sensor shows begins, on experiments that had no part in the fit.
+
+An effect that follows a position is at the right place only if the position begins at the right value. A free run over the record
+drifts, and its phase with it; over short windows with free start states the position stays with the measured motion, so that one
+number for an experiment, tried along the travel, tells where it begins.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from greybox_torch.diagnosis.hypothesis.fit import continued
+from greybox_torch.estimate.levenberg_marquardt import Settings
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.window_fit import WindowFit, fit_windows
+from greybox_torch.simulation.stepper import Stepper
+
+FINER = (-0.6, -0.4, -0.2, 0.2, 0.4, 0.6)
+"""Places around the best, in steps between neighbouring trials, that are looked at afterwards; in the end a fifth as wide."""
+
+GLANCE = Settings(iterations=5, tolerance=1e-2, trials=3)
+SETTINGS = Settings(iterations=20, tolerance=1e-4, trials=5)
+
+
+def placed(
+    problem: Problem, stepper: Stepper, length: int, substeps: int, shorter: WindowFit | None = None
+) -> WindowFit | None:
+    """A fit of the window start states alone, positions beginning where each experiment fits best; None where even windows overflow.
+
+    Args:
+        problem: with no free parameters, its start states estimated (:func:`estimate_initial`): a free run over the beginning and short
+            windows along the whole record are at times led astray by different things.
+        length: of the windows, in samples; from short ones, which are not led astray, to long ones, in which an effect that changes
+            slowly along the travel shows.
+        shorter: where the shorter windows placed it.
+    """
+    fit = fit_windows(problem, stepper, length, shorter=shorter, substeps=substeps, settings=SETTINGS)
+    trials = problem.model.start_trials(problem.values)
+    if fit is None or not trials:
+        return fit
+    places = [i for i, s in enumerate(problem.model.states) if s.name in trials[0]]
+    names = [problem.model.states[i].name for i in places]
+    grid = np.array([[t[n] for n in names] for t in trials])
+    experiments = problem.records.experiments(fit.windows.start)
+    step = np.ptp(grid, axis=0) / max(len(grid) - 1, 1)
+    best = np.zeros((len(problem.records.first), len(places)))
+    known = [problem.initial[:, places]]
+    for moves in (grid, np.outer(FINER, step), np.outer(FINER, step), np.outer(FINER, 0.2 * step)):
+        best = _best_of(
+            fit, places, [*known, best, *(best + move for move in moves)], experiments, stepper, length, substeps
+        )
+        known = []
+        there = _moved(fit, places, best, experiments, stepper, length, substeps)
+        if there is not None:  # with the trajectories there, the next look is nearer to the truth
+            fit = continued(there, stepper, length, substeps, SETTINGS)
+    return fit
+
+
+def _best_of(
+    fit: WindowFit,
+    places: list[int],
+    trials: Sequence[np.ndarray],
+    experiments: np.ndarray,
+    stepper: Stepper,
+    length: int,
+    substeps: int,
+) -> np.ndarray:
+    """Of start positions (E, k) tried, those at which each experiment fits best."""
+    best, least = trials[0].copy(), np.full(len(trials[0]), np.inf)
+    for trial in trials:
+        found = _moved(fit, places, trial, experiments, stepper, length, substeps)
+        if found is not None:
+            energies = np.bincount(experiments, weights=found.energies, minlength=len(trial))
+            better = energies < least
+            best[better], least[better] = trial[better], energies[better]
+    return best
+
+
+def _moved(
+    fit: WindowFit,
+    places: list[int],
+    to: np.ndarray,
+    experiments: np.ndarray,
+    stepper: Stepper,
+    length: int,
+    substeps: int,
+) -> WindowFit | None:
+    """``fit`` once more with the positions ``places`` of every experiment beginning at ``to`` (E, k)."""
+    starts, initial = fit.starts.copy(), fit.problem.initial.copy()
+    first = np.searchsorted(experiments, np.arange(len(to)))
+    starts[:, places] += (to - starts[first][:, places])[experiments]
+    initial[:, places] = to
+    problem = replace(fit.problem, initial=initial)
+    return fit_windows(problem, stepper, length, starts=starts, substeps=substeps, settings=GLANCE)

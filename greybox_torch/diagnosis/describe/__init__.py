@@ -1,0 +1,1 @@
+"""Findings and evidence in the form of the verdict."""

@@ -1,0 +1,160 @@
+"""The findings in the form of the verdict: parameters, place, share explained, alternatives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from greybox_torch.diagnosis.confirm.held_out import Gain
+from greybox_torch.diagnosis.describe.profiles import explained_energy, law_curve, local_signals, most_of, profile
+from greybox_torch.diagnosis.hypothesis.final import Final
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.select.forward_step import Round
+from greybox_torch.diagnosis.select.posterior import for_all_that_is_left, shared
+from greybox_torch.diagnosis.select.search import Search
+from greybox_torch.diagnosis.verdict import Effect, Profile, Timeline
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.ports import Port
+
+
+def describe(
+    search: Search, final: Final, substeps: int, sums: tuple[float, ...], gains: Mapping[str, Gain]
+) -> tuple[Effect, ...]:
+    """The effects of the search's final hypothesis.
+
+    Args:
+        final: that hypothesis fitted to whole records.
+        sums: mean squared validation errors of the plain and the augmented model, summed over experiments.
+        gains: by effect, on held-out experiments, where there are any.
+    """
+    hypothesis = search.current
+    assert isinstance(hypothesis.model, AugmentedModel)
+    floor = min(f.mean_square for f in hypothesis.fits) * _experiments(search)
+    whole = max(0.0, (sums[0] - sums[1]) / max(sums[0] - floor, 1e-300))
+    parts = _parts(search)
+    return tuple(
+        _effect(search, hypothesis, hypothesis.model, e, final, substeps, min(1.0, whole * part), gains.get(e.prefix))
+        for e, part in zip(hypothesis.effects, parts, strict=True)
+    )
+
+
+def _experiments(search: Search) -> int:
+    return max(1, len(search.problem.records.first))
+
+
+def _parts(search: Search) -> list[float]:
+    """How the explained error divides among several effects, by the gain of the round in which each was taken."""
+    gains = []
+    for effect in search.current.effects:
+        taken = search.round_of(effect.prefix)
+        gains.append(1.0 if taken is None or taken.taken is None else max(taken.taken.gain, 1e-6))
+    return [g / sum(gains) for g in gains] if len(gains) > 1 else [1.0]
+
+
+def _effect(
+    search: Search,
+    hypothesis: Hypothesis,
+    model: AugmentedModel,
+    attachment: Attachment,
+    final: Final,
+    substeps: int,
+    explained: float,
+    gain: Gain | None,
+) -> Effect:
+    around = search.surroundings[attachment.port]
+    taken = search.round_of(attachment.prefix)
+    probability, alternatives = (0.5, ()) if taken is None or taken.taken is None else shared(taken.taken, taken.ranked)
+    site = next(p for p in model.base.all_ports if p.name == attachment.port)
+    if not isinstance(attachment.mechanism, Unknown):
+        probability = for_all_that_is_left(probability, search.current)
+    profiles = _profiles(search, hypothesis, model, attachment, site, substeps)
+    timelines = () if gain is None else gain.timelines
+    mechanism = attachment.mechanism
+    return Effect(
+        port=attachment.port,
+        mechanism=mechanism.name,
+        probability=probability,
+        signals=tuple(signal_name(model.base, site, s) for s in mechanism.signals()),
+        where=where(profiles, timelines),
+        parameters=_parameters(model, attachment, final),
+        explained=round(explained, 4),
+        alternatives=alternatives,
+        curve=law_curve(model, attachment, around, final.problem),
+        profiles=profiles,
+        explanation=mechanism.explanation,
+        source=mechanism.source,
+        separating_experiment=mechanism.experiment,
+        ceiling=None if taken is None else ceiling_share(taken),
+        timelines=timelines,
+    )
+
+
+def ceiling_share(done: Round) -> float | None:
+    """The share of the best free curve's gain, in the logarithm of the mean squared error, that the named effect of a round reaches.
+
+    At most one, where the law does better than any curve; None where there is no curve beside it in the round.
+    """
+    gains = [r.gain for r in done.ranked if r.unknown]
+    if done.taken is None or done.taken.unknown or not gains or done.taken.gain <= 0:
+        return None
+    return round(done.taken.gain / max(done.taken.gain, *gains), 4)
+
+
+def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:
+    """The model's own name of a port's signal, where it has one."""
+    given: Any = site.signals.get(signal)
+    if isinstance(given, str):
+        return given
+    if signal in ("input", "output"):
+        return str(getattr(site, signal, signal))
+    return signal if signal == "time" else f"{site.name}.{signal}"
+
+
+def _parameters(model: AugmentedModel, attachment: Attachment, final: Final) -> dict[str, dict[str, Any]]:
+    values, deviations = final.values(), final.deviations()
+    start = f"{attachment.prefix}."
+    units = {p.name: p.unit for p in model.declared_parameters}
+    result = {}
+    for name in units:
+        if name.startswith(start):
+            deviation = deviations.get(name)
+            known = deviation is not None and np.isfinite(deviation)
+            result[name.removeprefix(start)] = {
+                "value": values[name],
+                "std": deviation if known else None,
+                "unit": units[name],
+            }
+    return result
+
+
+def _profiles(
+    search: Search, hypothesis: Hypothesis, model: AugmentedModel, attachment: Attachment, site: Port, substeps: int
+) -> tuple[Profile, ...]:
+    energy = explained_energy(search.without.get(attachment.prefix, search.plain), hypothesis, substeps)
+    local = local_signals(model, attachment, hypothesis.fits[0], hypothesis.stepper, substeps)
+    units = search.surroundings[attachment.port].units
+    wanted = attachment.mechanism.signals() or tuple(site.signals)[:1]
+    return tuple(
+        profile(signal_name(model.base, site, name), units.get(name, ""), local[name], energy)
+        for name in wanted
+        if name in local and np.ptp(local[name]) > 0
+    )
+
+
+def where(profiles: Sequence[Profile], timelines: Sequence[Timeline]) -> str:
+    """In words: the first signal's interval that holds most of the explained error energy, and the experiment with most per second."""
+    strongest = max(timelines, key=lambda t: t.intensity).experiment if len(timelines) > 1 else ""
+    if not profiles:
+        return "everywhere along the records" + (f", strongest in {strongest}" if strongest else "")
+    first = profiles[0]
+    low, high, share = most_of(first)
+    return (
+        f"{low:.3g} < {first.signal} < {high:.3g} {first.unit}".rstrip()
+        + f"; {100 * share:.0f} % of the explained error energy"
+        + (f", strongest in {strongest}" if strongest else "")
+    )

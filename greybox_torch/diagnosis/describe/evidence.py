@@ -1,0 +1,135 @@
+"""What speaks for the verdict, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.hypothesis.noise import ABOVE_NOISE, floor_known, times_noise
+from greybox_torch.diagnosis.select.choice import least_gain
+from greybox_torch.diagnosis.select.search import Search
+from greybox_torch.mechanisms.attachment import Attachment
+
+if TYPE_CHECKING:
+    from greybox_torch.diagnosis.confirm.held_out import Gain
+    from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest
+    from greybox_torch.diagnosis.verdict import Effect
+
+
+def sentences(
+    dataset: DataSet,
+    search: Search,
+    effects: Sequence[Effect],
+    gains: Mapping[str, Gain],
+    detected: Sequence[Detection],
+    interrupted: bool,
+) -> tuple[str, ...]:
+    """The evidence for a reader: what was looked at, what it showed, and what limits it."""
+    plain, final = search.plain.fits, search.current.fits
+    looked = sum(len(r.looks[0]) for r in search.rounds if r.looks)
+    lengths = ", ".join(str(f.windows.steps) for f in plain)
+    lines = [
+        f"{looked} looks at mechanisms and ports, over windows of {lengths} samples with free start states.",
+        "Root mean square error over those windows, model as it stands: "
+        + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in plain)
+        + ("; with the effects: " + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in final) if effects else "")
+        + " (weighted output units).",
+    ]
+    lines += [_noise(search), *detection_sentences(detected, bool(effects))]
+    for done in search.rounds:
+        best = done.ranked[0] if done.ranked else None
+        if done.taken is not None:
+            name = _name(done.taken.leader.attachment)
+            lines.append(
+                f"{name} lowers the mean squared error by a factor {np.exp(done.taken.gain):.3g}, "
+                f"{done.taken.significance:.1f} standard errors away from chance."
+            )
+        elif best is not None:
+            lines.append(
+                f"The best further candidate, {_name(best.leader.attachment)}, would lower it by {100 * (1 - np.exp(-best.gain)):.2g} % "
+                f"({best.significance:.1f} standard errors); claimed is what exceeds {100 * least_gain(best.fitted):.0f} % and chance."
+            )
+        else:
+            lines.append("No candidate explains any of the remaining error.")
+    lines += [ceiling_sentence(e) for e in effects if e.ceiling is not None]
+    for prefix, gain in gains.items():
+        low, high = gain.interval
+        lines.append(
+            f"Held out: {prefix} removes {100 * gain.share:.1f} % of the squared error that is left without it "
+            f"(95 % interval {100 * low:.1f} to {100 * high:.1f} %)."
+        )
+    kept = {(e.port, e.mechanism) for e in effects}
+    taken = [done.taken.leader.attachment for done in search.rounds if done.taken is not None]
+    lost = [_name(a) for a in taken if (a.port, a.mechanism.name) not in kept]
+    if lost:
+        lines.append(f"Taken back, as the other experiments or effects do not bear it out: {', '.join(lost)}.")
+    if dataset.held_out_by_default:
+        lines.append(
+            "No experiment had the role 'validation': the last quarter of every experiment was held out for judging."
+        )
+    if interrupted:
+        lines.append("The search was stopped before it was done (time limit or interruption): the best verdict so far.")
+    return tuple(lines)
+
+
+def ceiling_sentence(effect: Effect) -> str:
+    """How near a named effect comes to what any law of its kind could explain."""
+    share = 100 * (effect.ceiling or 0.0)
+    return (
+        f"{effect.mechanism.replace('_', ' ')} at {effect.port} reaches {share:.0f} % of the ceiling: the gain, in the logarithm "
+        "of the mean squared error, of the best free curve that was fitted in its place."
+    )
+
+
+def detection_sentences(detected: Sequence[Detection], effects: bool) -> list[str]:
+    """What the errors of the free runs show, where that is clearest, and which recordings were made under feedback."""
+    lines = []
+    if detected:
+        first = max(detected, key=lambda d: d.plain.past.ratio)
+        lines.append(
+            f"The free run's errors, model as it stands, are {'' if first.plain.past.beyond else 'not '}correlated with past inputs"
+            + (f" up to {first.band:.3g} Hz" if first.feedback else "")
+            + _changed(first.plain.past, first.final.past, "correlation", effects, _place(first, detected))
+        )
+        first = max(detected, key=lambda d: d.plain.colour.ratio)
+        lines.append(
+            f"They are {'not ' if first.plain.colour.beyond else ''}white"
+            + _changed(first.plain.colour, first.final.colour, "autocorrelation", effects, _place(first, detected))
+        )
+    answering = [d for d in detected if d.feedback]
+    if answering:
+        clearest, band = max(answering, key=lambda d: d.later.ratio), max(d.band for d in answering)
+        lines.append(
+            f"Recorded under feedback: {', '.join(dict.fromkeys(d.experiment for d in answering))} (what is new in the input is correlated "
+            f"with errors before it: {_size(clearest.later, 'correlation')}). Coherence above {band:.3g} Hz, where the input is hardly "
+            "excited, is not counted as evidence."
+        )
+    return lines
+
+
+def _place(where: Detection, detected: Sequence[Detection]) -> str:
+    return f", in {where.output} of {where.experiment}" if len(detected) > 1 else ""
+
+
+def _changed(before: Largest, after: Largest, what: str, effects: bool, place: str) -> str:
+    with_effects = f"; with the effects {after.value:.2g} (bound {after.bound:.2g})" if effects else ""
+    return f" ({_size(before, what)}{place}){with_effects}."
+
+
+def _size(largest: Largest, what: str) -> str:
+    return f"largest {what} {largest.value:.2g}, 99 % bound {largest.bound:.2g}"
+
+
+def _noise(search: Search) -> str:
+    times = times_noise(search.problem, search.current)
+    shown = f"Over the windows that show it best the error is {times:.2g} times the noise that the recordings' high-frequency floor shows"
+    if times > ABOVE_NOISE:
+        return shown + ": more than noise is left."
+    return shown + ("." if floor_known(search.problem) else ", an upper bound, as part of that is motion.")
+
+
+def _name(attachment: Attachment) -> str:
+    return f"{attachment.mechanism.name.replace('_', ' ')} at {attachment.port}"

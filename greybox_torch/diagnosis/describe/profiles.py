@@ -1,0 +1,95 @@
+"""Where an effect lives: its law as a curve, and the explained error energy over each of its signals."""
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.verdict import Curve, Profile
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.window_fit import WindowFit, states_along
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.model import Signals
+from greybox_torch.simulation.stepper import Stepper
+
+BINS = 24
+POINTS = 201
+
+
+def explained_energy(before: Hypothesis, after: Hypothesis, substeps: int) -> np.ndarray:
+    """Per sample of the records (N,), how much less squared error ``after`` leaves than ``before``, on the shortest windows."""
+    return _squared_errors(before.fits[0], before.stepper, substeps) - _squared_errors(
+        after.fits[0], after.stepper, substeps
+    )
+
+
+def _squared_errors(fit: WindowFit, stepper: Stepper, substeps: int) -> np.ndarray:
+    errors = window_errors(fit, stepper, substeps) * fit.problem.weights[:, None]
+    return np.nansum(errors**2, axis=0)
+
+
+def window_errors(fit: WindowFit, stepper: Stepper, substeps: int) -> np.ndarray:
+    """Measured minus simulated over fitted windows (n_y, N), in output units; NaN where a sample is missing."""
+    problem, windows = fit.problem, fit.windows
+    run = stepper.run(problem.driving_records, windows, problem.values, fit.starts, substeps=substeps)
+    simulated = np.full(problem.records.y.shape, np.nan)
+    for w, (first, last) in enumerate(zip(windows.start, windows.last, strict=True)):
+        simulated[:, first : last + 1] = run.y[w, : last - first + 1].T
+    return problem.records.y - simulated
+
+
+def local_signals(
+    model: AugmentedModel, attachment: Attachment, fit: WindowFit, stepper: Stepper, substeps: int
+) -> dict[str, np.ndarray]:
+    """The signals that an effect depends on, along the estimation records (N,)."""
+    problem, states = fit.problem, states_along(fit, stepper, substeps)
+    x = Signals("state", {s.name: torch.as_tensor(states[:, i]) for i, s in enumerate(model.states)})
+    records = problem.driving_records
+    u = Signals("input", {s.name: torch.as_tensor(records.u[i]) for i, s in enumerate(model.inputs)})
+    local = model.local_signals(attachment, x, u, parameters_of(problem))
+    return {n: np.broadcast_to(np.asarray(v, dtype=float), states.shape[:1]) for n, v in local.items()}
+
+
+def parameters_of(problem: Problem) -> Signals:
+    """The parameter values of a problem as tensors by name."""
+    pairs = zip(problem.names, problem.values, strict=True)
+    return Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in pairs})
+
+
+def profile(name: str, unit: str, values: np.ndarray, energy: np.ndarray) -> Profile:
+    """The share of the explained energy over bins of one signal; bins where the effect costs a little count as none."""
+    low, high = np.quantile(values, [0.001, 0.999])
+    edges = np.linspace(low, max(high, low + 1e-12), BINS + 1)
+    total, _ = np.histogram(np.clip(values, edges[0], edges[-1]), edges, weights=energy)
+    total = np.maximum(total, 0.0)
+    return Profile(name, unit, edges, total / max(float(total.sum()), 1e-300))
+
+
+def most_of(found: Profile, share: float = 0.8) -> tuple[float, float, float]:
+    """The shortest interval of the signal that holds at least ``share`` of the explained energy: low, high, and what it holds."""
+    best = (float(found.edges[0]), float(found.edges[-1]), 1.0)
+    cumulative = np.concatenate([[0.0], np.cumsum(found.share)])
+    for i in range(len(found.share)):
+        j = int(np.searchsorted(cumulative, cumulative[i] + share))
+        if j < len(found.edges) and found.edges[j] - found.edges[i] < best[1] - best[0]:
+            best = (float(found.edges[i]), float(found.edges[j]), float(cumulative[j] - cumulative[i]))
+    return best
+
+
+def law_curve(model: AugmentedModel, attachment: Attachment, around: Surroundings, problem: Problem) -> Curve | None:
+    """The effect's own law over its first signal, the others held at their root mean square; None for laws with memory."""
+    signals = attachment.mechanism.signals()
+    if attachment.mechanism.states(around) or not signals or signals[0] not in around.ranges:
+        return None
+    name = signals[0]
+    grid = torch.linspace(around.ranges[name].low, around.ranges[name].high, POINTS, dtype=torch.float64)
+    if "delayed" in attachment.mechanism.needs:
+        return None
+    held = {n: torch.full_like(grid, around.ranges[n].rms) for n in around.ranges if n != name}
+    force = model.curve(attachment, {**held, name: grid}, parameters_of(problem))
+    unit = around.units.get("deflection", "") if attachment.mechanism.kinematic else around.force_unit
+    values = np.broadcast_to(np.asarray(force, dtype=float), (POINTS,))
+    return Curve(name, around.units.get(name, ""), grid.numpy(), values, unit)

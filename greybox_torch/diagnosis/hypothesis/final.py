@@ -1,0 +1,91 @@
+"""The final fits: whole records, from the values that the windows led to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.noise import noise_over_windows
+from greybox_torch.diagnosis.hypothesis.whole_records import coloured, from_windows, whole_runs
+from greybox_torch.estimate.free_run import FreeRun
+from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimise
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.uncertainty import Uncertainty, of_information, uncertainty
+from greybox_torch.simulation.side_by_side import side_by_side
+
+SETTINGS = Settings(iterations=60, tolerance=1e-8)
+BEGINNING = Settings(iterations=12, tolerance=1e-3)
+"""How far the values of every window length are followed before the best of them goes on to the end."""
+
+
+@dataclass(frozen=True)
+class Final:
+    """A hypothesis fitted to whole estimation records: its problem there, and the uncertainty of the unknowns (None where unfitted).
+
+    ``weighed``: with errors weighed by their spectrum.
+    """
+
+    problem: Problem
+    uncertainty: Uncertainty | None
+    weighed: bool = False
+
+    def sentences(self) -> tuple[str, ...]:
+        """What the reader of a verdict has to know of it."""
+        told = (
+            "Whole records of the model with effects were fitted with errors weighed by their spectrum: over windows hardly more than "
+            "noise is left, what a free run leaves beyond that is slow, and plain least squares would bend the parameters to it."
+        )
+        return (told,) if self.weighed else ()
+
+    def values(self) -> dict[str, float]:
+        """Parameter values by name."""
+        return dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
+
+    def deviations(self) -> dict[str, float]:
+        """Standard deviation of every free parameter: the larger of the plain and the sandwich one."""
+        if self.uncertainty is None:
+            return {}
+        both = np.maximum(self.uncertainty.deviations("plain"), self.uncertainty.deviations("sandwich"))
+        return dict(zip(self.problem.free_names, map(float, both), strict=False))
+
+
+def finish(hypothesis: Hypothesis, substeps: int, *, device: str = "cpu") -> Final:
+    """Fit whole records by simulation error, from the values of every window length and from the card's; the best of the results.
+
+    Where the effects of a hypothesis leave noise alone over windows, what a free run leaves beyond it is a slow disturbance, and the errors
+    are weighed by their spectrum. (The model as it stands is always fitted to simulation error as it is: the best that it can do.)
+
+    Where no whole record can be simulated, the values of the longest windows stand.
+    """
+    problems = [from_windows(fit) for fit in reversed(hypothesis.fits)]
+    runs = whole_runs(hypothesis, [*problems, _from_the_card(hypothesis)], substeps, device=device)
+    begun = side_by_side(partial(_descended, run, run.start, BEGINNING) for run in runs)
+    best, cost = None, np.inf
+    for run, optimum in zip(runs, begun, strict=True):
+        if optimum is not None and optimum.model.cost < (1 - 1e-3) * cost:
+            best, cost = (run, optimum.point), optimum.model.cost
+    if best is None:
+        return Final(problems[0], None)
+    run, point = best
+    ended = _descended(run, point, SETTINGS)
+    point = point if ended is None else ended.point
+    if hypothesis.effects and noise_over_windows(hypothesis):
+        weighed = coloured([replace(run, problem=run.at(point)), replace(runs[0])])
+        if weighed is not None:
+            run, fit = weighed
+            return Final(run.at(fit.point), of_information(fit.information), weighed=True)
+    return Final(run.at(point), uncertainty(run, point))
+
+
+def _descended(run: FreeRun, start: np.ndarray, settings: Settings) -> Optimum[None] | None:
+    return minimise(run.quadratic, start, *run.bounds, settings=settings, admissible=run.admissible)
+
+
+def _from_the_card(hypothesis: Hypothesis) -> Problem:
+    """The problem of the longest windows with the machine's own parameters as the card has them: windows may lead to another valley."""
+    problem = from_windows(hypothesis.fits[-1])
+    added = [any(name.startswith(f"{e.prefix}.") for e in hypothesis.effects) for name in problem.names]
+    return problem.with_values(np.where(added, problem.values, problem.expected))

@@ -1,0 +1,199 @@
+"""Refitting a hypothesis: the model with its effects, on windows of several lengths."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from greybox_torch.diagnosis.hypothesis.noise import reaches_noise
+from greybox_torch.estimate.levenberg_marquardt import Settings
+from greybox_torch.estimate.problem import Problem, problem_for
+from greybox_torch.estimate.window_fit import WindowFit, carried_starts, fit_windows
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulation.side_by_side import side_by_side
+from greybox_torch.simulation.stepper import Stepper, make_stepper
+
+FACTORS = (1, 4, 16)
+"""Window lengths as multiples of the shortest, a 64th of the longest record: short windows forgive a wrong trajectory, long ones show
+slow effects. Multiples, so that the start states of short windows serve the long ones."""
+
+FIRST_SETTINGS = Settings(iterations=10, tolerance=3e-3, trials=5)
+WINDOW_SETTINGS = Settings(iterations=30, tolerance=3e-4, trials=6)
+RIVAL = 4.0
+"""How many times the best mean squared error a start may be at, after its first iterations, and still be followed."""
+
+MOST_TURNS, TURN_GAIN = 3, 0.03
+"""How often a fit is taken up again after carried states were brought along, and the gain from which that is worth another turn."""
+
+POLISH_SETTINGS = Settings(iterations=60, tolerance=1e-5, trials=6)
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """A model with some effects attached, fitted: its problem, stepper, and window fits from short to long."""
+
+    effects: tuple[Attachment, ...]
+    model: GreyBoxModel
+    stepper: Stepper
+    fits: tuple[WindowFit, ...]
+    floor: float
+    """Mean squared weighted error below which nothing matters: 10⁻⁵ of the outputs' spread."""
+    frozen: frozenset[str] = frozenset()
+    """Parameters that were kept as they are though they are free."""
+
+    @property
+    def score(self) -> float:
+        """Mean of the logarithms of the mean squared errors over the window lengths; lower is better."""
+        return score_of(self.fits, self.floor)
+
+    def values(self) -> dict[str, float]:
+        """Parameter values by name, from the longest windows."""
+        return dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
+
+    @property
+    def problem(self) -> Problem:
+        """The problem with the parameters of the longest windows."""
+        return self.fits[-1].problem
+
+
+def score_of(fits: Sequence[WindowFit], floor: float) -> float:
+    """Mean of the logarithms of the mean squared errors of ``fits``."""
+    return float(np.mean([np.log(f.mean_square + floor) for f in fits]))
+
+
+def lengths(problem: Problem) -> list[int]:
+    """Window lengths for a problem's records, in samples."""
+    longest = int(problem.records.lengths.max())
+    shortest = max(20, round(longest / 64))
+    return [shortest * factor for factor in FACTORS if shortest * factor <= longest // 2] or [shortest]
+
+
+def hypothesis(
+    base: Problem,
+    effects: Sequence[Attachment],
+    surroundings: Mapping[str, Surroundings],
+    starts: Sequence[Mapping[str, float]],
+    *,
+    substeps: int,
+    at: Sequence[int] | None = None,
+    shorter: WindowFit | None = None,
+    settings: Settings = WINDOW_SETTINGS,
+    stepper: Stepper | None = None,
+    frozen: frozenset[str] = frozenset(),
+    device: str = "cpu",
+) -> Hypothesis | None:
+    """Fit ``base`` with ``effects`` attached, on windows of every length, from each of several start values; None where none simulates.
+
+    At every length all the start values and the result of the length before get some iterations each; the best goes on to the end.
+
+    Args:
+        starts: parameter values by name, of the base and of the effects.
+        at: window lengths; by default :func:`lengths`.
+        shorter: a fit on shorter windows that the start states are taken from.
+        stepper: one made for this model and these ``frozen`` parameters before.
+        frozen: parameters that are to keep their start values.
+    """
+    model = augmented(base, effects, surroundings)
+    problems = [without_free(problem_for(base, model, start), frozen) for start in starts]
+    stepper = stepper or make_stepper(model, problems[0].free_names, device=device)
+    fits: list[WindowFit] = []
+    for length in at or lengths(base):
+        trials = _distinct([*([fits[-1].problem] if fits else []), *problems])
+        fit = _best_fit(trials, stepper, length, shorter, substeps, settings)
+        if fit is None:
+            return None
+        if fits and reaches_noise(base, fits[-1]) and not reaches_noise(base, fit):
+            fit = _states_first(fit, fits, stepper, length, substeps, settings)
+        fits.append(fit)
+        shorter = fit
+    return Hypothesis(tuple(effects), model, stepper, tuple(fits), _floor(base), frozen)
+
+
+def without_free(problem: Problem, names: Collection[str]) -> Problem:
+    """``problem`` with some parameters no longer free."""
+    return replace(problem, free=problem.free & ~np.isin(problem.names, list(names)))
+
+
+def augmented(base: Problem, effects: Sequence[Attachment], surroundings: Mapping[str, Surroundings]) -> GreyBoxModel:
+    """The model of ``base`` with ``effects`` attached, the model itself where there are none."""
+    return AugmentedModel(base.model, effects, surroundings) if effects else base.model
+
+
+def _floor(base: Problem) -> float:
+    spread = np.nanstd(base.records.y, axis=1) * base.weights
+    return float(np.mean((1e-5 * spread) ** 2)) + 1e-300
+
+
+def _best_fit(
+    trials: Sequence[Problem],
+    stepper: Stepper,
+    length: int,
+    shorter: WindowFit | None,
+    substeps: int,
+    settings: Settings,
+) -> WindowFit | None:
+    begin = partial(fit_windows, stepper=stepper, length=length, shorter=shorter, substeps=substeps)
+    begun = side_by_side(partial(begin, t, settings=FIRST_SETTINGS) for t in trials)
+    found = sorted((fit for fit in begun if fit is not None), key=lambda f: f.mean_square)
+    if not found:
+        return None
+    ended = side_by_side(partial(continued, fit, stepper, length, substeps, settings) for fit in _apart(found))
+    return min(ended, key=lambda f: f.mean_square)
+
+
+def _states_first(
+    fit: WindowFit, fits: Sequence[WindowFit], stepper: Stepper, length: int, substeps: int, settings: Settings
+) -> WindowFit:
+    """``fit``, or a better one from the parameters that reached the noise on shorter windows, start states along those found first.
+
+    Where the motion is nearly chaotic, parameters and start states together lose over long windows what was found over shorter ones.
+    """
+    problem = fits[-1].problem
+    fixed = replace(problem, free=np.zeros_like(problem.free))
+    for shorter in fits:
+        begun = fit_windows(fixed, stepper, length, shorter=shorter, substeps=substeps, settings=settings)
+        again = begun and fit_windows(
+            problem, stepper, length, starts=begun.starts, substeps=substeps, settings=settings
+        )
+        if again is not None:
+            fit = min(fit, continued(again, stepper, length, substeps, settings), key=lambda f: f.mean_square)
+    return fit
+
+
+def _apart(found: Sequence[WindowFit]) -> list[WindowFit]:
+    """The best, and the next one that seems to be on its way to another optimum: being ahead early says little."""
+    best = found[0]
+    values = best.problem.values
+    rivals = [
+        f
+        for f in found[1:]
+        if f.mean_square < RIVAL * best.mean_square and not np.allclose(f.problem.values, values, rtol=0.02)
+    ]
+    return [best, *rivals[:1]]
+
+
+def continued(fit: WindowFit, stepper: Stepper, length: int, substeps: int, settings: Settings) -> WindowFit:
+    """The fit carried on to the end; where states are carried, in turns with bringing those along anew, while that gains anything."""
+    for _ in range(MOST_TURNS):
+        starts = carried_starts(fit.problem, stepper, fit.windows, fit.starts, substeps)
+        again = fit_windows(fit.problem, stepper, length, starts=starts, substeps=substeps, settings=settings)
+        if again is None or again.mean_square > fit.mean_square:
+            break
+        gained, fit = again.mean_square < (1 - TURN_GAIN) * fit.mean_square, again
+        if not (gained and fit.problem.carried.any()):
+            break
+    return fit
+
+
+def _distinct(problems: Sequence[Problem]) -> list[Problem]:
+    kept: list[Problem] = []
+    for p in problems:
+        if p.admissible(p.values) and not any(np.allclose(p.values, q.values, rtol=1e-3, atol=0) for q in kept):
+            kept.append(p)
+    return kept

@@ -1,0 +1,62 @@
+"""How sure it is that one hypothesis is better than another: by windows or, at the noise, by likelihood."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.noise import reaches_noise
+
+LEAST_RATIO_SPREAD = 0.02
+"""Scatter of the log ratio of window energies below which differences between windows mean nothing."""
+
+FEWEST_WINDOWS = 8
+"""Windows that a standard error needs."""
+
+
+def surely_better(worse: Hypothesis, better: Hypothesis) -> float:
+    """How many standard errors ``better`` is better: by windows or, at the noise, by likelihood."""
+    return max(significance(worse, better), likelihood_ratio(worse, better))
+
+
+def likelihood_ratio(worse: Hypothesis, better: Hypothesis) -> float:
+    """Standard errors by which the likelihood of white noise puts ``worse`` behind; zero where more than that is left."""
+    return float(np.sqrt(max(0.0, white_samples(better) * (worse.score - better.score))))
+
+
+def white_samples(fitted: Hypothesis) -> int:
+    """How many samples tell hypotheses apart by likelihood: all of them where this one leaves white noise alone, else none."""
+    worst = max(fitted.fits, key=lambda fit: fit.mean_square)
+    if not reaches_noise(fitted.problem, worst):
+        return 0
+    return int(np.sum(~np.isnan(fitted.problem.records.y)))
+
+
+def significance(before: Hypothesis, after: Hypothesis) -> float:
+    """How many standard errors the improvement is away from none: the largest over the window lengths.
+
+    Judged over windows, so that errors which are correlated within a window count once: by the mean difference of the windows'
+    energies; by the mean of their logarithmic ratio, which sees an effect whose size varies by orders of magnitude; and by how far the
+    ratio of a single window stands out from that of the others, which sees an effect that acts at one place of the record (a stop).
+    """
+    best = 0.0
+    for old, new in zip(before.fits, after.fits, strict=True):
+        if len(old.energies) >= FEWEST_WINDOWS:
+            least = 1e-12 * float(old.energies.max())
+            ratio = np.log(np.maximum(old.energies, least)) - np.log(np.maximum(new.energies, least))
+            best = max(
+                best, _standard_errors(old.energies - new.energies), _standard_errors(ratio), _standing_out(ratio)
+            )
+    return best
+
+
+def _standing_out(ratio: np.ndarray) -> float:
+    """How far the largest log ratio lies from the middle, in robust standard deviations, halved because it is the largest of many."""
+    middle = float(np.median(ratio))
+    spread = 1.4826 * float(np.median(np.abs(ratio - middle))) + LEAST_RATIO_SPREAD
+    return 0.5 * (float(ratio.max()) - middle) / spread
+
+
+def _standard_errors(values: np.ndarray) -> float:
+    spread = float(np.std(values, ddof=1)) / np.sqrt(len(values))
+    return float(values.mean()) / max(spread, 1e-300)

@@ -1,0 +1,1 @@
+"""The shortlist refitted in full and ranked."""

@@ -1,0 +1,121 @@
+"""From a learned curve to the named laws that could have drawn it, as hypotheses; and the same curve drawn more finely."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import torch
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.screen.shortlist import Candidate
+from greybox_torch.mechanisms.attachment import Attachment, attach
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.matching import force_column, kinematic_laws, matching_laws, worth_a_refit
+from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.model import GreyBoxModel, Signals
+
+POINTS = 400
+
+
+def laws_on_curve(
+    model: GreyBoxModel,
+    fitted: Hypothesis,
+    curve: Attachment,
+    surroundings: Mapping[str, Surroundings],
+    card: Mapping[str, float],
+) -> list[Candidate]:
+    """The named laws without memory that depend on the curve's signal alone, least-squares fitted to the curve, best matches first."""
+    unknown, around = curve.mechanism, surroundings[curve.port]
+    assert isinstance(unknown, Unknown)
+    grid, target = _drawn(fitted, curve, around)
+    site = next(q for q in model.all_ports if q.name == curve.port)
+    there = {e.mechanism.name for e in fitted.effects if e.port == curve.port}
+    weight = _visited(around.ranges[unknown.signal].rms, grid.numpy())
+    matches = matching_laws(site.kind, around, {unknown.signal: grid}, target, weight, there)
+    base, found = _without(fitted, curve), []
+    for match in worth_a_refit([m for m in matches if not there & set(m.law.generalises)]):
+        attachment = attach(model, curve.port, match.law)
+        values = {**base, **{f"{attachment.prefix}.{n}": v for n, v in match.values.items()}}
+        found.append(Candidate(attachment, ({**values, **card}, values), match.share))
+    return [*found, *_kinematic(model, curve, around, base, card)]
+
+
+def _kinematic(
+    model: GreyBoxModel,
+    curve: Attachment,
+    around: Surroundings,
+    base: Mapping[str, float],
+    card: Mapping[str, float],
+) -> list[Candidate]:
+    """Kinematic laws of the curve's signal, where there is a state that carries their change."""
+    unknown, found = curve.mechanism, []
+    assert isinstance(unknown, Unknown)
+    for law, sizes in kinematic_laws(around, {unknown.signal}) if curve.shifted_state else ():
+        attachment = attach(model, curve.port, law, curve.shifted_state)
+        starts = [{f"{attachment.prefix}.{n}": v for n, v in values.items()} for values in sizes]
+        found.append(Candidate(attachment, tuple({**base, **card, **start} for start in starts), 0.0))
+    return found
+
+
+def finer(
+    fitted: Hypothesis, curve: Attachment, surroundings: Mapping[str, Surroundings]
+) -> tuple[Attachment, dict[str, float]]:
+    """The curve with twice the knots, and the values of the hypothesis with it: the same curve to begin with."""
+    unknown, around = curve.mechanism, surroundings[curve.port]
+    assert isinstance(unknown, Unknown)
+    detailed = Unknown(unknown.signal, 2 * unknown.knots, unknown.factor)
+    attachment = replace(curve, mechanism=detailed)
+    return attachment, _without(fitted, curve) | _heights(attachment, around, *_drawn(fitted, curve, around))
+
+
+def absorbed(fitted: Hypothesis, law: Attachment, surroundings: Mapping[str, Surroundings]) -> dict[str, float] | None:
+    """The values without a law, its force handed to the free curve of the same signal at its port; None where there is no such curve."""
+    around, mechanism = surroundings[law.port], law.mechanism
+    same = (e for e in fitted.effects if e is not law and e.port == law.port and isinstance(e.mechanism, Unknown))
+    curve = next(same, None)
+    if curve is None or mechanism.kinematic or mechanism.states(around):
+        return None
+    unknown = curve.mechanism
+    assert isinstance(unknown, Unknown)
+    if unknown.factor or not set(mechanism.needs) <= {unknown.signal}:
+        return None
+    grid, target = _drawn(fitted, curve, around)
+    return _without(fitted, law) | _heights(curve, around, grid, target + _force(fitted, law, {unknown.signal: grid}))
+
+
+def _heights(curve: Attachment, around: Surroundings, grid: torch.Tensor, force: np.ndarray) -> dict[str, float]:
+    """The heights with which a curve draws a force (N,) over its signal (N,), by least squares."""
+    unknown, probe = curve.mechanism, curve.mechanism.probes(around)[0]
+    assert isinstance(unknown, Unknown)
+    columns = [force_column(unknown, around, {unknown.signal: grid}, probe, name) for name in probe.directions]
+    heights = np.linalg.lstsq(np.stack(columns, axis=1), force, rcond=1e-6)[0]
+    return {f"{curve.prefix}.{n}": float(h) for n, h in zip(probe.directions, heights, strict=True)}
+
+
+def _drawn(fitted: Hypothesis, curve: Attachment, around: Surroundings) -> tuple[torch.Tensor, np.ndarray]:
+    """Values of the curve's signal over its range, and the learned force there."""
+    unknown = curve.mechanism
+    assert isinstance(unknown, Unknown)
+    span = around.ranges[unknown.signal]
+    grid = torch.linspace(span.low, span.high, POINTS, dtype=torch.float64)
+    return grid, _force(fitted, curve, {unknown.signal: grid})
+
+
+def _force(fitted: Hypothesis, effect: Attachment, signals: Mapping[str, torch.Tensor]) -> np.ndarray:
+    """The force of an effect without memory at signals (N,); a single number where it depends on none."""
+    assert isinstance(fitted.model, AugmentedModel)
+    p = Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in fitted.values().items()})
+    return fitted.model.curve(effect, signals, p).detach().numpy()
+
+
+def _without(fitted: Hypothesis, curve: Attachment) -> dict[str, float]:
+    """The values of everything but the curve."""
+    return {n: v for n, v in fitted.values().items() if not n.startswith(f"{curve.prefix}.")}
+
+
+def _visited(rms: float, grid: np.ndarray) -> np.ndarray:
+    """Weights that count the middle of the range, where the machine was most, more than the ends."""
+    return np.exp(-0.5 * (grid / max(2.0 * rms, 1e-12)) ** 2)

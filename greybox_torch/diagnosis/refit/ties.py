@@ -1,0 +1,47 @@
+"""Named hypotheses that fit windows alike, told apart by the likelihood of whole records.
+
+At the noise every sample counts, and a slow disturbance that is in them all can make a law with one parameter more look better, or one law
+better than another that does nearly the same. Errors weighed by their spectrum do not count what is slow over and over.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from greybox_torch.diagnosis.hypothesis.significance import white_samples
+from greybox_torch.diagnosis.hypothesis.whole_records import coloured, from_windows, whole_runs
+from greybox_torch.diagnosis.refit.rank import MOST_TIED, TIE, RankedCandidate
+
+
+def rank_by_likelihood(
+    ranked: Sequence[RankedCandidate], substeps: int, *, device: str = "cpu"
+) -> list[RankedCandidate]:
+    """``ranked`` with the named ones that tie at the noise in the order of their likelihood, less a price for every parameter.
+
+    The price is half the logarithm of the number of samples. One whose free run is far from what its windows promise (a machine that is
+    nearly bistable) keeps its place.
+
+    Source: G. Schwarz, "Estimating the dimension of a model", Annals of Statistics 6, 1978.
+    """
+    named = [r for r in ranked if not r.unknown]
+    best = min(named, key=lambda r: r.fitted.score, default=None)
+    samples = 0 if best is None else white_samples(best.fitted)
+    if best is None or not samples:
+        return list(ranked)
+    tied = [r for r in named if r.fitted.score < best.fitted.score + TIE][:MOST_TIED]
+    if len({r.leader.attachment.prefix for r in tied}) < 2:
+        return list(ranked)
+    costs = [_cost(r, substeps, device) for r in tied]
+    within = min(costs) + 0.5 * TIE * samples
+    weighed = {id(r): replace(r, cost=cost) for r, cost in zip(tied, costs, strict=True) if cost <= within}
+    price = 0.5 * float(np.log(samples))
+    in_turn = iter(sorted(weighed.values(), key=lambda r: (r.cost or 0.0) + price * r.size))
+    return [next(in_turn) if id(r) in weighed else r for r in ranked]
+
+
+def _cost(tied: RankedCandidate, substeps: int, device: str) -> float:
+    found = coloured(whole_runs(tied.fitted, [from_windows(tied.fitted.fits[-1])], substeps, device=device))
+    return np.inf if found is None else found[1].cost

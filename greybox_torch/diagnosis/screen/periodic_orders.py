@@ -1,0 +1,136 @@
+"""Finding the order of a periodic effect from the data, at any order that the sampling resolves.
+
+The phase of a periodic effect is coherent over a whole record only if its order is known to a fraction of one over the travel. So the
+scan is incoherent first: every window has a phase of its own, and the peak over a coarse grid of orders is broad. Then, around the
+highest peaks, a coherent look over the record gives the order finely.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
+
+import numpy as np
+
+from greybox_torch.diagnosis.screen.score_test import Screen
+from greybox_torch.estimate.window_fit import WindowFit
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.forces import TorqueRipple
+from greybox_torch.mechanisms.friction import PositionDependentFriction
+from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.ports import driving_body
+from greybox_torch.simulation.side_by_side import side_by_side
+
+LEAST_PERIODS = 5.0
+"""Periods within the travel from which an effect is seen to repeat; anything slow could otherwise pass for periodic."""
+
+BATCH = 32
+"""Orders looked at in one compiled pass."""
+
+FAMILIES: tuple[type[Mechanism], ...] = (TorqueRipple, PositionDependentFriction)
+"""What the scan looks for."""
+
+
+def scan_orders(
+    base: GreyBoxModel,
+    accepted: Sequence[Attachment],
+    surroundings: Mapping[str, Surroundings],
+    free_names: Sequence[str],
+    fits: Sequence[WindowFit],
+    *,
+    substeps: int,
+    device: str = "cpu",
+    peaks: int = 2,
+) -> list[float]:
+    """The most promising orders (periods per unit of position) of a periodic effect at the first body.
+
+    Of every fit (they differ in window length), the two that explain most, best first.
+    """
+    body = driving_body(base.ports)
+    if body is None:
+        return []
+
+    def screen(family: type[Mechanism]) -> Screen:
+        attachments = [Attachment(body.name, family(), position=body.name)] * BATCH
+        return Screen.of(base, accepted, attachments, surroundings, free_names, device=device)
+
+    around = surroundings[body.name]
+    grids = [(fit, grid) for fit in fits if len(grid := _grid(around, fit)) >= 4]
+    screens = side_by_side(partial(screen, family) for family in FAMILIES) if grids else []
+    pairs = [(one, fit, grid) for fit, grid in grids for one in screens]
+    peaks_of = side_by_side(partial(_peaks, *pair, substeps, peaks) for pair in pairs)
+    orders = []
+    for fit, _ in grids:
+        own = [peak for (_, of, _), some in zip(pairs, peaks_of, strict=True) if of is fit for peak in some]
+        orders += distinct_orders(order for _, order in sorted(own, reverse=True))[:2]
+    return distinct_orders(orders)
+
+
+def _peaks(screen: Screen, fitted: WindowFit, grid: np.ndarray, substeps: int, count: int) -> list[tuple[float, float]]:
+    """The highest peaks over a grid of orders: shares explained, and orders."""
+    starts = _at_orders(screen, grid[:BATCH]).starts(fitted, substeps)  # an order changes no memory
+    scores = np.concatenate([_incoherent(screen, fitted, part, substeps, starts) for part in _batches(grid)])
+    step = float(grid[1] - grid[0])
+    return [_refined(screen, fitted, float(grid[k]), step, substeps, starts) for k in _highest(scores, count)]
+
+
+def distinct_orders(orders: Iterable[float]) -> list[float]:
+    """Orders in the sequence given, without those within 5 % of one before."""
+    kept: list[float] = []
+    for order in orders:
+        if all(abs(order - other) > 0.05 * other for other in kept):
+            kept.append(order)
+    return kept
+
+
+def _grid(around: Surroundings, fitted: WindowFit) -> np.ndarray:
+    """Orders from a little above zero to what the sampling resolves, as fine as the travel within a window asks for."""
+    position, speed = around.ranges["position"], around.ranges["speed"]
+    travel = max(speed.rms * around.sample_time * fitted.windows.steps, 1e-9)
+    highest = 1.0 / max(speed.rms * around.sample_time, 1e-12)
+    one = 2 * np.pi / max(position.high - position.low, 1e-9)
+    step = max(1.5 / travel, one / 2)
+    return np.arange(max(LEAST_PERIODS * one, step / 2), min(highest, 400 * step), step)
+
+
+def _batches(grid: np.ndarray) -> list[np.ndarray]:
+    return [grid[k : k + BATCH] for k in range(0, len(grid), BATCH)]
+
+
+def _at_orders(screen: Screen, orders: np.ndarray) -> Screen:
+    filled = np.concatenate([orders, np.full(BATCH - len(orders), orders[-1])])
+    return screen.with_probes([{"order": float(order)} for order in filled])
+
+
+def _incoherent(screen: Screen, fitted: WindowFit, orders: np.ndarray, substeps: int, starts: np.ndarray) -> np.ndarray:
+    """Share of the residual explained when every window has its own amplitude and phase."""
+    projected = _at_orders(screen, orders).projected(fitted, substeps, starts)
+    first = len(screen.free_names) + 2 * np.arange(len(orders))
+    inner, right = projected.blocks(np.stack([first, first + 1], axis=1))
+    trace = np.trace(inner, axis1=2, axis2=3)
+    inner = inner + (1e-6 * trace + 1e-300)[..., None, None] * np.eye(2)
+    explained = (right * np.linalg.solve(inner, right[..., None])[..., 0]).sum(axis=(0, 2))
+    return explained / max(projected.energy(), 1e-300)
+
+
+def _refined(
+    screen: Screen, fitted: WindowFit, order: float, step: float, substeps: int, starts: np.ndarray
+) -> tuple[float, float]:
+    """The best coherent share near ``order``, and the order where it is."""
+    best = (-np.inf, order)
+    width = step
+    for _ in range(3):
+        orders = np.linspace(max(best[1] - width, 1e-3), best[1] + width, BATCH)
+        looks = _at_orders(screen, orders).look(fitted, substeps, starts)
+        k = int(np.argmax([look.explained for look in looks]))
+        best = (looks[k].explained, float(orders[k]))
+        width = 2.5 * width / BATCH
+    return best
+
+
+def _highest(scores: np.ndarray, count: int) -> list[int]:
+    """Indices of the highest local maxima."""
+    padded = np.concatenate([[-np.inf], scores, [-np.inf]])
+    tops = np.flatnonzero((padded[1:-1] >= padded[:-2]) & (padded[1:-1] >= padded[2:]))
+    return [int(k) for k in tops[np.argsort(-scores[tops])][:count]]

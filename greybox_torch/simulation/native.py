@@ -1,0 +1,204 @@
+"""The compiled stepper: packs windows into vector lanes and calls the machine code made for the model."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from greybox_torch.codegen.build import library
+from greybox_torch.codegen.emit import emit
+from greybox_torch.codegen.lower import Equations
+from greybox_torch.simulation.packed_normals import PackedNormals
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.side_by_side import cores
+from greybox_torch.simulation.stepper import Probes, Run, Windows
+
+_LONG, _POINTER = ctypes.c_long, ctypes.c_void_p
+
+
+WORTH_A_THREAD = 2000
+"""Steps times directions of a group of lanes, about 0.1 ms."""
+
+_TILE = 4
+"""Side of the squares in which the emitted program accumulates normal matrices."""
+
+
+class _Job(ctypes.Structure):
+    """Mirrors ``struct Job`` of the emitted program."""
+
+    _fields_ = [
+        *[(n, _LONG) for n in ("groups", "steps", "substeps", "foh", "samples", "directions", "threads")],
+        *[(n, _LONG) for n in ("first_probe", "last_probe", "band")],
+        *[
+            (n, _POINTER)
+            for n in (
+                "u",
+                "dt",
+                "start",
+                "last",
+                "column",
+                "p",
+                "x",
+                "dx",
+                "y",
+                "dy",
+                "trace",
+                "measured",
+                "weight",
+                "normal",
+            )
+        ],
+    ]
+
+
+def native_stepper(equations: Equations, sensitive: tuple[str, ...], precision: str) -> NativeStepper | None:
+    """A compiled stepper, None where no compiler works."""
+    loaded = library(emit(equations, precision))
+    return None if loaded is None else NativeStepper(equations, sensitive, precision, loaded)
+
+
+@dataclass(frozen=True)
+class NativeStepper:
+    """See :class:`greybox_torch.simulation.stepper.Stepper`."""
+
+    equations: Equations
+    sensitive: tuple[str, ...]
+    precision: str
+    loaded: ctypes.CDLL
+
+    @property
+    def compiled(self) -> bool:
+        return True
+
+    def run(
+        self,
+        records: Records,
+        windows: Windows,
+        p: np.ndarray,
+        x0: np.ndarray,
+        *,
+        tangents: bool = False,
+        start_directions: np.ndarray | None = None,
+        tangents0: np.ndarray | None = None,
+        substeps: int = 1,
+        keep_states: bool = False,
+        weights: np.ndarray | None = None,
+        probes: Probes | None = None,
+    ) -> Run:
+        real = np.float64 if self.precision == "double" else np.float32
+        lanes = 64 // np.dtype(real).itemsize
+        count, n_x, n_y = len(windows.start), self.equations.n_states, self.equations.n_outputs
+        groups = -(-count // lanes)
+        n_p = len(self.sensitive) if tangents else 0
+        n_s = 0 if start_directions is None else start_directions.shape[1]
+        n_d = n_p + n_s
+        n_t = self.equations.n_tangent
+
+        rows = np.broadcast_to(p, (count, self.equations.n_parameters))
+        dx0 = np.zeros((count, n_d, n_t))
+        if n_p and tangents0 is not None:
+            dx0[:, :n_p] = tangents0[..., :n_t]
+        if start_directions is not None:
+            dx0[:, n_p:] = start_directions[..., :n_t]
+        width = (n_d + _TILE) // _TILE * _TILE
+        signals = _signals(records, real)
+        packed = {
+            "u": signals["u"],
+            "dt": signals["dt"],
+            "start": _lanes(windows.start, lanes, np.int64),
+            "last": _lanes(windows.last, lanes, np.int64),
+            "column": np.array([*range(n_p), *([len(self.sensitive)] * n_s)], dtype=np.int64),
+            "p": _lanes(rows if rows.shape[1] else np.zeros((count, 1)), lanes, real),
+            "x": _lanes(x0, lanes, real),
+            "dx": _lanes(dx0, lanes, real),
+            "y": _empty((groups, windows.steps, n_y, lanes), real),
+            "dy": _empty((groups, windows.steps, n_y, n_d, lanes), real) if n_d and weights is None else None,
+            "trace": _empty((groups, windows.steps, n_x, lanes), real) if keep_states else None,
+            "measured": None if weights is None else signals["y"],
+            "weight": None if weights is None else _aligned(weights, real),
+            "normal": None if weights is None else _zeros((groups, width, width, lanes), real),
+        }
+        threads = _threads(groups, windows.steps * substeps * (1 + n_d))
+        sizes = (groups, windows.steps, substeps, int(records.hold == "foh"), len(records.dt), n_d, threads)
+        sparse = (n_d, n_d, 0) if probes is None else (n_p - probes.count, n_p, probes.band + _TILE)
+        pointers = [None if a is None else a.ctypes.data for a in packed.values()]
+        self.loaded.run(ctypes.byref(_Job(*sizes, *sparse, *pointers)))
+        dy, normal = packed["dy"], packed["normal"]
+        return Run(
+            y=_windows(packed["y"], count),
+            dy=None if dy is None else _windows(dy, count),
+            x_end=_windows(packed["x"], count),
+            dx_end=_windows(packed["dx"], count) if n_d else None,
+            states=_windows(packed["trace"], count) if keep_states else None,
+            normal=None
+            if normal is None or probes is not None
+            else _mirrored(_windows(normal, count)[:, : n_d + 1, : n_d + 1]),
+            packed=None if normal is None or probes is None else PackedNormals.of(normal, count, n_d + 1),
+        )
+
+
+def _threads(groups: int, work: int) -> int:
+    """How many threads a pass over ``groups`` of so much work each is worth: waking them costs as much as a short one."""
+    return max(1, min(groups, cores(), groups * work // WORTH_A_THREAD))
+
+
+def _signals(records: Records, real: type) -> dict[str, np.ndarray]:
+    """The records' signals as the machine code reads them: copied once, as records is simulated many times."""
+    kept = records.__dict__.setdefault("_signals", {})
+    if real not in kept:
+        u = records.u if len(records.u) else np.zeros((1, len(records.dt)))
+        kept[real] = {"u": _aligned(u, real), "dt": _aligned(records.dt, real), "y": _aligned(records.y, real)}
+    return kept[real]
+
+
+def _empty(shape: tuple[int, ...], real: type) -> np.ndarray:
+    """An uninitialised array whose data begin on a cache line, as vector loads need."""
+    size = math.prod(shape) * np.dtype(real).itemsize
+    raw = np.empty(size + 64, dtype=np.uint8)
+    offset = -raw.ctypes.data % 64
+    return raw[offset : offset + size].view(real).reshape(shape)
+
+
+def _zeros(shape: tuple[int, ...], real: type) -> np.ndarray:
+    result = _empty(shape, real)
+    result.fill(0)
+    return result
+
+
+def _mirrored(lower: np.ndarray) -> np.ndarray:
+    """Symmetric matrices (W, d, d) from their lower triangles."""
+    result = np.ascontiguousarray(lower)
+    above = np.triu_indices(result.shape[1], 1)
+    result[:, above[0], above[1]] = result[:, above[1], above[0]]
+    return result
+
+
+def _aligned(values: np.ndarray, real: type) -> np.ndarray:
+    result = _empty(values.shape, real)
+    result[...] = values
+    return result
+
+
+def _lanes(values: np.ndarray, lanes: int, real: type) -> np.ndarray:
+    """(W, ...) -> (groups, ..., lanes); the last group is filled up with copies of the last window."""
+    values = np.asarray(values)
+    if len(values) % lanes:
+        values = values[_filled_up(len(values), lanes)]
+    shaped = values.reshape(len(values) // lanes, lanes, *values.shape[1:])
+    return _aligned(shaped.transpose(0, *range(2, shaped.ndim), 1), real)
+
+
+@lru_cache(maxsize=64)
+def _filled_up(count: int, lanes: int) -> np.ndarray:
+    """Indices of ``count`` windows, the last one repeated until the lanes of all groups are taken."""
+    return np.minimum(np.arange(-(-count // lanes) * lanes), count - 1)
+
+
+def _windows(packed: np.ndarray, count: int) -> np.ndarray:
+    """(groups, ..., lanes) -> (W, ...), a view where there is one group."""
+    moved = packed.transpose(0, -1, *range(1, packed.ndim - 1))
+    return moved.reshape(-1, *moved.shape[2:])[:count] if len(packed) > 1 else moved[0, :count]

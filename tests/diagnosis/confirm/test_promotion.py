@@ -1,0 +1,90 @@
+"""Experiments that join those to choose with, where these do not show what others do."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.confirm.held_out import HeldOut
+from greybox_torch.diagnosis.confirm.promotion import promote_validation, serves
+from greybox_torch.diagnosis.pipeline import diagnose
+from greybox_torch.diagnosis.screen.candidates import attach
+from greybox_torch.mechanisms.friction import QuadraticDrag
+
+from ..conftest import STEP, turned
+
+SLOW, FAST = 0.3, 3.0
+
+
+@pytest.fixture(scope="session")
+def drag_at_speed(data_set):
+    """A motor with quadratic drag, first recorded so slowly that it does not show."""
+
+    def make(levels=(SLOW, FAST, FAST), drag=0.01) -> DataSet:
+        rng, experiments = np.random.default_rng(1), []
+        for level in levels:
+            voltage = np.repeat(rng.uniform(-level, level, 75), 20)
+            speed = turned(voltage, lambda q, v: -drag * v * abs(v))
+            experiments.append({"voltage": voltage, "speed": speed + rng.normal(0, 0.02, len(speed))})
+        roles = ["estimation", *["validation"] * (len(levels) - 1)]
+        return data_set({"voltage": "V", "speed": "rad/s"}, experiments, roles=roles, sample_time=STEP)
+
+    return make
+
+
+def test_what_only_other_experiments_show_is_found_with_one_of_them(drag_at_speed, motor) -> None:
+    data = drag_at_speed()
+    verdict = diagnose(data, motor).verdict
+    (effect,) = verdict.effects
+    assert (effect.port, effect.mechanism) == ("rotor", "quadratic_drag")
+    assert effect.parameters["c"]["value"] == pytest.approx(0.01, rel=0.05)
+    roles = {s.experiment: s.role for s in verdict.scores["augmented"]}
+    assert sorted(roles.values()) == ["estimation", "estimation", "validation"]
+    taken = next(r.name for r in data.recordings if r.role != roles[r.name])
+    assert any(line.startswith(f"{taken} was taken to choose with") for line in verdict.evidence)
+    assert [r.role for r in data.recordings] == ["estimation", "validation", "validation"]
+
+
+@pytest.mark.parametrize(("levels", "drag"), [((SLOW, FAST), 0.01), ((SLOW, FAST, FAST), 0.0)])
+def test_nothing_is_taken_where_none_would_be_left_or_none_shows_more(
+    drag_at_speed, motor, begun, levels, drag
+) -> None:
+    data = drag_at_speed(levels, drag)
+    search = begun(data, motor)
+    assert promote_validation(data, search, HeldOut(data, search.problem, 1)) is None
+
+
+def test_the_experiment_that_shows_most_is_taken(drag_at_speed, motor, begun) -> None:
+    data = drag_at_speed((SLOW, 1.0, FAST))
+    search = begun(data, motor)
+    more = promote_validation(data, search, HeldOut(data, search.problem, 1))
+    assert more is not None and more.taken == data.recordings[2].name and more.error > 1.5
+    assert [r.role for r in more.dataset.recordings] == ["estimation", "validation", "estimation"]
+
+
+def test_what_explains_the_others_is_left_as_it_is(drag_at_speed, motor, begun) -> None:
+    data = drag_at_speed((FAST, FAST, FAST))
+    search = begun(data, motor)
+    others = HeldOut(data, search.problem, 1)
+    assert promote_validation(data, search, others) is not None
+    complete = begun(data, motor)
+    complete.current = complete._refitted((attach(motor, "rotor", QuadraticDrag()),), complete.plain)
+    assert promote_validation(data, complete, others) is None
+    assert serves(others, search, complete) and not serves(others, complete, search)
+    assert serves(others, complete, complete) is False and serves(others, search, search)
+
+
+def test_what_only_the_last_experiment_shows_is_said_to_be_missing_without_a_name(drag_at_speed, motor) -> None:
+    """It has to be left to judge, so it cannot say what."""
+    verdict = diagnose(drag_at_speed((SLOW, FAST)), motor).verdict
+    assert verdict.mismatch and not verdict.effects
+    assert verdict.unexplained is not None and verdict.unexplained > 3
+    assert verdict.sentence.startswith("Something is missing")
+
+
+def test_the_noise_of_other_experiments_is_the_unit_of_their_errors(drag_at_speed, motor, begun) -> None:
+    data = drag_at_speed((FAST, FAST, SLOW), drag=0.0)
+    search = begun(data, motor)
+    errors = HeldOut(data, search.problem, 1).times_noise(search.current)
+    assert errors == pytest.approx([1.0, 1.0], abs=0.1)

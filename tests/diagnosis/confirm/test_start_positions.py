@@ -1,0 +1,71 @@
+"""Where a position begins that nothing measures."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.confirm.held_out import _window_by_window
+from greybox_torch.diagnosis.confirm.start_positions import placed
+from greybox_torch.diagnosis.hypothesis.fit import augmented
+from greybox_torch.diagnosis.screen.candidates import attach
+from greybox_torch.estimate.problem import problem_for
+from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.simulation.stepper import make_stepper
+
+BEGINS = 0.4
+"""Position at which the simulated motor begins, rad."""
+
+
+def restated(search, effect, **values):
+    model = augmented(search.problem, (effect,), search.surroundings)
+    known = {
+        **search.problem.model.values(),
+        "J": 0.02,
+        "b": 0.05,
+        **{f"{effect.prefix}.{n}": v for n, v in values.items()},
+    }
+    problem = problem_for(search.problem, model, known)
+    return replace(problem, free=np.zeros_like(problem.free)), make_stepper(model, (), device="cpu")
+
+
+@pytest.mark.parametrize("samples", [2000, 2020])  # of the second, the last window is longer than the others
+def test_position_is_found_along_a_period(motor_data, motor, begun, samples) -> None:
+    order, phase = 5.0, 0.7
+    search = begun(motor_data(samples, torque=lambda q, v: 0.03 * np.cos(order * q + phase)), motor)
+    ripple = attach(motor, "rotor", TorqueRipple(order))
+    size = {"a": 0.03 * np.cos(phase), "b": -0.03 * np.sin(phase), "order": order}
+    problem, stepper = restated(search, ripple, **size)
+    fit = placed(problem, stepper, 31, 1)
+    assert fit is not None
+    found = fit.problem.initial[0, 1]
+    period = 2 * np.pi / order
+    assert (found - BEGINS + period / 2) % period - period / 2 == pytest.approx(0.0, abs=0.03)
+    assert np.sqrt(fit.mean_square) == pytest.approx(0.02, rel=0.1), "what is left is noise"
+
+
+def test_without_a_position_it_is_a_fit_of_the_windows(motor_data, motor, begun) -> None:
+    search = begun(motor_data(torque=lambda q, v: 0.05), motor)
+    problem, stepper = restated(search, attach(motor, "rotor", ConstantBias()), bias=0.05)
+    fit = placed(problem, stepper, 31, 1)
+    assert fit is not None and fit.problem.initial.shape == (1, 1)
+    assert np.sqrt(fit.mean_square) == pytest.approx(0.02, rel=0.1)
+
+
+def test_a_window_in_a_local_minimum_does_not_outweigh_the_others(motor_data, motor, begun) -> None:
+    search = begun(motor_data(), motor)
+    good = search.plain.fits[0]
+    energies, starts = good.energies.copy(), good.starts.copy()
+    energies[3], starts[3] = 1e3, 99.0
+    stuck = replace(
+        good, energies=energies, starts=starts, mean_square=good.mean_square * energies.sum() / good.energies.sum()
+    )
+    for pair in ((stuck, good), (good, stuck)):
+        best = _window_by_window(*pair)
+        assert best is not None
+        assert np.array_equal(best.energies, good.energies) and np.array_equal(best.starts, good.starts)
+        assert best.mean_square == pytest.approx(good.mean_square)
+    assert _window_by_window(None, good) is good and _window_by_window(good, None) is good
+    assert _window_by_window(None, None) is None

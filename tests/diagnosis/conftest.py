@@ -1,0 +1,121 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+import pytest
+
+from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.select.search import Search
+from greybox_torch.estimate.problem import all_starts_free, make_problem
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.systems import RobotArm
+from greybox_torch.systems.load import load_model
+
+STEP = 0.01
+
+
+@pytest.fixture(scope="session")
+def motor(machines: Path) -> GreyBoxModel:
+    """The documentation's motor."""
+    return load_model(f"{machines / 'motor.py'}:Motor")
+
+
+class MotorData(Protocol):
+    def __call__(
+        self,
+        samples: int = ...,
+        roles: tuple[str, ...] = ...,
+        *,
+        acting: Callable[[np.ndarray], np.ndarray] = ...,
+        torque: Callable[[float, float], float] | None = ...,
+        noise: float = ...,
+    ) -> DataSet: ...
+
+
+@pytest.fixture(scope="session")
+def motor_data(data_set, motor_speed) -> MotorData:
+    """Recordings of a motor with J 0.02 and b 0.05 under steps of voltage, simulated without the package.
+
+    ``acting`` maps the recorded voltage to the one that acts; ``torque`` of position and speed is what the model does not know.
+    """
+
+    def make(samples=2000, roles=("estimation", "validation"), *, acting=lambda v: v, torque=None, noise=0.02):
+        rng, experiments = np.random.default_rng(0), []
+        for _ in roles:
+            voltage = np.repeat(rng.uniform(-3, 3, samples // 20), 20)
+            true = motor_speed(acting(voltage), start=0.3) if torque is None else turned(acting(voltage), torque)
+            experiments.append({"voltage": voltage, "speed": true + rng.normal(0, noise, samples)})
+        return data_set({"voltage": "V", "speed": "rad/s"}, experiments, roles=list(roles), sample_time=STEP)
+
+    return make
+
+
+def turned(voltage: np.ndarray, torque: Callable[[float, float], float], substeps: int = 4) -> np.ndarray:
+    """The motor's speed with a further torque that depends on position and speed, by Runge-Kutta steps."""
+
+    def rate(x: np.ndarray, v: float) -> np.ndarray:
+        return np.array([x[1], (0.1 * v - 0.05 * x[1] + torque(x[0], x[1])) / 0.02])
+
+    x, h, speeds = np.array([0.4, 0.3]), STEP / substeps, []
+    for v in voltage:
+        speeds.append(x[1])
+        for _ in range(substeps):
+            k1 = rate(x, v)
+            k2 = rate(x + h / 2 * k1, v)
+            k3 = rate(x + h / 2 * k2, v)
+            x = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + rate(x + h * k3, v))
+    return np.array(speeds)
+
+
+@pytest.fixture(scope="session")
+def begun() -> Callable[[DataSet, GreyBoxModel], Search]:
+    """A search that has fitted the model as it stands, and surveyed its ports."""
+
+    def begin(dataset: DataSet, model: GreyBoxModel, substeps: int = 1) -> Search:
+        search = Search(all_starts_free(dataset, make_problem(dataset, model, dataset.estimation())), substeps)
+        search.begin()
+        return search
+
+    return begin
+
+
+@pytest.fixture(scope="session")
+def dead_zone_search(motor_data, motor, begun) -> Search:
+    """The motor whose actuator does nothing below 0.5 V, before the first look."""
+    return begun(motor_data(acting=lambda v: np.sign(v) * np.maximum(np.abs(v) - 0.5, 0.0)), motor)
+
+
+@pytest.fixture(scope="session")
+def arm_search(data_set, begun) -> Search:
+    """A short, rich record of the robot arm as the model has it."""
+    from greybox_torch.simulation.records import Records
+    from greybox_torch.simulation.stepper import make_stepper, whole_records
+
+    arm, n, step = RobotArm(), 1500, 1e-3
+    t = step * np.arange(n)
+    torque = 6.0 * np.sign(np.sin(4.0 * t)) + sum(np.sin(2 * np.pi * f * t + f) for f in (7.0, 13.0, 23.0))
+    records = Records(torque[None], np.zeros((1, n)), np.full(n, step), np.array([0]), np.array([n - 1]), ("",), "zoh")
+    p = np.array(list(arm.values().values()))
+    speed = make_stepper(arm, ()).run(records, whole_records(records), p, np.zeros((1, 5))).y[0, :, 0]
+    noisy = speed + np.random.default_rng(3).normal(0, 0.01, n)
+    return begun(
+        data_set(
+            {"torque": "N m", "motor_speed": "rad/s"}, [{"torque": torque, "motor_speed": noisy}], sample_time=step
+        ),
+        arm,
+    )
+
+
+class Stub:
+    """What a test needs of a larger object, and nothing else."""
+
+    def __init__(self, **values: Any) -> None:
+        vars(self).update(values)
+
+
+@pytest.fixture(scope="session")
+def stub() -> type[Stub]:
+    return Stub

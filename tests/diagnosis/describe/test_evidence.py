@@ -1,0 +1,69 @@
+"""The sentences that speak for a verdict."""
+
+from __future__ import annotations
+
+import pytest
+
+from greybox_torch.diagnosis.describe.effects import ceiling_share
+from greybox_torch.diagnosis.describe.evidence import ceiling_sentence, detection_sentences
+from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest, Remains
+
+WHITE = Remains(Largest(0.01, 0.03), Largest(0.02, 0.05))
+WRONG = Remains(Largest(0.93, 0.03), Largest(0.31, 0.05))
+CALM, DRIVEN = Largest(0.01, 0.03), Largest(0.36, 0.03)
+
+
+def test_before_and_after() -> None:
+    found = [Detection("Steps", "speed", WRONG, WHITE, CALM, 40.0)]
+    assert detection_sentences(found, True) == [
+        "The free run's errors, model as it stands, are correlated with past inputs (largest correlation 0.31, 99 % bound 0.05); "
+        "with the effects 0.02 (bound 0.05).",
+        "They are not white (largest autocorrelation 0.93, 99 % bound 0.03); with the effects 0.01 (bound 0.03).",
+    ]
+
+
+def test_without_effects() -> None:
+    assert detection_sentences([Detection("Steps", "speed", WHITE, WHITE, CALM, 40.0)], False) == [
+        "The free run's errors, model as it stands, are not correlated with past inputs (largest correlation 0.02, 99 % bound 0.05).",
+        "They are white (largest autocorrelation 0.01, 99 % bound 0.03).",
+    ]
+
+
+def test_the_clearest_of_several_and_feedback() -> None:
+    found = [
+        Detection("Steps", "speed", WHITE, WHITE, CALM, 40.0),
+        Detection("Sweep", "speed", WRONG, WRONG, DRIVEN, 60.0),
+        Detection("Sweep", "position", WHITE, WHITE, CALM, 60.0),
+        Detection("Hold", "speed", WHITE, WHITE, Largest(0.1, 0.03), 50.0),
+    ]
+    past, colour, feedback = detection_sentences(found, False)
+    assert "are correlated with past inputs up to 60 Hz (largest correlation 0.31" in past
+    assert "not white" in colour
+    assert past.endswith(", in speed of Sweep).") and colour.endswith(", in speed of Sweep).")
+    assert feedback.startswith("Recorded under feedback: Sweep, Hold (") and "0.36, 99 % bound 0.03" in feedback
+    assert "Coherence above 60 Hz, where the input is hardly excited, is not counted as evidence." in feedback
+
+
+def test_no_estimation_experiment_that_could_be_followed() -> None:
+    assert detection_sentences([], True) == []
+
+
+@pytest.mark.parametrize(
+    ("named", "curves", "share"), [(0.9, (1.0, 0.5), 0.9), (1.2, (1.0,), 1.0), (1.2, (-0.1,), 1.0), (0.9, (), None)]
+)
+def test_share_of_the_ceiling(stub, named, curves, share) -> None:
+    """The best free curve of the round is what any law of one signal could reach."""
+    taken = stub(gain=named, unknown=False)
+    others = [stub(gain=gain, unknown=True) for gain in curves]
+    assert ceiling_share(stub(taken=taken, ranked=(taken, stub(gain=2.0, unknown=False), *others))) == share
+
+
+def test_a_curve_is_its_own_ceiling(stub) -> None:
+    curve = stub(gain=1.0, unknown=True)
+    assert ceiling_share(stub(taken=curve, ranked=(curve,))) is None
+    assert ceiling_share(stub(taken=None, ranked=(curve,))) is None
+
+
+def test_ceiling_in_words(stub) -> None:
+    told = ceiling_sentence(stub(mechanism="coulomb_friction", port="motor", ceiling=0.883))
+    assert told.startswith("coulomb friction at motor reaches 88 % of the ceiling: the gain")

@@ -1,0 +1,65 @@
+"""Where an effect is strongest: along which signal, in which experiment, when."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.confirm.held_out import timelines
+from greybox_torch.diagnosis.describe.effects import where
+from greybox_torch.diagnosis.verdict import Profile, Timeline
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.stepper import cut
+
+STEP = 0.5
+
+
+@pytest.fixture
+def fits(stub):
+    """Fits of windows of so many samples on two experiments of 8 and 4 samples, of which the windows' energies are given."""
+    count = 12
+    records = Records(
+        np.zeros((1, count)),
+        np.zeros((1, count)),
+        np.full(count, STEP),
+        np.array([0, 8]),
+        np.array([7, 11]),
+        ("A", "B"),
+        "zoh",
+    )
+    return lambda length, *energies: stub(
+        windows=cut(records, length), energies=np.array(energies), problem=stub(records=records)
+    )
+
+
+def test_shares_along_each_experiment(fits) -> None:
+    first, second = timelines((fits(4, 5.0, 2.0, 9.0),), (fits(4, 4.0, 3.0, 6.0),))
+    assert (first.experiment, second.experiment) == ("A", "B")
+    np.testing.assert_allclose(first.edges, [0.0, 2.0, 3.5])
+    np.testing.assert_allclose(second.edges, [0.0, 1.5])
+    np.testing.assert_allclose(first.share, [0.25, 0.0])  # where the effect costs a little it explains nothing
+    np.testing.assert_allclose(second.share, [0.75])
+    assert second.intensity == pytest.approx(0.5)
+
+
+def test_windows_that_both_could_be_fitted_on(fits) -> None:
+    short, long = fits(4, 5.0, 2.0, 9.0), fits(8, 7.0, 9.0)
+    assert timelines((short,), (long,)) == ()
+    assert timelines((), ()) == ()
+    assert len(timelines((long, short), (long, short))) == 2
+
+
+def test_nothing_gained_anywhere(fits) -> None:
+    same = fits(4, 5.0, 2.0, 9.0)
+    assert all(np.all(t.share == 0.0) for t in timelines((same,), (same,)))
+
+
+def test_in_words() -> None:
+    profile = Profile("gear_twist", "rad", np.array([-0.1, 0.0, 0.1, 0.2]), np.array([0.1, 0.8, 0.1]))
+    long = Timeline("Steps", np.array([0.0, 10.0]), np.array([0.6]))
+    short = Timeline("Validation 2", np.array([0.0, 1.0]), np.array([0.4]))
+    told = "0 < gear_twist < 0.1 rad; 80 % of the explained error energy"
+    assert where([profile], [long, short]) == f"{told}, strongest in Validation 2"
+    assert where([profile], [long]) == where([profile], []) == told
+    assert where([], []) == "everywhere along the records"
+    assert where([], [long, short]) == "everywhere along the records, strongest in Validation 2"

@@ -1,0 +1,62 @@
+"""The final fits on whole records."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.hypothesis.final import _from_the_card, finish
+from greybox_torch.diagnosis.hypothesis.noise import noise_over_windows
+from greybox_torch.diagnosis.screen.candidates import attach
+from greybox_torch.mechanisms.forces import ConstantBias
+
+
+@pytest.fixture(scope="module")
+def search(motor_data, motor, begun):
+    found = begun(motor_data(torque=lambda q, v: 0.05, noise=0.02), motor)
+    found.current = found._refitted((attach(motor, "rotor", ConstantBias()),), found.plain)
+    return found
+
+
+def lost(hypothesis, name: str):
+    """The hypothesis as if windows had led to where whole records overflow."""
+    fits = []
+    for fit in hypothesis.fits:
+        values = fit.problem.values.copy()
+        values[fit.problem.names.index(name)] = 1e-9
+        fits.append(replace(fit, problem=fit.problem.with_values(values)))
+    return replace(hypothesis, fits=tuple(fits))
+
+
+def test_the_card_has_the_machine_and_the_windows_have_the_effect(search) -> None:
+    """Only what the machine has itself begins anew: an effect's size on the card is none."""
+    begins, windows = _from_the_card(search.current), search.current.values()
+    values = dict(zip(begins.names, begins.values, strict=True))
+    assert values["rotor.constant_bias.bias"] == windows["rotor.constant_bias.bias"] == pytest.approx(0.05, rel=0.05)
+    card = dict(zip(search.problem.names, search.problem.values, strict=True))
+    assert {n: values[n] for n in card} == card and card != {n: windows[n] for n in card}
+
+
+def test_where_windows_led_astray_the_card_is_a_beginning(search) -> None:
+    right, astray = finish(search.current, 1), finish(lost(search.current, "J"), 1)
+    assert astray.uncertainty is not None
+    assert np.allclose(astray.problem.values, right.problem.values, rtol=1e-3)
+
+
+def test_drift_beside_an_effect_does_not_bend_the_machine(motor_data, motor, begun) -> None:
+    """Noise over windows, a slow voltage over the whole record: errors weighed by their spectrum leave the parameters where they are."""
+    drift = 0.02 * np.sin(np.linspace(0.0, 9.0, 2000))
+    search = begun(motor_data(acting=lambda v: v + 0.3 + drift, noise=0.05), motor)
+    drifting = search._refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
+    assert drifting is not None and noise_over_windows(drifting)
+    loud = replace(drifting, fits=tuple(replace(f, mean_square=9.0 * f.mean_square) for f in drifting.fits))
+    true = np.array([0.02, 0.05])
+    weighed, plain = (finish(h, 1) for h in (drifting, loud))
+    away = [np.abs([f.values()[n] for n in ("J", "b")] / true - 1.0).max() for f in (weighed, plain)]
+    assert away[0] < 0.5 * away[1]
+    assert weighed.uncertainty is not None and plain.uncertainty is not None
+    assert weighed.sentences() and not plain.sentences()
+    assert (weighed.uncertainty.plain == weighed.uncertainty.sandwich).all()
+    assert not np.allclose(plain.uncertainty.plain, plain.uncertainty.sandwich)

@@ -1,0 +1,80 @@
+"""Which mechanism is offered at which port."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+from greybox_torch.diagnosis.screen.candidates import attach, candidates, periodic_candidates
+from greybox_torch.mechanisms.actuator import InputDelay
+from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.library import LIBRARY
+from greybox_torch.mechanisms.transmission import Backlash, TransmissionError
+from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.systems import RobotArm
+
+
+def by_port(found) -> dict[str, set[str]]:
+    ports = defaultdict(set)
+    for a in found:
+        ports[a.port].add(a.mechanism.name)
+    return dict(ports)
+
+
+def library_of(kind: str) -> set[str]:
+    return {name for name, mechanism in LIBRARY.items() if kind in mechanism.kinds}
+
+
+def test_the_arm_is_offered_the_whole_library(arm_search) -> None:
+    found = candidates(RobotArm(), arm_search.shifts, arm_search.surroundings, flexible=False)
+    assert by_port(found) == {
+        **{body: library_of("body") for body in ("motor", "gearbox", "arm")},
+        **{spring: library_of("coupling") for spring in ("gear_spring", "arm_spring")},
+        "actuator": library_of("actuator"),
+        "sensor": library_of("sensor"),
+    }
+    assert len({(a.port, a.mechanism.name) for a in found}) == len(found)
+    positions = {a.port: a.position for a in found if a.mechanism.name in ("torque_ripple", "transmission_error")}
+    assert positions == {b: b for b in ("motor", "gearbox", "arm")} | {"gear_spring": "motor", "arm_spring": "motor"}
+    shifted = {a.port: a.shifted_state for a in found if a.mechanism.name == "backlash"}
+    assert shifted == {"gear_spring": "+gear_twist", "arm_spring": "+arm_twist"}
+
+
+def test_what_needs_a_load_is_not_offered_without_one(dead_zone_search, motor) -> None:
+    found = candidates(motor, dead_zone_search.shifts, dead_zone_search.surroundings, flexible=False)
+    assert by_port(found)["rotor"] == library_of("body") - {"load_dependent_friction"}
+
+
+def test_curves(arm_search) -> None:
+    found = candidates(RobotArm(), arm_search.shifts, arm_search.surroundings, flexible=True)
+    assert all(isinstance(a.mechanism, Unknown) for a in found)
+    signals = {(a.port, a.mechanism.signal, a.position) for a in found}
+    assert signals == {
+        *((b, "speed", "") for b in ("motor", "gearbox", "arm")),
+        *((b, "position", b) for b in ("motor", "gearbox", "arm")),
+        *((s, q, "") for s in ("gear_spring", "arm_spring") for q in ("deflection", "rate", "speed")),
+        ("actuator", "input", ""),
+        ("actuator", "time", ""),
+        ("actuator", "speed", ""),
+    }
+
+
+def test_periodic_at_the_orders_found(arm_search) -> None:
+    found = periodic_candidates(RobotArm(), arm_search.shifts, arm_search.surroundings, [1.0, 7.3])
+    orders = defaultdict(set)
+    for a in found:
+        orders[a.mechanism.name].add(a.mechanism.order)
+        assert a.position
+    assert orders == {
+        "torque_ripple": {7.3},  # once per turn is gravity
+        "position_dependent_friction": {1.0, 7.3},
+        "transmission_error": {1.0, 7.3},
+    }
+
+
+def test_attach_finds_the_body_that_a_position_belongs_to() -> None:
+    arm = RobotArm()
+    assert attach(arm, "gearbox", TorqueRipple()).position == "gearbox"
+    assert attach(arm, "arm_spring", TransmissionError(), "+arm_twist").position == "motor"
+    assert attach(arm, "motor", ConstantBias()).position == ""
+    assert attach(arm, "gear_spring", Backlash(), "+gear_twist").shifted_state == "+gear_twist"
+    assert attach(arm, "actuator", InputDelay()).position == ""

@@ -1,0 +1,111 @@
+"""Which of the refitted hypotheses is taken."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.refit.rank import RankedCandidate
+from greybox_torch.diagnosis.screen.candidates import attach, candidates
+from greybox_torch.diagnosis.screen.score_test import ScreenScore, _sound
+from greybox_torch.diagnosis.screen.shortlist import CAUTIOUS, Candidate, shortlist
+from greybox_torch.diagnosis.select.choice import chosen, simplest
+from greybox_torch.estimate.window_fit import WindowFit
+from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
+from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.model import Body
+from greybox_torch.simulation.packed_normals import PackedNormals
+
+WINDOWS = 40
+
+
+@pytest.fixture
+def ranked(motor, begun, motor_data):
+    """Makes a ranked hypothesis whose windows have given energies."""
+    search = begun(motor_data(), motor)
+
+    def make(mechanism, energies: np.ndarray) -> RankedCandidate:
+        fits = tuple(replace(fit, energies=energies, mean_square=float(energies.mean())) for fit in search.plain.fits)
+        fitted = Hypothesis((), search.plain.model, search.plain.stepper, fits, 1e-12)
+        gain = search.plain.score - fitted.score
+        return RankedCandidate(Candidate(attach(motor, "rotor", mechanism), (), 0.5), fitted, gain, 10.0)
+
+    return make
+
+
+def test_the_simpler_law_is_meant_where_the_richer_one_is_not_better_by_more_than_chance(ranked) -> None:
+    rng = np.random.default_rng(0)
+    energies = rng.uniform(0.9, 1.1, WINDOWS)
+    scattered = energies * rng.uniform(0.9, 1.1, WINDOWS)
+    simple, rich = ranked(CoulombFriction(), energies), ranked(StribeckFriction(), scattered * 0.99)
+    assert simplest([rich, simple]) is simple
+    clearly = ranked(StribeckFriction(), 0.5 * scattered)
+    assert simplest([clearly, simple]) is clearly
+    assert simplest([simple, rich]) is simple
+    assert simplest([]) is None
+
+
+def test_a_curve_is_taken_only_where_it_goes_much_farther(ranked) -> None:
+    named = ranked(CoulombFriction(), np.full(WINDOWS, 1e-3))
+    little, much = (ranked(Unknown("speed"), np.full(WINDOWS, e)) for e in (0.95e-3, 1e-9))
+    assert chosen([little, named]) is named
+    assert chosen([much, named]) is much
+    assert chosen([much]) is much
+
+
+def test_a_curve_is_also_refitted_from_a_part_of_it(dead_zone_search) -> None:
+    search = dead_zone_search
+    fit: WindowFit = search.plain.fits[0]
+    curve = attach(search.problem.model, "rotor", Unknown("speed"))
+    probe = curve.mechanism.probes(search.surroundings["rotor"])[0]
+    look = ScreenScore(curve, probe, 31, 0.4, np.arange(1.0, 15.0))
+    (leader,) = shortlist([[look]], [fit], search.surroundings, {})
+    whole, part = leader.starts[:2]
+    heights = [f"{curve.prefix}.w_{k}" for k in range(14)]
+    assert [whole[n] for n in heights] == list(look.size)
+    assert [part[n] for n in heights] == pytest.approx(CAUTIOUS * look.size)
+
+
+def test_what_repeats_once_per_turn_is_not_offered_on_a_length(motor, dead_zone_search) -> None:
+    around = dict(dead_zone_search.surroundings)
+    names = {"gravity", "torque_ripple", "position_dependent_friction"}
+
+    def offered() -> set[str]:
+        return {a.mechanism.name for a in candidates(motor, {}, around, flexible=False)} & names
+
+    assert any(isinstance(port, Body) for port in motor.ports)
+    assert offered() == names
+    around["rotor"] = replace(around["rotor"], units={**around["rotor"].units, "position": "m"})
+    assert offered() == set()
+
+
+def test_windows_that_fail_are_passed_over_and_probes_that_fail_are_dropped() -> None:
+    normal = np.ones((3, 4, 4))
+    normal[1, 0, 0] = np.nan  # the model itself
+    normal[2, 2, 2] = np.inf  # a probe
+    packed = PackedNormals.of(normal[..., None], 3, 4)
+    sound = _sound(packed, np.array([0, 1, 3])).rows(np.arange(4))
+    assert np.isfinite(sound).all()
+    assert (sound[1] == 0).all()
+    assert (sound[[0, 2], 2] == 0).all() and (sound[[0, 2], :, 2] == 0).all()
+    assert (sound[0, :2, :2] == 1).all()
+    whole = PackedNormals.of(np.ones((2, 3, 3, 1)), 2, 3)
+    assert _sound(whole, np.array([0])) is whole
+
+
+def test_what_a_law_lacks_is_not_a_curve_of_its_own(dead_zone_search, ranked) -> None:
+    """Of a mismatch of 1, a curve must explain two per cent, however significance it does."""
+    search, left = dead_zone_search, np.full(WINDOWS, 0.1)
+    fits = tuple(replace(f, mean_square=1.0) for f in search.plain.fits)
+    now = tuple(replace(f, mean_square=0.1) for f in search.plain.fits)
+    rounds = replace(search)
+    rounds.plain, rounds.current = replace(search.plain, fits=fits), replace(search.plain, fits=now)
+    little, enough = (replace(ranked(Unknown("speed"), left - part), gain=0.2) for part in (0.018, 0.022))
+    assert not rounds._substantial(little)
+    assert rounds._substantial(enough)
+    assert not rounds._substantial(
+        replace(enough, gain=0.09)
+    )  # within the margin it would give way to names, or to nothing

@@ -1,0 +1,99 @@
+"""Where the signals around every port moved."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate.surroundings import survey
+from greybox_torch.model.ports import driving_body
+from greybox_torch.simulation.stepper import make_stepper, whole_records
+from greybox_torch.systems import RobotArm
+from greybox_torch.systems.load import load_model
+
+
+@pytest.fixture(scope="module")
+def states(arm_search) -> np.ndarray:
+    """Along windows of the middle length, each from its own start."""
+    plain, over = arm_search.plain, arm_search.plain.fits[1]
+    run = plain.stepper.run(over.problem.records, over.windows, over.problem.values, over.starts, keep_states=True)
+    sizes = np.diff(over.windows.start, append=plain.problem.records.u.shape[1])
+    return np.concatenate([run.states[w, :n] for w, n in enumerate(sizes)])
+
+
+@pytest.mark.parametrize(
+    ("port", "signal", "column"),
+    [
+        ("motor", "speed", 2),
+        ("gearbox", "speed", 3),
+        ("arm", "speed", 4),
+        ("gear_spring", "deflection", 0),
+        ("arm_spring", "deflection", 1),
+    ],
+)
+def test_ranges_of_states(arm_search, states, port, signal, column) -> None:
+    found = arm_search.surroundings[port].ranges[signal]
+    assert (found.low, found.high) == (states[:, column].min(), states[:, column].max())
+    assert found.rms == pytest.approx(np.sqrt(np.mean(states[:, column] ** 2)))
+    assert found.reach == max(-found.low, found.high)
+
+
+def test_signals_by_port(arm_search) -> None:
+    assert {port: set(around.ranges) for port, around in arm_search.surroundings.items()} == {
+        **{body: {"speed", "position", "load", "time"} for body in ("motor", "gearbox", "arm")},
+        "gear_spring": {"deflection", "rate", "speed", "position", "load", "time"},
+        "arm_spring": {"deflection", "rate", "speed", "position", "time"},
+        "actuator": {"input", "speed", "time"},
+        "sensor": {"output", "time"},
+    }
+
+
+def test_functions_integrals_and_recorded_signals(arm_search, states) -> None:
+    around, records = arm_search.surroundings, arm_search.problem.records
+    rate = states[:, 2] - states[:, 3]
+    assert around["gear_spring"].ranges["rate"].high == pytest.approx(rate.max())
+    position = 1e-3 * np.concatenate([[0.0], np.cumsum(states[:-1, 2])])
+    for port in ("motor", "gear_spring"):  # a coupling's position is that of the first body
+        found = around[port].ranges["position"]
+        assert (found.low, found.high) == (pytest.approx(position.min()), pytest.approx(position.max()))
+    assert around["actuator"].ranges["input"].low == records.u.min()
+    assert around["sensor"].ranges["output"].high == records.y.max()
+    assert around["motor"].ranges["time"].high == pytest.approx(1.499)
+
+
+def test_units(arm_search) -> None:
+    around = arm_search.surroundings
+    assert {port: a.force_unit for port, a in around.items()} == {
+        **dict.fromkeys(("motor", "gearbox", "arm", "gear_spring", "arm_spring", "actuator"), "N m"),
+        "sensor": "rad/s",
+    }
+    assert around["motor"].units == {"speed": "rad/s", "position": "rad", "time": "s"}
+    assert around["gear_spring"].units["rate"] == "rad/s"
+    assert around["motor"].per("speed") == "N m/(rad/s)" and around["motor"].per("speed", 2) == "N m/(rad/s)^2"
+    assert around["motor"].sample_time == pytest.approx(1e-3)
+
+
+def test_position_of_the_model_and_missing_samples(data_set, machines: Path) -> None:
+    pendulum = load_model(f"{machines / 'pendulum.py'}:Pendulum")
+    angle = 0.5 * np.cos(4.0 * np.arange(100) * 0.01)
+    angle[3] = np.nan
+    units = {"torque": "N m", "position": "rad", "velocity": "rad/s"}
+    dataset = data_set(units, [{"torque": 0 * angle, "position": angle, "velocity": 0 * angle}])
+    problem = make_problem(dataset, pendulum, dataset.recordings)
+    stepper = make_stepper(pendulum, ())
+    around = survey(pendulum, problem, stepper, 1)
+    run = stepper.run(
+        problem.records, whole_records(problem.records), problem.values, problem.initial, keep_states=True
+    ).states[0]
+    assert around["arm"].ranges["position"].high == run[:, 0].max()
+    assert around["arm"].units["position"] == "rad"
+    assert around["sensor.position"].ranges["output"].high == np.nanmax(angle)
+    assert set(around) == {"arm", "actuator", "sensor.position", "sensor.velocity"}
+
+
+def test_driving_body_is_the_first() -> None:
+    body = driving_body(RobotArm().ports)
+    assert body is not None and body.name == "motor"

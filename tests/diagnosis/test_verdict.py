@@ -1,0 +1,117 @@
+"""The verdict in words and in JSON."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.verdict import Alternative, Curve, Effect, Verdict
+from greybox_torch.estimate.comparison import Score
+
+BACKLASH = Effect(
+    port="gear_spring",
+    mechanism="backlash",
+    probability=0.94,
+    signals=("gear_twist",),
+    where="|gear_twist| < 0.031 rad",
+    parameters={"half_gap": {"value": 0.031, "std": 0.0004, "unit": "rad"}},
+    explained=0.97,
+    alternatives=(Alternative("gear_spring", "nonlinear_stiffness", 0.04),),
+    curve=None,
+)
+CURVE = Curve("speed", "rad/s", np.array([0.0, 1.0]), np.array([0.0, 0.5]), "N m")
+
+
+def scores(fit: float) -> tuple[Score, ...]:
+    return (Score("Run 1", "estimation", "speed", fit, 0.2), Score("Run 2", "validation", "speed", fit - 1.0, 0.3))
+
+
+def verdict(*effects: Effect, complete: bool = True) -> Verdict:
+    return Verdict(
+        dataset="made",
+        model="Motor",
+        seed=3,
+        seconds=1.5,
+        confidence=0.95,
+        effects=effects,
+        scores={"start": scores(70.0), "refit": scores(80.0), "augmented": scores(90.0)},
+        evidence=("something",),
+        stages={"searching": 1.0},
+        ranking=(),
+        complete=complete,
+    )
+
+
+def test_keys_are_those_of_the_contract() -> None:
+    found = json.loads(json.dumps(verdict(BACKLASH).as_json()))
+    agreed = {"schema", "dataset", "model", "seed", "seconds", "mismatch", "confidence", "effects", "fit"}
+    assert agreed <= set(found)
+    assert found["schema"] == "greybox-verdict/1"
+    assert (found["dataset"], found["model"], found["seed"], found["mismatch"]) == ("made", "Motor", 3, True)
+    assert found["effects"] == [
+        {
+            "port": "gear_spring",
+            "mechanism": "backlash",
+            "probability": 0.94,
+            "signals": ["gear_twist"],
+            "where": "|gear_twist| < 0.031 rad",
+            "parameters": {"half_gap": {"value": 0.031, "std": 0.0004, "unit": "rad"}},
+            "explained": 0.97,
+            "alternatives": [{"port": "gear_spring", "mechanism": "nonlinear_stiffness", "probability": 0.04}],
+        }
+    ]
+    assert found["fit"][1] == {
+        "experiment": "Run 2",
+        "role": "validation",
+        "output": "speed",
+        "start": {"fit": 69.0, "rmse": 0.3},
+        "refit": {"fit": 79.0, "rmse": 0.3},
+        "augmented": {"fit": 89.0, "rmse": 0.3},
+    }
+
+
+def test_share_of_the_ceiling_where_it_is_known() -> None:
+    first, second = verdict(BACKLASH, replace(BACKLASH, ceiling=0.9)).as_json()["effects"]
+    assert "ceiling" not in first and second["ceiling"] == 0.9
+
+
+def test_nothing_missing() -> None:
+    found = verdict().as_json()
+    assert (found["mismatch"], found["effects"]) == (False, [])
+    assert found["evidence"] == ["something"]
+    assert verdict().sentence == "Nothing is missing from Motor that these recordings can show (confidence 0.95)."
+
+
+def test_only_unknown_carries_its_curve() -> None:
+    named, unknown = replace(BACKLASH, curve=CURVE), replace(BACKLASH, mechanism="unknown", curve=CURVE)
+    found = json.loads(json.dumps(verdict(named, unknown).as_json()))["effects"]
+    assert "curve" not in found[0]
+    assert found[1]["curve"] == {
+        "signal": "speed",
+        "unit": "rad/s",
+        "values": [0.0, 1.0],
+        "force": [0.0, 0.5],
+        "force_unit": "N m",
+    }
+
+
+@pytest.mark.parametrize(
+    ("effects", "words"),
+    [
+        ((BACKLASH,), "The mismatch is backlash at gear_spring (probability 0.94); with it the validation fit goes"),
+        (
+            (BACKLASH, replace(BACKLASH, mechanism="unknown")),
+            "backlash at gear_spring (probability 0.94), and an unknown",
+        ),
+    ],
+)
+def test_sentence(effects, words) -> None:
+    assert words in verdict(*effects).sentence
+    assert verdict(*effects).sentence.endswith("goes from 79.0 % to 89.0 %.")
+
+
+def test_a_search_that_was_stopped_does_not_say_nothing() -> None:
+    assert "no answer yet" in verdict(complete=False).sentence

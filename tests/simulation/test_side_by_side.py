@@ -1,0 +1,40 @@
+"""Independent work on several cores."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+
+from greybox_torch.simulation.side_by_side import cores, side_by_side
+
+
+@pytest.mark.parametrize("threads", ["1", "3"])
+def test_results_come_in_order(monkeypatch: pytest.MonkeyPatch, threads: str) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", threads)
+    assert side_by_side((lambda k=k: k * k) for k in range(9)) == [k * k for k in range(9)]
+    assert side_by_side(iter(())) == []
+
+
+def test_work_within_work_has_one_core(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "2")
+    assert cores() == 2
+    assert side_by_side([cores, cores]) == [1, 1]
+    names = side_by_side([lambda: side_by_side([threading.current_thread] * 3)] * 2)
+    assert all(len({t.name for t in inner}) == 1 for inner in names), "no threads within threads"
+
+
+def test_an_exception_goes_on_and_what_has_not_begun_is_left_undone(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "2")
+    failed, done = threading.Event(), []
+
+    def fail() -> None:
+        failed.set()
+        raise KeyError("first")
+
+    def wait() -> None:
+        failed.wait(10)
+
+    with pytest.raises(KeyError, match="first"):
+        side_by_side([fail, wait, *[lambda: done.append(1)] * 200])
+    assert len(done) < 200
