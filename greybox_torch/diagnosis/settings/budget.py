@@ -1,0 +1,125 @@
+"""How much a diagnosis may compute."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greybox_torch.diagnosis.settings.fields import check, count, counts, iteration, ratio, share
+from greybox_torch.estimate.levenberg_marquardt import Settings
+
+TIME = "time and results of the development cases"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SearchBudget:
+    """Limits of the search: how many hypotheses go on at every stage, how far each is refitted, how finely curves are drawn.
+
+    Example: ``SearchBudget(most_effects=2, finalists=2)`` finds two effects at most, with fewer full refits.
+
+    Raises:
+        UserError: a value is out of its bounds.
+    """
+
+    most_effects: int = count(4, "Effects that a hypothesis may have.", chosen_by=TIME)
+    most_revisions: int = count(
+        2, "How often the choice of earlier effects is taken up again.", chosen_by=TIME, least=0
+    )
+
+    window_factors: tuple[int, ...] = counts(
+        (1, 4, 16),
+        "Window lengths as multiples of the shortest: short windows forgive a wrong trajectory, long ones show slow effects.",
+        unit="shortest windows",
+        chosen_by=TIME,
+    )
+    windows_of_longest: int = count(
+        64, "How many of the shortest windows the longest record has.", unit="windows", chosen_by=TIME
+    )
+    shortest_window: int = count(20, "Samples that a window has at least.", unit="samples", chosen_by=TIME, least=2)
+
+    first_iterations: Settings = iteration(
+        Settings(iterations=10, tolerance=3e-3, trials=5),
+        "How far every start of a fit over windows is followed.",
+        chosen_by=TIME,
+    )
+    trial_iterations: Settings = iteration(
+        Settings(iterations=14, tolerance=1e-3, trials=5),
+        "How far a candidate is refitted in its trial.",
+        chosen_by=TIME,
+    )
+    window_iterations: Settings = iteration(
+        Settings(iterations=30, tolerance=3e-4, trials=6), "How far a finalist is refitted.", chosen_by=TIME
+    )
+    polish_iterations: Settings = iteration(
+        Settings(iterations=60, tolerance=1e-5, trials=6),
+        "How far what is compared in the end is refitted.",
+        chosen_by=TIME,
+    )
+    record_first_iterations: Settings = iteration(
+        Settings(iterations=12, tolerance=1e-3),
+        "How far every start of the final fit on whole records is followed.",
+        chosen_by=TIME,
+    )
+    record_iterations: Settings = iteration(
+        Settings(iterations=60, tolerance=1e-8), "How far the final fit on whole records is followed.", chosen_by=TIME
+    )
+    position_trial_iterations: Settings = iteration(
+        Settings(iterations=5, tolerance=1e-2, trials=3),
+        "How far a trial of a start position is followed.",
+        chosen_by=TIME,
+    )
+    position_iterations: Settings = iteration(
+        Settings(iterations=20, tolerance=1e-4, trials=5),
+        "How far the start states of held-out windows are fitted.",
+        chosen_by=TIME,
+    )
+
+    rival_start: float = ratio(
+        4.0,
+        "How many times the best mean squared error a start may be at, after its first iterations, and still be followed.",
+        unit="times the best mean squared error",
+        chosen_by=TIME,
+    )
+    most_turns: int = count(
+        3, "How often a fit is taken up again after carried states were brought along.", chosen_by=TIME
+    )
+    least_turn_gain: float = share(
+        0.03,
+        "Gain from which another such turn is worth while.",
+        unit="share of the mean squared error",
+        chosen_by=TIME,
+    )
+
+    named_per_length: int = count(4, "Named candidates that the screen passes on, by window length.", chosen_by=TIME)
+    curves_per_length: int = count(
+        1, "Free curves that the screen passes on, by window length.", chosen_by=TIME, least=0
+    )
+    most_screen_ties: int = count(8, "Named candidates that it passes on where they tie.", chosen_by=TIME)
+    order_peaks: int = count(
+        2, "Orders of a periodic effect that the scan follows, by window length and family.", chosen_by=TIME
+    )
+    order_steps: int = count(400, "Steps of the grid of orders.", chosen_by=TIME, least=4)
+
+    trial_starts: int = count(2, "Start values of a candidate that are tried.", chosen_by=TIME)
+    finalists: int = count(3, "Hypotheses that are refitted at every window length after their trial.", chosen_by=TIME)
+    most_tied: int = count(6, "Named hypotheses that go on where they tie.", chosen_by=TIME)
+    front_runners: int = count(3, "Hypotheses that are polished before they are compared.", chosen_by=TIME)
+    most_shapes: int = count(3, "Shapes of a law that it is refitted from against local minima.", chosen_by=TIME)
+    order_shifts: tuple[int, ...] = counts(
+        (-2, -1, 1, 2),
+        "Shifts by which the order of a periodic effect is tried anew.",
+        unit="quarter periods over the travel",
+        chosen_by=TIME,
+        least=-float("inf"),
+    )
+    part_of_curve: float = share(
+        0.1,
+        "Part of a suggested curve that its refit also begins with: the whole at once can lead out of the valley.",
+        unit="share of the suggested heights",
+    )
+
+    knots: int = count(14, "Knots of a free curve to begin with.", chosen_by=TIME, least=4)
+    fine_knots: int = count(40, "Knots of the curves that are tried when nothing else pays.", chosen_by=TIME, least=4)
+    most_parameters: int = count(70, "Free parameters beyond which a curve is not drawn any finer.", chosen_by=TIME)
+
+    def __post_init__(self) -> None:
+        check(self)

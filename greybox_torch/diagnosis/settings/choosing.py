@@ -1,0 +1,160 @@
+"""Thresholds by which effects are chosen from the estimation experiments."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greybox_torch.diagnosis.settings.fields import SIGMA, count, number, ratio, share
+
+NOISE_MULTIPLE = "times the noise (root mean square)"
+GAIN = "share of the mean squared error"
+LOG_ERROR = "logarithm of the mean squared error"
+
+
+@dataclass(frozen=True, kw_only=True)
+class NoiseSettings:
+    """What counts as noise, from the recordings alone."""
+
+    noise_differences: int = count(
+        3,
+        "How many times outputs are differenced: motion is smooth at the rate it is sampled at, noise is not.",
+        unit="differences",
+        chosen_by="von Neumann et al. 1941, one order more than there",
+    )
+    noise_floors_agree: float = ratio(
+        1.05,
+        "Ratio of the noises that differences of several orders show up to which they agree.",
+        unit="ratio of mean squares",
+    )
+    only_noise: float = number(
+        1.0,
+        "Error below which nothing is looked for. (Under feedback the floor is a few per cent high.)",
+        unit="times the mean square of the noise",
+        chosen_by="definition",
+    )
+    noise_reached: float = ratio(
+        1.05, "Error up to which one is noise alone where hypotheses are compared.", unit=NOISE_MULTIPLE
+    )
+    above_noise: float = ratio(1.3, "Error from which one is more than noise.", unit=NOISE_MULTIPLE)
+    far_above_noise: float = ratio(
+        3.0, "Error far above the noise: laws that leave so much are not the whole story.", unit=NOISE_MULTIPLE
+    )
+    negligible_error: float = number(
+        1e-5,
+        "Error below which nothing matters.",
+        unit="share of the outputs' spread",
+        chosen_by="rounding and interpolation",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ScreenSettings:
+    """What the screen passes on."""
+
+    least_screen_share: float = share(
+        0.008,
+        "Share of the residual that a candidate has to explain to be refitted.",
+        unit="share of the residual's energy",
+    )
+    screen_tie: float = share(
+        0.97, "Share of the best candidate's from which another ties with it.", unit="share of what the best explains"
+    )
+    least_screen_share_of_fine_curve: float = share(
+        0.3,
+        "The same for a fine curve beside named effects: forty knots always take up something.",
+        unit="share of the residual's energy",
+    )
+    least_screen_share_beside_curve: float = share(
+        0.1, "The same for an effect beside a free curve, where refits are slow.", unit="share of the residual's energy"
+    )
+    curve_promise: float = share(
+        0.5,
+        "Part of least_curve_share that a curve must promise in the screen to be refitted.",
+        unit="share of least_curve_share",
+    )
+    least_periods: float = number(
+        5.0, "Periods within the travel from which an effect is seen to repeat.", unit="periods"
+    )
+    least_ripple_order: float = number(
+        1.2,
+        "Order below which a force periodic in an angle is gravity's.",
+        unit="periods per turn",
+        chosen_by="gravity repeats once per turn",
+    )
+    orders_differ: float = share(0.05, "Relative difference from which two orders are two.", unit="relative difference")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ComparisonSettings:
+    """How refitted hypotheses are compared."""
+
+    fewest_windows: int = count(
+        8, "Windows that a standard error needs.", unit="windows", chosen_by="convention", least=2
+    )
+    least_ratio_spread: float = number(
+        0.02, "Scatter of the windows' errors below which differences between windows mean nothing.", unit=LOG_ERROR
+    )
+    parameter_price: float = number(
+        0.003,
+        "Improvement that a further parameter has to bring where more than noise is left.",
+        unit=LOG_ERROR,
+    )
+    score_tie: float = number(0.03, "Difference up to which named hypotheses tie.", unit=LOG_ERROR)
+    trial_allowance: float = number(
+        0.05, "How much worse than without it a candidate may be after its trial.", unit=LOG_ERROR
+    )
+    polish_share: float = share(
+        0.7, "Share of the best gain from which a rival is polished.", unit="share of the best gain"
+    )
+    shapes_tie: float = share(
+        0.9,
+        "Share of what the best shape of a law explains from which another shape may be as good.",
+        unit="share of what the best explains",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class SelectionSettings:
+    """What an effect has to bring to be taken."""
+
+    least_gain: float = share(0.01, "Improvement below which nothing is claimed.", unit=GAIN)
+    least_gain_far_above_noise: float = share(
+        0.05,
+        "The same where much more than noise is left: some law always bends a little to a real machine.",
+        unit=GAIN,
+    )
+    least_significance: float = number(
+        3.0, "By how much, over windows, an effect must improve the prediction.", unit=SIGMA, chosen_by="convention"
+    )
+    least_curve_share: float = share(
+        0.02, "Part of the plain model's error that a free curve has to remove at some window length.", unit=GAIN
+    )
+    curve_margin: float = number(
+        0.1, "How much better a free curve must be than every name to be preferred.", unit=LOG_ERROR
+    )
+    curve_gain_ratio: float = ratio(
+        1.5, "How many times the gain of the best name a free curve must gain to be preferred.", unit="times the gain"
+    )
+    named_share: float = share(
+        0.85,
+        "Share of a free curve's gain from which named effects stand for it: no friction is exactly the law of a book.",
+        unit="share of the curve's gain",
+    )
+    passed_over_share: float = share(
+        0.5,
+        "Share of the residual over the shortest windows from which what explains it is followed whatever longer ones say.",
+        unit="share of the residual's energy",
+    )
+    passed_over_ratio: float = share(
+        0.5,
+        "Share of what it explains there that what was taken explains at most.",
+        unit="share of what the best explains",
+    )
+    passed_over_simpler: float = share(
+        0.9, "Share from which a law that it contains is followed instead.", unit="share of what the best explains"
+    )
+    beyond_doubt: float = share(
+        0.95,
+        "Probability from which an effect is not chosen once more when others have been found.",
+        unit="probability",
+    )

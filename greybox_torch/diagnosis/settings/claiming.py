@@ -1,0 +1,120 @@
+"""Thresholds by which held-out experiments take findings back, and by which the rest is claimed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greybox_torch.diagnosis.settings.fields import SIGMA, number, ratio, share
+
+NOISE_MULTIPLE = "times the noise (root mean square)"
+HELD_OUT_SHARE = "share of the held-out squared error"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConfirmationSettings:
+    """What experiments that had no part in choosing make of a finding."""
+
+    least_held_out: float = number(1.0, "By how much an effect must lower the held-out error to be kept.", unit=SIGMA)
+    held_out_beyond_chance: float = number(
+        3.0,
+        "By how much a free curve must beat names there, or a law one that it contains, to be preferred.",
+        unit=SIGMA,
+        chosen_by="convention",
+    )
+    least_held_out_alone: float = number(
+        3.0,
+        "By how much leaving out an effect there, all else as it is, must raise the error.",
+        unit=SIGMA,
+        chosen_by="convention",
+    )
+    held_out_in_part: float = share(
+        0.9, "Gain below which it is asked whether the effect itself removes the error.", unit=HELD_OUT_SHARE
+    )
+    unexercised: float = share(
+        2e-3,
+        "Gain below which, either way, the experiments do not exercise an effect: they cannot take it back.",
+        unit=HELD_OUT_SHARE,
+    )
+    confirmed: float = number(
+        5.0,
+        "Held-out gain from which a finding stands whatever the free runs of the validation experiments say.",
+        unit=SIGMA,
+    )
+    promote_error: float = ratio(
+        1.5, "Error from which a validation experiment shows what nothing was found of.", unit=NOISE_MULTIPLE
+    )
+    promote_error_beside: float = ratio(
+        2.0, "The same where something was found, which may be a little wrong and yet right.", unit=NOISE_MULTIPLE
+    )
+    promote_share_beside: float = share(
+        0.2, "Part of the plain model's error that must then be left besides.", unit="share of the plain model's error"
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProbabilitySettings:
+    """How sure the verdict is, by what it found."""
+
+    windows_temperature: float = number(
+        2.0,
+        "Standard errors that count as one: windows are not independent, and no law is exactly the machine's.",
+        unit=SIGMA,
+        least=1e-3,
+    )
+    highest_probability: float = share(
+        0.97, "The most that is ever claimed.", unit="probability", chosen_by="the proof's calibration"
+    )
+    highest_probability_far_above_noise: float = share(
+        0.85,
+        "The most that is claimed for a name where the laws together leave much more than noise.",
+        unit="probability",
+    )
+    highest_probability_of_stopped_curve: float = share(
+        0.5,
+        "The most that is claimed for a free curve where the search was stopped before names were tried.",
+        unit="probability",
+    )
+    least_alternative: float = share(
+        0.005, "Probability from which a rival is listed.", unit="probability", chosen_by="legibility"
+    )
+    confidence_missing_unnamed: float = share(
+        0.8, 'Confidence in "something is missing" where the size of the error alone says so.', unit="probability"
+    )
+    confidence_nothing: float = share(
+        0.95, 'Confidence in "nothing is missing" where no candidate gained anything.', unit="probability"
+    )
+    confidence_nothing_with_rivals: float = share(
+        0.8, "The same where some candidate gained least_gain or more and yet was not taken.", unit="probability"
+    )
+    confidence_nothing_above_noise: float = share(
+        0.6, "The same where the error is more than noise.", unit="probability"
+    )
+    confidence_stopped: float = share(
+        0.5,
+        "The same where the search was stopped before it found anything.",
+        unit="probability",
+        chosen_by="no answer",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ResidualSettings:
+    """How the errors of free runs are tested for the evidence; nothing is decided by them."""
+
+    excited_share: float = share(
+        0.99, "Power of an input up to the end of its excited band.", unit="share of the power", chosen_by="convention"
+    )
+    chance: float = number(
+        0.01,
+        "Probability with which the largest correlation exceeds its bound where there is nothing.",
+        unit="probability",
+        chosen_by="convention",
+        least=1e-12,
+        most=0.5,
+    )
+    runaway: float = ratio(
+        1e3,
+        "Size of a free run from which its errors are only its own.",
+        unit="sizes of the measurement",
+        chosen_by="orders of magnitude",
+    )

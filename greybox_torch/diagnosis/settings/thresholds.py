@@ -1,0 +1,38 @@
+"""Every statistical threshold of a diagnosis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greybox_torch.diagnosis.settings.choosing import (
+    ComparisonSettings,
+    NoiseSettings,
+    ScreenSettings,
+    SelectionSettings,
+)
+from greybox_torch.diagnosis.settings.claiming import ConfirmationSettings, ProbabilitySettings, ResidualSettings
+from greybox_torch.diagnosis.settings.fields import check
+
+
+@dataclass(frozen=True, kw_only=True)
+class DiagnosisSettings(
+    ResidualSettings,
+    ProbabilitySettings,
+    ConfirmationSettings,
+    SelectionSettings,
+    ComparisonSettings,
+    ScreenSettings,
+    NoiseSettings,
+):
+    """By what a diagnosis decides: noise, screen, comparison, selection, confirmation, probability, tests of residuals.
+
+    Every field says in its metadata what it means, its unit and what its default was chosen by; :func:`setting_rows` tabulates that.
+
+    Example: ``DiagnosisSettings(least_significance=4.0)`` claims less.
+
+    Raises:
+        UserError: a value is out of its bounds.
+    """
+
+    def __post_init__(self) -> None:
+        check(self)
