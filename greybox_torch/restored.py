@@ -74,7 +74,7 @@ def restored(data: DataSet, path: str | PathLike[str], model: GreyBoxModel, mode
     problem = problem.with_values(np.array([saved.checkpoint.values[name] for name in problem.names]))
     _check_admissible(Path(path), problem)
     if saved.checkpoint.free_starts:
-        problem = all_starts_free(data, problem, base)
+        problem = all_starts_free(data, problem)
     return Restored(data, model_name, problem)
 
 

@@ -39,7 +39,7 @@ def fits_of(data: DataSet, base: GreyBoxModel, model: GreyBoxModel, values: Mapp
     """Scores of ``model``, which is ``base`` or has it inside, start states from the first tenth of each experiment."""
     start = make_problem(data, base, data.recordings)
     restated = start if model is base else problem_for(start, model, {})
-    problem = all_starts_free(data, restated, base)
+    problem = all_starts_free(data, restated)
     problem = problem.with_values(np.array([values[name] for name in problem.names]))
     return Fits.of(compare(problem, data.recordings, make_stepper(model, ()), substeps=substeps).scores)
 

@@ -153,7 +153,7 @@ def _scores(task: Task, found: Trained, explained: Explanation | None) -> Scores
 
 def _scores_of(task: Task, start: Problem, found: FitResult) -> tuple[Score, ...]:
     model = found.problem.model
-    problem = all_starts_free(task.data, problem_for(start, model, {}), task.model).with_values(found.problem.values)
+    problem = all_starts_free(task.data, problem_for(start, model, {})).with_values(found.problem.values)
     stepper = make_stepper(model, (), device=task.device)
     return compare(problem, task.data.recordings, stepper, substeps=found.substeps).scores
 

@@ -87,18 +87,22 @@ def make_problem(
 ) -> Problem:
     """The problem that a card states: start values, bounds and what is fixed from the model, overridden by the card.
 
+    A parameter begins at the value that the model object holds, if one was set (:meth:`GreyBoxModel.held_values`), else at the card's
+    start value, else at the declared one. Bounds and what is fixed are the card's wherever it speaks of them.
+
     Args:
-        values: parameter values that replace the card's (for example those of an earlier fit).
+        values: parameter values that replace all of these (for example those of an earlier fit).
 
     Raises:
         UserError: a name in the card that the model does not have, a start value outside its bounds or constraints, channels that
             do not match.
     """
-    records = make_records(dataset, model, recordings)
+    records = make_records(dataset, model.plain, recordings)  # effects measure nothing of their own
     parameters = [_from_card(p, dataset) for p in model.declared_parameters]
     _check_names(dataset, "parameters", dataset.parameters, [p.name for p in parameters], model)
     _check_names(dataset, "initial", dataset.initial, [s.name for s in model.states], model)
-    numbers = {p.name: p.value for p in parameters} | dict(values or {})
+    begun = {p.name: p.value for p in parameters} | _held_within_bounds(model, parameters)
+    numbers = begun | dict(values or {})
     problem = Problem(
         model=model,
         records=records,
@@ -110,9 +114,14 @@ def make_problem(
         initial=_start_states(dataset, model, records),
         initial_free=np.array([not _initial_fixed(s, dataset) for s in model.states], dtype=bool),
         weights=_weights(records),
-        carried=np.zeros(len(model.states), dtype=bool),
-        expected=np.array([p.value for p in parameters], dtype=float),
+        carried=np.isin([s.name for s in model.states], model.carried_states()),
+        expected=np.array([begun[p.name] for p in parameters], dtype=float),
     )
+    problem = replace(
+        problem, initial=model.begun(problem.initial, problem.driving_records, records.first, problem.values)
+    )
+    if model.starts_free:
+        problem = all_starts_free(dataset, problem)
     if not problem.admissible(problem.values):
         broken = ", ".join(model.admissible(_tensors(problem)))
         raise UserError(
@@ -121,13 +130,12 @@ def make_problem(
     return problem
 
 
-def all_starts_free(dataset: DataSet, problem: Problem, base: GreyBoxModel | None = None) -> Problem:
+def all_starts_free(dataset: DataSet, problem: Problem) -> Problem:
     """``problem`` with every start state estimated that the card does not mention, whatever the model's own default.
 
-    Args:
-        base: the model without effects, where ``problem`` is of one with effects: their memory starts as they say.
+    The memory of effects starts as they say.
     """
-    own = {s.name for s in (base or problem.model).states} - set(dataset.initial)
+    own = {s.name for s in problem.model.plain.states} - set(dataset.initial)
     return replace(
         problem, initial_free=problem.initial_free | np.array([s.name in own for s in problem.model.states], dtype=bool)
     )
@@ -166,6 +174,19 @@ def _tensors(problem: Problem) -> Signals:
     return Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in pairs})
 
 
+def _held_within_bounds(model: GreyBoxModel, parameters: Sequence[Parameter]) -> dict[str, float]:
+    """The values that the model object holds, if they are within the bounds that hold for them."""
+    held = model.held_values()
+    for parameter in parameters:
+        low, high = parameter.bounds
+        value = held.get(parameter.name, low)
+        if not low <= value <= high:
+            raise UserError(
+                f"model: its parameter {parameter.name} was set to {value:g}, outside of its bounds [{low:g}, {high:g}]"
+            )
+    return held
+
+
 def _from_card(parameter: Parameter, dataset: DataSet) -> Parameter:
     entry = dataset.parameters.get(parameter.name)
     if entry is None:
@@ -202,7 +223,7 @@ def _start_states(dataset: DataSet, model: GreyBoxModel, records: Records) -> np
         if entry is not None and entry.value is not None:
             rows[:, i] = entry.value
         elif state.initial == "measured":
-            rows[:, i] = measured_at(model, state, records, records.first)
+            rows[:, i] = measured_at(model.plain, state, records, records.first)
         else:
             rows[:, i] = float(state.initial)
     return rows

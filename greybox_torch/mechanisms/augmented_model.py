@@ -67,6 +67,10 @@ class AugmentedModel(GreyBoxModel):
             a.prefix: [q.name for q in a.mechanism.parameters(self.surroundings[a.port])] for a in self.attachments
         }
 
+    @property
+    def plain(self) -> GreyBoxModel:
+        return self.base.plain
+
     def parameter_name(self, attachment: Attachment, parameter: str) -> str:
         return f"{attachment.prefix}.{parameter}"
 

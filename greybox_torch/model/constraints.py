@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import torch
@@ -42,9 +43,9 @@ def project(raw: torch.Tensor, lower: float, upper: float) -> torch.Tensor:
 def parameter_scale(value: float, lower: float, upper: float) -> float:
     """A typical size of a parameter, so that optimisers see numbers of order one.
 
-    The value itself where it is not zero, else the width of its interval, else one.
+    That of the value where it is not zero, else that of the width of its interval, else one; rounded down to a power of two, so that
+    scaling changes no digit of a number.
     """
-    if value != 0.0:
-        return abs(value)
     width = upper - lower
-    return width if 0.0 < width < float("inf") else 1.0
+    size = abs(value) or (width if 0.0 < width < float("inf") else 1.0)
+    return math.ldexp(1.0, math.frexp(size)[1] - 1)

@@ -32,6 +32,10 @@ class GreyBoxModel(torch.nn.Module):
     declared_parameters: Sequence[Parameter] = ()
     parameters: Any  # a subclass assigns its list; read `declared_parameters`, since torch's method keeps the name
     name: ClassVar[str] = ""
+    starts_free: bool = False
+    """Whether every start state is estimated, also those that the states declare as fixed; a card that speaks of one still wins."""
+    loaded_as: str = ""
+    """The name that :func:`greybox_torch.load_model` found the model by; empty where it was made in Python."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
@@ -44,6 +48,7 @@ class GreyBoxModel(torch.nn.Module):
         super().__init__()
         self._check_declarations()
         self._scales = {p.name: parameter_scale(p.value, *p.bounds) for p in self.declared_parameters}
+        self._set_by_name: frozenset[str] = frozenset()
         self.raw = torch.nn.ParameterDict()
         for parameter in self.declared_parameters:
             start = torch.tensor(parameter.value / self._scales[parameter.name], dtype=torch.float64)
@@ -91,13 +96,31 @@ class GreyBoxModel(torch.nn.Module):
             *sensors(tuple(o.name for o in self.outputs)),
         )
 
+    @property
+    def plain(self) -> GreyBoxModel:
+        """The model without effects attached: itself, where there are none."""
+        return self
+
     def values(self) -> dict[str, float]:
         """The present parameter values in physical units."""
         with torch.no_grad():
             return {name: float(value) for name, value in self.physical().items()}
 
+    def held_values(self) -> dict[str, float]:
+        """The values that are the model's own doing: set by :meth:`set_values`, or moved by an optimiser or a state dictionary.
+
+        They stand before the start values of a data card; declared values that nothing has changed stand behind them.
+        """
+        present = self.values()
+        return {p.name: present[p.name] for p in self.declared_parameters if self._is_held(p)}
+
+    def _is_held(self, parameter: Parameter) -> bool:
+        raw = self.raw[_key(parameter.name)].detach()
+        declared = torch.tensor(parameter.value / self._scales[parameter.name], dtype=raw.dtype)
+        return parameter.name in self._set_by_name or bool(raw.cpu() != declared)
+
     def set_values(self, values: Mapping[str, float]) -> None:
-        """Set parameter values in physical units.
+        """Set parameter values in physical units. They then stand before those of a data card.
 
         Raises:
             UserError: an unknown name, or a value outside its bounds.
@@ -113,6 +136,7 @@ class GreyBoxModel(torch.nn.Module):
                 )
             with torch.no_grad():
                 self.raw[_key(name)].fill_(value / self._scales[name])
+        self._set_by_name |= frozenset(values)
 
     def physical(self) -> Signals:
         """The parameters as differentiable tensors in physical units, held within their bounds."""

@@ -62,9 +62,10 @@ def test_gradient_of_a_batch() -> None:
 @pytest.mark.parametrize(
     ("value", "bounds", "scale"),
     [
-        (20.0, (0.0, INFINITE), 20.0),
-        (-3.0, (-INFINITE, INFINITE), 3.0),
-        (0.0, (0.0, 5.0), 5.0),
+        (20.0, (0.0, INFINITE), 16.0),
+        (-3.0, (-INFINITE, INFINITE), 2.0),
+        (0.0, (0.0, 5.0), 4.0),
+        (0.125, (0.0, INFINITE), 0.125),
         (0.0, (0.0, INFINITE), 1.0),
     ],
 )
