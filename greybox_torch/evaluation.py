@@ -91,7 +91,7 @@ def evaluate(
         UserError: neither card nor caller names a model, or the checkpoint is damaged or of another model.
     """
     if model is None and data.model is None:
-        raise UserError(f"{data.path}: [model] name is missing and no model is given; expected one of them")
+        raise UserError(f"{data.place('[model] name')} is missing and no model is given; expected one of them")
     name = data.model if model is None or data.model is None else ""
     given = load_model(str(data.model)) if model is None else model
     return evaluated(data, given, name or given.title, checkpoint, device=device, precision=precision)

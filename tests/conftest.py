@@ -9,7 +9,6 @@ import pytest
 from hypothesis import settings
 
 from greybox_torch.data import Channel, DataSet, InitialEntry, ParameterEntry, Recording, Role
-from greybox_torch.data.dataset import hash_of
 
 settings.register_profile("greybox", deadline=None, max_examples=30)
 settings.load_profile("greybox")
@@ -94,7 +93,6 @@ def data_set() -> MakeDataSet:
             parameters={name: ParameterEntry(**entry) for name, entry in (parameters or {}).items()},
             initial={name: InitialEntry(**entry) for name, entry in (initial or {}).items()},
             held_out_by_default=False,
-            sha256=hash_of(recordings),
         )
 
     return make

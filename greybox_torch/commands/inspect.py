@@ -84,7 +84,8 @@ def _print_tables(data: DataSet, result: dict[str, Any], figure: Path, options: 
     console.print(Text(data.name, style="bold"))
     for recording, experiment in zip(data.recordings, result["experiments"], strict=True):
         seconds = recording.time[-1] - recording.time[0]
-        what = f"{recording.source.name}, rows = {list(recording.rows)}, {seconds:.6g} s"
+        file = "" if recording.source is None else f"{recording.source.name}, "
+        what = f"{file}rows = {list(recording.rows)}, {seconds:.6g} s"
         console.print(Text.assemble("\n", (f"{recording.name} ({recording.role})", "bold"), f": {what}"))
         console.print(_table(experiment["channels"]))
     if data.held_out_by_default:

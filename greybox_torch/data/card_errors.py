@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from greybox_torch.errors import did_you_mean
+from greybox_torch.errors import UserError, did_you_mean
+
+_Entry = TypeVar("_Entry", bound=BaseModel)
 
 # What is expected, by the validator's type of error; {…} are filled from its context.
 _EXPECTED = {
@@ -94,3 +96,22 @@ def _allowed_keys(card: type[BaseModel], location: Sequence[str | int]) -> list[
 def _quoted(value: Any) -> str:
     text = json.dumps(value, default=str, ensure_ascii=False)
     return text if len(text) <= 60 else text[:59] + "…"
+
+
+def entries(argument: str, given: Mapping[str, Any] | None, entry: type[_Entry]) -> dict[str, _Entry]:
+    """Entries of the card given as an argument: each as it is on the card, as a table of it, or as its value alone.
+
+    Raises UserError naming the argument and the entry where one does not validate.
+    """
+    held: dict[str, _Entry] = {}
+    for name, what in (given or {}).items():
+        try:
+            held[name] = what if isinstance(what, entry) else entry.model_validate(_table(what))
+        except ValidationError as error:
+            problems = (_problem(details, {}, entry) for details in error.errors())
+            raise UserError(f"DataSet, {argument}, {name}: {'; '.join(problems)}") from None
+    return held
+
+
+def _table(what: Any) -> Any:
+    return dict(what) if isinstance(what, Mapping) else {"value": what}

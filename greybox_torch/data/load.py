@@ -11,13 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.card import TIME, Card, ExperimentEntry, read_card
-from greybox_torch.data.dataset import DataSet, hash_of
+from greybox_torch.data.checks import check_finite, check_length, check_time
+from greybox_torch.data.dataset import DataSet
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.recording import Channel, Recording
 from greybox_torch.errors import UserError
-
-FEWEST_SAMPLES = 10
 
 
 def load_dataset(path: str | PathLike[str]) -> DataSet:
@@ -30,23 +29,15 @@ def load_dataset(path: str | PathLike[str]) -> DataSet:
     path = Path(path)
     card = read_card(path)
     read = cache(read_table)  # experiments are often slices of one file
-    recordings = tuple(_read_recording(path, card, experiment, read) for experiment in card.experiment)
-    hold_out = all(recording.role != "validation" for recording in recordings)
-    if hold_out:
-        recordings = tuple(part for recording in recordings for part in _hold_out_last_quarter(recording))
-    for recording in recordings:
-        _check_not_all_missing(path, recording)
     return DataSet(
-        name=card.name or path.resolve().parent.name,
-        path=path,
+        [_read_recording(path, card, experiment, read) for experiment in card.experiment],
         hold=card.hold,
+        name=card.name or path.resolve().parent.name or "recordings",
+        path=path,
         channels={name: Channel(name, entry.unit) for name, entry in card.channels.items()},
-        recordings=recordings,
         model=_absolute_model(card.model.name, path),
         parameters=card.model.parameters,
         initial=card.model.initial,
-        held_out_by_default=hold_out,
-        sha256=hash_of(recordings),
     )
 
 
@@ -58,8 +49,7 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: C
     table = read(file, tuple(dict.fromkeys(columns.values())))
     place = f'{path}, [[experiment]] "{experiment.name}"'
     start, stop = _rows(place, table, experiment.rows)
-    if stop - start < FEWEST_SAMPLES:
-        raise UserError(f"{place}: has {stop - start} samples; expected at least {FEWEST_SAMPLES}")
+    check_length(stop - start, place)
     if card.sample_time is None:
         time = _time_stamps(table, columns.pop(TIME), start, stop)
         sample_time = float(np.median(np.diff(time)))
@@ -76,6 +66,7 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: C
         },
         source=file,
         rows=(start, stop),
+        units={name: entry.unit for name, entry in card.channels.items()},
     )
 
 
@@ -96,47 +87,15 @@ def _rows(place: str, table: Table, rows: list[int] | None) -> tuple[int, int]:
 
 
 def _time_stamps(table: Table, column: str, start: int, stop: int) -> NDArray[np.float64]:
-    time = _signal(table, column, start, stop)
-    missing = np.flatnonzero(np.isnan(time))
-    if missing.size:
-        raise UserError(f"{table.place(column, start + missing[0])}: the time stamp is missing; expected a number")
-    steps = np.diff(time)
-    backward = np.flatnonzero(steps <= 0)
-    if backward.size:
-        later = backward[0] + 1
-        raise UserError(
-            f"{table.place(column, start + later)}: found {time[later]:.9g} s after {time[later - 1]:.9g} s; "
-            "expected time stamps that increase from sample to sample"
-        )
+    time = table.columns[column][start:stop]
+    check_time(time, lambda sample: table.place(column, start + sample))
     return time
 
 
 def _signal(table: Table, column: str, start: int, stop: int) -> NDArray[np.float64]:
     values = table.columns[column][start:stop]
-    infinite = np.flatnonzero(np.isinf(values))
-    if infinite.size:
-        raise UserError(
-            f"{table.place(column, start + infinite[0])}: found {values[infinite[0]]:g}, expected a finite number "
-            "(NaN where the sample is missing)"
-        )
+    check_finite(values, lambda sample: table.place(column, start + sample))
     return values
-
-
-def _hold_out_last_quarter(recording: Recording) -> tuple[Recording, Recording]:
-    split = len(recording) - len(recording) // 4
-    return (
-        recording.part(0, split),
-        recording.part(split, len(recording), name=f"{recording.name} (held out)", role="validation"),
-    )
-
-
-def _check_not_all_missing(path: Path, recording: Recording) -> None:
-    for channel, values in recording.signals.items():
-        if np.isnan(values).all():
-            raise UserError(
-                f'{path}, [[experiment]] "{recording.name}", channel "{channel}": all {len(values)} samples are '
-                f"missing (NaN) in {recording.source}, rows {list(recording.rows)}; expected numbers"
-            )
 
 
 def _absolute_model(name: str | None, path: Path) -> str | None:

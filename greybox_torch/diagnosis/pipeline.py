@@ -100,7 +100,7 @@ def diagnose(
     clock = _Clock(time_limit, progress)
     if not dataset.estimation():
         raise UserError(
-            f"{dataset.path}: [[experiment]] role: no experiment has the role 'estimation'; expected at least one"
+            f"{dataset.place('[[experiment]] role:')} no experiment has the role 'estimation'; expected at least one"
         )
     found = _found_with_more(_found(dataset, model, device, clock), model, device, clock)
     dataset, search, gains, judged = found.dataset, found.search, found.gains, found.judged

@@ -125,7 +125,7 @@ def make_problem(
     if not problem.admissible(problem.values):
         broken = ", ".join(model.admissible(_tensors(problem)))
         raise UserError(
-            f"{dataset.path}: [model.parameters] break a constraint of {model.title}: these must be positive: {broken}"
+            f"{dataset.place('[model.parameters]')} break a constraint of {model.title}: these must be positive: {broken}"
         )
     return problem
 
@@ -195,7 +195,7 @@ def _from_card(parameter: Parameter, dataset: DataSet) -> Parameter:
     try:
         return replace(parameter, **given)
     except UserError as error:
-        raise UserError(f"{dataset.path}: [model.parameters] {error}") from None
+        raise UserError(f"{dataset.place('[model.parameters]')} {error}") from None
 
 
 def _check_names(
@@ -206,7 +206,8 @@ def _check_names(
             close = difflib.get_close_matches(name, known, n=1)
             hint = f"; did you mean '{close[0]}'?" if close else ""
             raise UserError(
-                f"{dataset.path}: [model.{table}] {name}: model {model.title} has no such name; expected one of {', '.join(known)}{hint}"
+                f"{dataset.place(f'[model.{table}]')} {name}: model {model.title} has no such name; "
+                f"expected one of {', '.join(known)}{hint}"
             )
 
 

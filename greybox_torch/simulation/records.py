@@ -89,19 +89,20 @@ def check_channels(dataset: DataSet, model: GreyBoxModel) -> None:
         if name not in dataset.channels:
             found = ", ".join(dataset.channels)
             raise UserError(
-                f"{dataset.path}: [channels] has no '{name}', which model {model.title} needs; found: {found}"
+                f"{dataset.place('[channels]')} has no '{name}', which model {model.title} needs; found: {found}"
             )
         unit = dataset.channels[name].unit
         if unit and signal.unit and _plain(unit) != _plain(signal.unit):
             raise UserError(
-                f"{dataset.path}: [channels] {name}: unit is '{unit}', model {model.title} expects '{signal.unit}' "
-                "(give `scale` to convert the file's values, and the model's unit)"
+                f"{dataset.place('[channels]')} {name}: unit is '{unit}', model {model.title} expects '{signal.unit}' "
+                f"({'convert the values' if dataset.path is None else 'give `scale` to convert the values of the file'}, "
+                "and give the model's unit)"
             )
     for name in dataset.channels:
         if name not in declared:
             expected = ", ".join(declared)
             raise UserError(
-                f"{dataset.path}: [channels] {name}: model {model.title} has no such signal; expected: {expected}"
+                f"{dataset.place('[channels]')} {name}: model {model.title} has no such signal; expected: {expected}"
             )
 
 

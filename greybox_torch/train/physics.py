@@ -63,7 +63,7 @@ def training_problem(data: DataSet, model: GreyBoxModel, values: Mapping[str, fl
         UserError: there is no such experiment.
     """
     if not data.estimation():
-        raise UserError(f'{data.path}: no experiment has the role "estimation"; expected at least one to train on')
+        raise UserError(f'{data.place()}: no experiment has the role "estimation"; expected at least one to train on')
     base = model.base if isinstance(model, AugmentedModel) else model
     problem = all_starts_free(data, make_problem(data, base, data.estimation()))
     return problem_for(problem, model, values or {}) if values or base is not model else problem

@@ -1,0 +1,92 @@
+"""The checks that samples get, whether they come from a file or from memory. A caller says in its own words where a sample stands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greybox_torch.errors import UserError
+
+FEWEST_SAMPLES = 10
+
+KINDS = {"U": "text", "S": "text", "T": "text", "c": "complex numbers", "O": "cells or objects", "V": "a structure"}
+"""What an array holds, by the kind of its dtype, in words for messages."""
+
+Place = Callable[[int], str]
+"""Where sample k stands: the beginning of a message about it."""
+
+
+def check_finite(values: NDArray[np.float64], place: Place) -> None:
+    """Raises UserError where one of the values (N,) is infinite. NaN is a missing sample."""
+    infinite = np.flatnonzero(np.isinf(values))
+    if infinite.size:
+        raise UserError(
+            f"{place(int(infinite[0]))}: found {values[infinite[0]]:g}, expected a finite number (NaN where the sample is missing)"
+        )
+
+
+def check_time(time: NDArray[np.float64], place: Place) -> None:
+    """Raises UserError unless the time stamps (N,), in seconds, are finite numbers that increase."""
+    check_finite(time, place)
+    missing = np.flatnonzero(np.isnan(time))
+    if missing.size:
+        raise UserError(f"{place(int(missing[0]))}: the time stamp is missing; expected a number")
+    backward = np.flatnonzero(np.diff(time) <= 0)
+    if backward.size:
+        later = int(backward[0]) + 1
+        raise UserError(
+            f"{place(later)}: found {time[later]:.9g} s after {time[later - 1]:.9g} s; "
+            "expected time stamps that increase from sample to sample"
+        )
+
+
+def check_length(length: int, place: str) -> None:
+    """Raises UserError where a recording is too short to say anything."""
+    if length < FEWEST_SAMPLES:
+        raise UserError(f"{place}: has {length} samples; expected at least {FEWEST_SAMPLES}")
+
+
+def numbers(values: Any, place: str) -> NDArray[np.float64]:
+    """A sequence of N real numbers as float64 of shape (N,), with NaN for None, masked and null entries; never a view.
+
+    `values` is an array, a list, a tensor, or a column of a table. Raises UserError for any other shape, and for text, complex numbers
+    and whatever else is no number.
+    """
+    found = _as_array(values, place)
+    if found.dtype.kind == "O":
+        found = _from_objects(found, place)
+    if found.dtype.kind not in "fiub":
+        raise UserError(
+            f"{place}: holds {KINDS.get(found.dtype.kind, str(found.dtype))}; expected real numbers (NaN where a sample is missing)"
+        )
+    if found.ndim != 1:
+        raise UserError(f"{place}: has the shape {found.shape}; expected (N,), one number a sample")
+    return np.array(found, dtype=np.float64)
+
+
+def _as_array(values: Any, place: str) -> NDArray:
+    if np.ma.isMaskedArray(values):
+        return np.ma.asarray(values, dtype=np.float64).filled(np.nan)
+    try:
+        return np.asarray(values.detach().cpu() if hasattr(values, "detach") else values)
+    except (TypeError, ValueError, RuntimeError, OverflowError) as error:
+        raise UserError(f"{place}: cannot be made an array: {error}; expected N real numbers") from None
+
+
+def _from_objects(values: NDArray, place: str) -> NDArray[np.float64]:
+    """Numbers among which some are missing, as tables give them: None, or a marker of the table's own such as pandas.NA."""
+    found = np.empty(values.shape, dtype=np.float64)
+    for index, value in np.ndenumerate(values):
+        if value is None or type(value).__name__ in ("NAType", "NaTType"):
+            found[index] = np.nan
+            continue
+        if isinstance(value, str | bytes | complex) or not hasattr(value, "__float__"):
+            raise UserError(f"{place}, sample {index[0]} (the first is 0): found {value!r:.40}, expected a number")
+        try:
+            found[index] = float(value)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise UserError(f"{place}, sample {index[0]} (the first is 0): {error}; expected a number") from None
+    return found

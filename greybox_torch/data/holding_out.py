@@ -1,0 +1,56 @@
+"""What a data set holds out for validation where nothing says so, and what its recordings have to be."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from greybox_torch.data.recording import Recording
+from greybox_torch.errors import UserError
+
+
+def hold_out_last_quarters(recordings: Sequence[Recording], path: Path | None) -> tuple[Recording, ...]:
+    """Every recording as two: its first three quarters, and the last as "<name> (held out)" with the role "validation".
+
+    Raises UserError where a held-out part would have the name of another recording. `path` is the card, for the message.
+    """
+    parts = []
+    for recording in recordings:
+        split = len(recording) - len(recording) // 4
+        if split == len(recording):
+            raise UserError(
+                f"{_of(recording, path)}: has {len(recording)} samples, of which no quarter can be held out; expected more"
+            )
+        parts += [
+            recording.part(0, split),
+            recording.part(split, len(recording), name=f"{recording.name} (held out)", role="validation"),
+        ]
+    where = "DataSet, recordings" if path is None else f"{path}, [[experiment]] name"
+    check_same_names([part.name for part in parts], f"{where}, with the last quarter of each held out")
+    return tuple(parts)
+
+
+def check_same_names(names: Sequence[str], where: str) -> None:
+    """Raises UserError where two recordings have one name: results are by name."""
+    name, count = Counter(names).most_common(1)[0]
+    if count > 1:
+        raise UserError(f'{where}: {count} experiments are named "{name}"; expected different names')
+
+
+def check_no_channel_is_empty(recordings: Sequence[Recording], path: Path | None) -> None:
+    """Raises UserError where a recording has no sample at all of one of its channels."""
+    for recording in recordings:
+        for channel, values in recording.signals.items():
+            if np.isnan(values).all():
+                of = "" if recording.source is None else f" in {recording.source}"
+                raise UserError(
+                    f'{_of(recording, path)}, channel "{channel}": all {len(values)} samples are '
+                    f"missing (NaN){of}, rows {list(recording.rows)}; expected numbers"
+                )
+
+
+def _of(recording: Recording, path: Path | None) -> str:
+    return f'recording "{recording.name}"' if path is None else f'{path}, [[experiment]] "{recording.name}"'

@@ -1,0 +1,175 @@
+"""Recordings from what is in memory already: arrays, and tables of any library. Pandas is not needed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greybox_torch.data.checks import check_finite, check_length, check_time, numbers
+from greybox_torch.data.recording import Recording, Role
+from greybox_torch.errors import UserError, did_you_mean
+
+TIME = "time"
+
+
+def recording_of_arrays(
+    name: str,
+    signals: Mapping[str, Any],
+    *,
+    sample_time: float | None,
+    time: Any,
+    role: Role,
+    units: Mapping[str, str] | None,
+) -> Recording:
+    """What `Recording.from_arrays` describes."""
+    place = _place(name)
+    _check_role(place, role)
+    _check_clock(place, sample_time, time is not None)
+    if not isinstance(signals, Mapping) or not signals:
+        raise UserError(
+            f"{place}, signals: found {_shown(signals)}, expected arrays by channel, like {{'voltage': u, 'speed': y}}"
+        )
+    held = {_channel(place, channel): _signal(place, channel, values) for channel, values in signals.items()}
+    stamps = None if time is None else _seconds(time, f"{place}, time")
+    length = _common_length(place, held | ({} if stamps is None else {TIME: stamps}))
+    check_length(length, place)
+    if stamps is None:
+        assert sample_time is not None
+        step, stamps = float(sample_time), np.arange(length, dtype=np.float64) * sample_time
+    else:
+        check_time(stamps, lambda k: f"{place}, time, sample {k} (the first is 0)")
+        step = float(np.median(np.diff(stamps)))
+    return Recording(name, role, stamps, step, held, units=_units(place, units, held))
+
+
+def recording_of_frame(
+    name: str,
+    frame: Any,
+    *,
+    time: str | None,
+    sample_time: float | None,
+    role: Role,
+    units: Mapping[str, str] | None,
+    columns: Mapping[str, str] | None,
+) -> Recording:
+    """What `Recording.from_dataframe` describes."""
+    place = _place(name)
+    _check_clock(place, sample_time, time is not None)
+    found = _column_names(place, frame)
+    wanted = {str(n): n for n in found if n != time} if columns is None else dict(columns)
+    if not wanted:
+        raise UserError(f"{place}, frame: has no column beside {time!r}; expected one for every channel")
+    for argument, column in [*(("columns", c) for c in wanted.values()), ("time", time)]:
+        if column is not None and column not in found:
+            listed = ", ".join(map(str, found))
+            raise UserError(
+                f"{place}, {argument}: frame has no column {column!r}{did_you_mean(str(column), map(str, found))}; found {listed}"
+            )
+    return recording_of_arrays(
+        name,
+        {channel: _values(frame, column) for channel, column in wanted.items()},
+        sample_time=sample_time,
+        time=None if time is None else _values(frame, time),
+        role=role,
+        units=units,
+    )
+
+
+def _place(name: Any) -> str:
+    if not isinstance(name, str) or not name:
+        raise UserError(f"Recording, name: found {_shown(name)}, expected text that is not empty")
+    return f'recording "{name}"'
+
+
+def _check_role(place: str, role: Any) -> None:
+    if role not in get_args(Role):
+        raise UserError(f'{place}, role: found {_shown(role)}, expected "estimation" or "validation"')
+
+
+def _check_clock(place: str, sample_time: Any, has_time: bool) -> None:
+    if sample_time is None:
+        if not has_time:
+            raise UserError(
+                f"{place}: sample_time is missing; expected sample_time (seconds), or time (the time stamps)"
+            )
+        return
+    if has_time:
+        raise UserError(f"{place}: both sample_time and time are given; expected one of them")
+    number = isinstance(sample_time, int | float | np.integer | np.floating) and not isinstance(sample_time, bool)
+    if not number or not 0 < sample_time < math.inf:
+        raise UserError(f"{place}, sample_time: found {_shown(sample_time)}, expected a number above zero, in seconds")
+
+
+def _channel(place: str, channel: Any) -> str:
+    if not isinstance(channel, str) or not channel:
+        raise UserError(f"{place}, signals: found a channel named {_shown(channel)}, expected text that is not empty")
+    if channel == TIME:
+        raise UserError(f'{place}, signals: "{TIME}" cannot name a channel; time stamps are the argument time')
+    return channel
+
+
+def _signal(place: str, channel: str, values: Any) -> NDArray[np.float64]:
+    where = f'{place}, channel "{channel}"'
+    found = numbers(values, where)
+    check_finite(found, lambda k: f"{where}, sample {k} (the first is 0)")
+    if found.size and np.isnan(found).all():
+        raise UserError(f"{where}: all {len(found)} samples are missing (NaN); expected numbers")
+    return found
+
+
+def _seconds(time: Any, where: str) -> NDArray[np.float64]:
+    """Time stamps in seconds; dates and times count from the first of them."""
+    stamps = time if np.ma.isMaskedArray(time) or hasattr(time, "detach") else np.asarray(time)
+    if isinstance(stamps, np.ndarray) and stamps.dtype.kind in "mM" and stamps.ndim == 1 and stamps.size:
+        since = stamps - stamps[0] if stamps.dtype.kind == "M" else stamps
+        seconds = since / np.timedelta64(1, "s")
+        return np.where(np.isnat(stamps), np.nan, seconds)
+    return numbers(stamps, where)
+
+
+def _common_length(place: str, arrays: Mapping[str, NDArray]) -> int:
+    lengths = {name: len(values) for name, values in arrays.items()}
+    if len(set(lengths.values())) > 1:
+        found = ", ".join(f'"{name}" has {length}' for name, length in lengths.items())
+        raise UserError(f"{place}, signals: arrays differ in length: {found}; expected as many samples in each")
+    return next(iter(lengths.values()))
+
+
+def _units(place: str, units: Mapping[str, str] | None, channels: Mapping[str, Any]) -> dict[str, str]:
+    for channel, unit in (units or {}).items():
+        if channel not in channels:
+            hint = did_you_mean(str(channel), channels)
+            raise UserError(f"{place}, units: no channel {channel!r}{hint}; expected {', '.join(channels)}")
+        if not isinstance(unit, str):
+            raise UserError(f'{place}, units: found {_shown(unit)} for "{channel}", expected text such as "rad/s"')
+    return dict(units or {})
+
+
+def _column_names(place: str, frame: Any) -> Sequence[Any]:
+    """The names of a table's columns, as its library gives them."""
+    dtype = getattr(frame, "dtype", None)
+    for names in (
+        getattr(frame, "column_names", None),  # pyarrow
+        getattr(getattr(frame, "schema", None), "names", None) if not hasattr(frame, "columns") else None,
+        getattr(frame, "columns", None),  # pandas, polars
+        getattr(dtype, "names", None),  # structured arrays of NumPy
+        list(frame) if isinstance(frame, Mapping) else None,
+    ):
+        if names is not None and not callable(names):
+            return list(names)
+    raise UserError(
+        f"{place}, frame: found {_shown(frame)}, expected a table with columns: a DataFrame, a pyarrow Table, a dictionary of arrays"
+    )
+
+
+def _values(frame: Any, column: Any) -> Any:
+    return frame[column]
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else f"an object of type {type(value).__name__}"
