@@ -13,13 +13,10 @@ import numpy as np
 import torch
 from torch.utils._pytree import tree_map
 
-from greybox_torch.codegen.expression import FUNCTIONS, Graph
+from greybox_torch.codegen.expression import Graph
+from greybox_torch.codegen.operations import AT_ONCE, HANDLERS, NodeArray, UnsupportedOperation, constants
 from greybox_torch.errors import UserError
 from greybox_torch.model.check import NEEDS_A_VALUE
-
-
-class UnsupportedOperation(Exception):
-    """The model uses a torch operation that the compiled route does not know; the eager route still does."""
 
 
 class Symbol(torch.Tensor):
@@ -43,7 +40,7 @@ class Symbol(torch.Tensor):
         The first operation that goes there makes torch import its distributed tensors, half a second of the life of a process.
         """
         name = getattr(func, "__name__", "")
-        handler = None if kwargs else _AT_ONCE.get(name)
+        handler = None if kwargs else AT_ONCE.get(name)
         if handler is None:
             return torch._C._disabled_torch_function_impl(func, types, args, kwargs or {})  # type: ignore[attr-defined]
         graph = _graph_of(args, {})
@@ -54,7 +51,7 @@ class Symbol(torch.Tensor):
         kwargs = kwargs or {}
         graph = _graph_of(args, kwargs)
         name = func._schema.name.removeprefix("aten::").rstrip("_") if not func._schema.name.endswith("__") else ""
-        handler = _HANDLERS.get(name)
+        handler = HANDLERS.get(name)
         if handler is None:
             if name == "_local_scalar_dense":
                 raise UserError(NEEDS_A_VALUE)
@@ -68,9 +65,9 @@ class Symbol(torch.Tensor):
 
 
 def _handled(handler: Callable[..., Any], name: str, graph: Graph, args: Any, kwargs: Any) -> np.ndarray:
-    operands = tree_map(lambda a: _nodes_of(graph, a), args)
+    operands, named = tree_map(lambda a: _nodes_of(graph, a), (args, kwargs))
     try:
-        return np.asarray(handler(graph, *operands, **kwargs), dtype=object)
+        return np.asarray(handler(graph, *operands, **named), dtype=object)
     except (TypeError, ValueError, IndexError) as error:  # a form of the operation that its handler was not written for
         raise UnsupportedOperation(f"torch operation '{name}' in this form") from error
 
@@ -93,232 +90,9 @@ def _graph_of(args: Any, kwargs: Any) -> Graph:
     return found[0]
 
 
-class _Array(np.ndarray):
-    """Marks an array of nodes, apart from plain Python arguments."""
-
-
 def _nodes_of(graph: Graph, value: Any) -> Any:
     if isinstance(value, Symbol):
-        return value.nodes.view(_Array)
+        return value.nodes.view(NodeArray)
     if isinstance(value, torch.Tensor):
-        array = value.detach().cpu().numpy()
-        return _map(lambda v: graph.constant(float(v)), array)
+        return constants(graph, value.detach().cpu().numpy())
     return value
-
-
-def _operand(graph: Graph, value: Any) -> np.ndarray:
-    if isinstance(value, _Array):
-        return value
-    return _map(lambda v: graph.constant(float(v)), np.asarray(value))
-
-
-def _map(function: Callable[..., Any], *arrays: np.ndarray) -> np.ndarray:
-    """Apply ``function`` over broadcast arrays of objects."""
-    pieces = np.broadcast_arrays(*[np.asarray(a, dtype=object) for a in arrays])
-    result = np.empty(pieces[0].shape, dtype=object)
-    for index in np.ndindex(result.shape):
-        result[index] = function(*[piece[index] for piece in pieces])
-    return result.view(_Array)
-
-
-def _elementwise(operation: str) -> Callable[..., np.ndarray]:
-    def handler(graph: Graph, *operands: Any, **_: Any) -> np.ndarray:
-        return _map(lambda *n: graph.apply(operation, *n), *[_operand(graph, o) for o in operands])
-
-    return handler
-
-
-def _added(sign: str, swap: bool = False) -> Callable[..., np.ndarray]:
-    def handler(graph: Graph, left: Any, right: Any, alpha: float = 1) -> np.ndarray:
-        left, right = (right, left) if swap else (left, right)
-        scaled = _operand(graph, right) if alpha == 1 else _elementwise("mul")(graph, right, float(alpha))
-        return _elementwise(sign)(graph, left, scaled)
-
-    return handler
-
-
-def _power(graph: Graph, base: Any, exponent: Any) -> np.ndarray:
-    def power(b: int, e: int) -> int:
-        constant = graph.value_of(e)
-        return graph.apply("pow", b, e) if constant is None else graph.power(b, constant)
-
-    return _map(power, _operand(graph, base), _operand(graph, exponent))
-
-
-def _clamped(graph: Graph, value: Any, low: Any = None, high: Any = None, **named: Any) -> np.ndarray:
-    low, high = named.get("min", low), named.get("max", high)
-    if low is not None:
-        value = _elementwise("max")(graph, value, _nodes_of(graph, low))
-    return value if high is None else _elementwise("min")(graph, value, _nodes_of(graph, high))
-
-
-def _sigmoid(graph: Graph, value: Any) -> np.ndarray:
-    half = _elementwise("mul")(graph, value, 0.5)
-    return _elementwise("mul")(graph, _elementwise("add")(graph, _elementwise("tanh")(graph, half), 1.0), 0.5)
-
-
-def _softplus(graph: Graph, value: Any, beta: float = 1.0, threshold: float = 20.0) -> np.ndarray:
-    scaled = _elementwise("mul")(graph, value, beta)
-    bounded = _elementwise("min")(graph, scaled, threshold)
-    curved = _elementwise("div")(graph, _elementwise("log1p")(graph, _elementwise("exp")(graph, bounded)), beta)
-    return _elementwise("where")(graph, _elementwise("gt")(graph, scaled, threshold), value, curved)
-
-
-def _divided(graph: Graph, value: Any, divisor: Any, rounding_mode: str | None = None) -> np.ndarray:
-    quotient = _elementwise("div")(graph, value, divisor)
-    if rounding_mode is None:
-        return quotient
-    down = _elementwise("floor")(graph, quotient)
-    if rounding_mode == "floor":
-        return down
-    up = _elementwise("neg")(graph, _elementwise("floor")(graph, _elementwise("neg")(graph, quotient)))
-    return _elementwise("where")(graph, _elementwise("lt")(graph, quotient, 0.0), up, down)
-
-
-def _converted(graph: Graph, value: Any, *_: Any, dtype: torch.dtype | None = None, **__: Any) -> Any:
-    if dtype is torch.bool:
-        return _elementwise("ne")(graph, value, 0.0)
-    if dtype is not None and not dtype.is_floating_point:
-        raise UnsupportedOperation(f"conversion to {dtype}")
-    return _map(
-        lambda n: graph.apply("where", n, graph.constant(1.0), graph.constant(0.0)) if graph.is_condition(n) else n,
-        value,
-    )
-
-
-def _reciprocal(graph: Graph, value: Any, power: float = 1.0) -> np.ndarray:
-    return _power(graph, value, -power)
-
-
-def _remainder(graph: Graph, value: Any, period: Any) -> np.ndarray:
-    turns = _elementwise("floor")(graph, _elementwise("div")(graph, value, period))
-    return _elementwise("sub")(graph, value, _elementwise("mul")(graph, turns, period))
-
-
-def _summed(graph: Graph, value: np.ndarray, dims: Any = None, keepdim: bool = False, **_: Any) -> np.ndarray:
-    axes = tuple(np.atleast_1d(dims)) if dims not in (None, []) else tuple(range(value.ndim))
-    moved = np.moveaxis(value, [int(a) for a in axes], range(len(axes)))
-    flat = moved.reshape(-1, *moved.shape[len(axes) :])
-    total = _operand(graph, np.zeros(flat.shape[1:]))
-    for row in flat:
-        total = _elementwise("add")(graph, total, np.asarray(row, dtype=object).view(_Array))
-    return np.expand_dims(total, tuple(int(a) for a in axes)) if keepdim else total
-
-
-def _product(graph: Graph, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    a = left if left.ndim == 2 else left[None, :]
-    b = right if right.ndim == 2 else right[:, None]
-    terms = _elementwise("mul")(graph, a[:, :, None].view(_Array), b[None, :, :].view(_Array))
-    result = _summed(graph, terms, [1])
-    if left.ndim == 1:
-        result = result[0]
-    return result[..., 0] if right.ndim == 1 else result
-
-
-def _affine(graph: Graph, bias: Any, left: Any, right: Any, **_: Any) -> np.ndarray:
-    return _elementwise("add")(graph, _product(graph, left, right), bias)
-
-
-def _indexed(graph: Graph, value: np.ndarray, dim: int, index: int) -> np.ndarray:
-    return np.asarray(np.take(value, index, axis=dim), dtype=object)
-
-
-def _sliced(
-    graph: Graph, value: np.ndarray, dim: int = 0, start: Any = None, stop: Any = None, step: int = 1
-) -> np.ndarray:
-    keys: list[Any] = [slice(None)] * value.ndim
-    keys[dim] = slice(start, None if stop is not None and stop > value.shape[dim] else stop, step)
-    return value[tuple(keys)]
-
-
-def _stacked(graph: Graph, pieces: Any, dim: int = 0) -> np.ndarray:
-    return np.stack([np.asarray(_nodes_of(graph, p), dtype=object) for p in pieces], axis=dim)
-
-
-def _joined(graph: Graph, pieces: Any, dim: int = 0) -> np.ndarray:
-    return np.concatenate([np.asarray(_nodes_of(graph, p), dtype=object) for p in pieces], axis=dim)
-
-
-def _full(value: float) -> Callable[..., np.ndarray]:
-    return lambda graph, like, *_, **__: _operand(graph, np.full(np.shape(like), value))
-
-
-def _same(graph: Graph, value: Any, *_: Any, **__: Any) -> Any:
-    return value
-
-
-_HANDLERS: dict[str, Callable[..., Any]] = {
-    "add": _added("add"),
-    "sub": _added("sub"),
-    "rsub": _added("sub", swap=True),
-    "mul": _elementwise("mul"),
-    "div": _divided,
-    "pow": _power,
-    "square": lambda g, a: _power(g, a, 2.0),
-    "reciprocal": _reciprocal,
-    "rsqrt": lambda g, a: _power(g, _elementwise("sqrt")(g, a), -1.0),
-    "maximum": _elementwise("max"),
-    "minimum": _elementwise("min"),
-    "clamp": _clamped,
-    "clamp_min": lambda g, a, low: _clamped(g, a, low, None),
-    "clamp_max": lambda g, a, high: _clamped(g, a, None, high),
-    "relu": lambda g, a: _clamped(g, a, 0.0, None),
-    "sigmoid": _sigmoid,
-    "silu": lambda g, a: _elementwise("mul")(g, a, _sigmoid(g, a)),
-    "softplus": _softplus,
-    "sgn": _elementwise("sign"),
-    "neg": _elementwise("neg"),
-    "remainder": _remainder,
-    "heaviside": lambda g, a, at_zero: _elementwise("where")(
-        g, _elementwise("eq")(g, a, 0.0), at_zero, _elementwise("where")(g, _elementwise("gt")(g, a, 0.0), 1.0, 0.0)
-    ),
-    "where": _elementwise("where"),
-    "logical_and": _elementwise("and"),
-    "logical_or": _elementwise("or"),
-    "logical_not": _elementwise("not"),
-    "bitwise_and": _elementwise("and"),
-    "bitwise_or": _elementwise("or"),
-    "bitwise_not": _elementwise("not"),
-    "sum": _summed,
-    "mm": _product,
-    "mv": _product,
-    "dot": _product,
-    "addmm": _affine,
-    "addmv": _affine,
-    "select": _indexed,
-    "slice": _sliced,
-    "stack": _stacked,
-    "cat": _joined,
-    "t": lambda g, a: a.T,
-    "transpose": lambda g, a, i, j: np.swapaxes(a, i, j),
-    "unsqueeze": lambda g, a, dim: np.expand_dims(a, dim if dim >= 0 else a.ndim + 1 + dim),
-    "squeeze": lambda g, a, dim=None: np.squeeze(a, axis=dim),
-    "view": lambda g, a, shape: np.reshape(a, shape),
-    "_unsafe_view": lambda g, a, shape: np.reshape(a, shape),
-    "reshape": lambda g, a, shape: np.reshape(a, shape),
-    "expand": lambda g, a, shape, **_: np.broadcast_to(a, [n if n >= 0 else a.shape[i] for i, n in enumerate(shape)]),
-    "detach": _same,
-    "clone": _same,
-    "alias": _same,
-    "_to_copy": _converted,
-    "lift_fresh": _same,
-    "zeros_like": _full(0.0),
-    "ones_like": _full(1.0),
-    "new_zeros": lambda g, like, shape, **_: _operand(g, np.zeros(shape)),
-    "new_ones": lambda g, like, shape, **_: _operand(g, np.ones(shape)),
-    "full_like": lambda g, like, value, **_: _operand(g, np.full(np.shape(like), value)),
-    **{name: _elementwise(name) for name in ("lt", "le", "gt", "ge", "eq", "ne")},
-    **{name: _elementwise(name) for name in ((*FUNCTIONS, "atan2"))},
-}
-
-_AT_ONCE: dict[str, Callable[..., Any]] = {
-    **{n: _HANDLERS[n] for n in ("add", "sub", "mul", "div", "neg", "square", "clamp", "select", "stack", "new_zeros")},
-    **{name: _HANDLERS[name] for name in ("where", "maximum", "minimum", "lt", "le", "gt", "ge", *FUNCTIONS)},
-    "__rsub__": _HANDLERS["rsub"],
-    "__rdiv__": lambda g, a, b: _divided(g, b, a),
-    "__rtruediv__": lambda g, a, b: _divided(g, b, a),
-    "true_divide": _HANDLERS["div"],
-    "pow": _power,
-    "__pow__": _power,
-    "__rpow__": lambda g, a, b: _power(g, b, a),
-}

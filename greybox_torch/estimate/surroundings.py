@@ -7,7 +7,7 @@ import torch
 
 from greybox_torch.estimate.free_run import visited_states
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.mechanisms.augmented_model import position_unit
+from greybox_torch.mechanisms.added_declarations import position_unit
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body

@@ -7,6 +7,7 @@ from typing import Any
 
 import torch
 
+from greybox_torch.mechanisms.linear_law import LinearLaw, Of, Per
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.transmission import dead_zone
 from greybox_torch.model import Parameter, Signals, State
@@ -65,7 +66,7 @@ class InputDelay(Mechanism):
         return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (2, 6, 20, 60)]
 
 
-class InputBias(Mechanism):
+class InputBias(LinearLaw):
     """The input that acts is off by a constant."""
 
     name = "input_bias"
@@ -73,18 +74,13 @@ class InputBias(Mechanism):
     explanation = "The input that acts is off by a constant (amplifier offset)."
     source = "A. Janot, M. Gautier, M. Brunot, Data set and reference models of EMPS, 2019"
     experiment = "a record with zero input"
+    parameter, measured_in, description = "bias", Per(), "offset"
 
-    def parameters(self, around: Surroundings) -> list[Parameter]:
-        return [Parameter("bias", 0.0, around.force_unit, description="offset")]
-
-    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return p.bias
-
-    def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(("bias",))]
+    def law(self, s: Signals, size: Any) -> Any:
+        return size
 
 
-class InputGain(Mechanism):
+class InputGain(LinearLaw):
     """The input that acts is (1 + g) u."""
 
     name = "input_gain"
@@ -93,15 +89,10 @@ class InputGain(Mechanism):
     explanation = "The input acts with another gain than recorded (current sensor, torque constant)."
     source = "M. Gautier, S. Briot, J. Dyn. Sys. Meas. Control 136, 2014"
     experiment = "a known load: from force to motion a gain cannot be told from mass and friction"
+    parameter, measured_in, lower, upper, description = "gain_error", Of(), -0.9, 9.0, "relative error of the gain"
 
-    def parameters(self, around: Surroundings) -> list[Parameter]:
-        return [Parameter("gain_error", 0.0, "", lower=-0.9, upper=9.0, description="relative error of the gain")]
-
-    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return p.gain_error * s.input
-
-    def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(("gain_error",))]
+    def law(self, s: Signals, size: Any) -> Any:
+        return size * s.input
 
 
 class TorqueSaturation(Mechanism):

@@ -7,11 +7,12 @@ from typing import Any
 
 import torch
 
+from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
 
 
-class LinearLeak(Mechanism):
+class LinearLeak(LinearLaw):
     """−c level."""
 
     name = "linear_leak"
@@ -20,15 +21,10 @@ class LinearLeak(Mechanism):
     explanation = "Something leaks in proportion to the level (heat loss, seepage)."
     source = "N. R. Kristensen, H. Madsen, S. B. Jørgensen, Automatica 40(2), 2004"
     experiment = "rest at several levels"
+    parameter, measured_in, lower, description = "c", Per("level"), 0.0, "leak per level"
 
-    def parameters(self, around: Surroundings) -> list[Parameter]:
-        return [Parameter("c", 0.0, around.per("level"), lower=0.0, description="leak per level")]
-
-    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return -p.c * s.level
-
-    def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(("c",))]
+    def law(self, s: Signals, size: Any) -> Any:
+        return -size * s.level
 
 
 class ThresholdFlow(Mechanism):

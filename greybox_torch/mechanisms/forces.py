@@ -7,11 +7,12 @@ from typing import Any
 
 import torch
 
+from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals, State
 
 
-class ConstantBias(Mechanism):
+class ConstantBias(LinearLaw):
     """A constant b."""
 
     name = "constant_bias"
@@ -19,15 +20,10 @@ class ConstantBias(Mechanism):
     explanation = "A constant force acts (offset of an amplifier, unbalanced weight, preload)."
     source = "A. Janot, M. Gautier, M. Brunot, Data set and reference models of EMPS, 2019"
     experiment = "standstill and reversals without load: a bias pushes at rest, an asymmetry does not"
+    parameter, measured_in, description = "bias", Per(), "constant force"
 
-    def parameters(self, around: Surroundings) -> list[Parameter]:
-        return [Parameter("bias", 0.0, around.force_unit, description="constant force")]
-
-    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return p.bias
-
-    def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(("bias",))]
+    def law(self, s: Signals, size: Any) -> Any:
+        return size
 
 
 class Gravity(Mechanism):
@@ -115,9 +111,6 @@ class EndStop(Mechanism):
         back = p.k * beyond + p.c * p.side * s.speed
         return -p.side * torch.where((beyond > 0.0) & (back >= 0.0), back, 0.0)
 
-    def signals(self) -> tuple[str, ...]:
-        return ("position",)
-
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         travel = around.ranges["position"]
         width = travel.span
@@ -127,6 +120,9 @@ class EndStop(Mechanism):
         return above + [
             Probe(("k",), {"where": travel.low + share * width, "side": -1.0, "c": 0.0}) for share in (0.03, 0.1, 0.25)
         ]
+
+    def signals(self) -> tuple[str, ...]:
+        return ("position",)
 
 
 class AdditionalMode(Mechanism):

@@ -9,9 +9,9 @@ import numpy as np
 import torch
 
 from greybox_torch.errors import UserError
-from greybox_torch.mechanisms.friction import smooth_sign, width_parameter
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.network import Network
+from greybox_torch.mechanisms.sign_change import smooth_sign, width_parameter
 from greybox_torch.model import Parameter, Signals
 
 OVERLAP = 0.8

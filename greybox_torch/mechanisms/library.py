@@ -15,26 +15,19 @@ from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndSto
 from greybox_torch.mechanisms.friction import (
     CoulombAsymmetry,
     CoulombFriction,
-    FrictionWarmup,
-    LoadDependentFriction,
-    PositionDependentFriction,
-    PreslidingHysteresis,
     QuadraticDrag,
     StribeckFriction,
     ViscousFriction,
 )
 from greybox_torch.mechanisms.friction_net import FrictionNet
 from greybox_torch.mechanisms.mechanism import Mechanism
+from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorGain, SensorLag
-from greybox_torch.mechanisms.transmission import (
-    Backlash,
-    HystereticSpring,
-    NonlinearDamping,
-    NonlinearStiffness,
-    TransmissionError,
-)
+from greybox_torch.mechanisms.transmission import Backlash, HystereticSpring, NonlinearDamping, NonlinearStiffness
+from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.mechanisms.varying_friction import FrictionWarmup, LoadDependentFriction, PositionDependentFriction
 
 LIBRARY: dict[str, type[Mechanism]] = {
     mechanism.name: mechanism

@@ -65,15 +65,13 @@ SHARE = "share"
 class Mechanism:
     """A named law at a port of one of ``kinds``; subclasses are the hypothesis library, and users may add their own.
 
-    Class attributes: ``name`` as in the contract; ``kinds`` of ports it fits; ``needs``, the signals it uses (an instance may choose them);
-    ``explanation``, one sentence for the report; ``source`` in the literature.
+    Class attributes: ``name`` as verdicts say it; ``kinds`` of ports it fits; ``needs``, the signals it uses (an instance may choose them);
+    ``explanation``, one sentence for the report; ``source`` in the literature. Attributes and methods stand in the order of this class.
     """
 
     name: ClassVar[str]
     kinds: ClassVar[tuple[str, ...]]
     needs: tuple[str, ...] = ()
-    explanation: ClassVar[str] = ""
-    source: ClassVar[str] = ""
     kinematic: ClassVar[bool] = False
     """Whether the law changes a coupling's deflection (:meth:`deflection`) instead of adding a force."""
     fades: ClassVar[bool] = False
@@ -84,6 +82,8 @@ class Mechanism:
     """Of these the ones whose whole force is a part of its own: beside it they would name the same friction twice."""
     twins: ClassVar[tuple[str, ...]] = ()
     """Mechanisms elsewhere that no recording of one input and one output tells from this one, however well it is fitted."""
+    explanation: ClassVar[str] = ""
+    source: ClassVar[str] = ""
     experiment: ClassVar[str] = ""
     """Which experiment would tell this mechanism from its look-alikes."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from greybox_torch.mechanisms.linear_law import LinearLaw, Of
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals, State
 
@@ -46,8 +47,8 @@ class OutputDelay(Mechanism):
     name = "output_delay"
     kinds = ("sensor",)
     needs = ("output",)
-    twins = ("input_delay",)
     fades = True
+    twins = ("input_delay",)
     explanation = "The output is recorded after a dead time (sampling, bus, filter)."
     source = "H. Padé, 1892; L. Ljung, System Identification, 2nd ed., 1999"
     experiment = "an input whose own timing is known; without one a delay of the output is a delay of the input"
@@ -73,7 +74,7 @@ class OutputDelay(Mechanism):
         return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (3, 8, 24)]
 
 
-class SensorBias(Mechanism):
+class SensorBias(LinearLaw):
     """The recorded output is off by a constant."""
 
     name = "sensor_bias"
@@ -81,18 +82,13 @@ class SensorBias(Mechanism):
     explanation = "The recorded output is off by a constant (sensor offset)."
     source = "J. J. Craig, Introduction to Robotics, 3rd ed., 2005"
     experiment = "a record at standstill"
+    parameter, measured_in, description = "bias", Of("output"), "offset"
 
-    def parameters(self, around: Surroundings) -> list[Parameter]:
-        return [Parameter("bias", 0.0, around.units.get("output", ""), description="offset")]
-
-    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return p.bias
-
-    def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(("bias",))]
+    def law(self, s: Signals, size: Any) -> Any:
+        return size
 
 
-class SensorGain(Mechanism):
+class SensorGain(LinearLaw):
     """The recorded output is (1 + g) y."""
 
     name = "sensor_gain"
@@ -101,12 +97,7 @@ class SensorGain(Mechanism):
     explanation = "The output is recorded with another gain (scale factor)."
     source = "J. J. Craig, Introduction to Robotics, 3rd ed., 2005"
     experiment = "a second sensor, or a known motion"
+    parameter, measured_in, lower, upper, description = "gain_error", Of(), -0.9, 9.0, "relative error of the gain"
 
-    def parameters(self, around: Surroundings) -> list[Parameter]:
-        return [Parameter("gain_error", 0.0, "", lower=-0.9, upper=9.0, description="relative error of the gain")]
-
-    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return p.gain_error * s.output
-
-    def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(("gain_error",))]
+    def law(self, s: Signals, size: Any) -> Any:
+        return size * s.output

@@ -1,4 +1,4 @@
-"""Couplings between two masses: play, nonlinear springs and dampers, hysteresis, kinematic error."""
+"""Couplings between two masses: play, nonlinear springs and dampers, hysteresis."""
 
 from __future__ import annotations
 
@@ -84,9 +84,6 @@ class HystereticSpring(Mechanism):
     source = "R. Bouc, 1967; Y.-K. Wen, J. Eng. Mech. 102(2), 1976; M. Ruderman, F. Hoffmann, T. Bertram, IEEE TIE 56(10), 2009"
     experiment = "slow loading and unloading between several limits"
 
-    def _smallest(self, around: Surroundings) -> float:
-        return around.ranges["rate"].reach * around.sample_time
-
     def parameters(self, around: Surroundings) -> list[Parameter]:
         least = self._smallest(around)
         unit = around.units.get("deflection", "")
@@ -110,6 +107,9 @@ class HystereticSpring(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(("F",), {"z_0": factor * self._smallest(around), "sharpness": 0.5}) for factor in (2, 8, 32)]
+
+    def _smallest(self, around: Surroundings) -> float:
+        return around.ranges["rate"].reach * around.sample_time
 
 
 class NonlinearDamping(Mechanism):
@@ -140,71 +140,3 @@ class NonlinearDamping(Mechanism):
             Probe(("d_2",), {"r_0": 0.1 * reach}),
             *(Probe(("d_2", "d_0"), {"r_0": f * reach}) for f in (0.03, 0.15)),
         ]
-
-
-class TransmissionError(Mechanism):
-    """The spring sees the deflection plus e(θ) = a cos nθ + b sin nθ, with θ the position of the driving body.
-
-    By virtual work that body feels de/dθ times the spring's force as well; ``reaction`` is the share of it that acts (an error on the
-    far side of a reduction reaches the near side divided by the ratio), where the model says what load the body carries. Where the
-    body's speed ω is known, the coupling's damper answers the rate of the error, with ``damping`` · e'(θ) ω.
-    """
-
-    name = "transmission_error"
-    kinds = ("coupling",)
-    needs = ("deflection", "position")
-    kinematic = True
-    explanation = "The gear's output does not follow its input exactly: a kinematic error periodic in position."
-    source = "T. Tuttle, W. Seering, IEEE Trans. Robotics and Automation 12(3), 1996"
-    experiment = "slow constant speed over several turns, in both directions"
-
-    def __init__(self, order: float = 1.0) -> None:
-        self.order = order
-
-    def parameters(self, around: Surroundings) -> list[Parameter]:
-        unit = around.units.get("deflection", "")
-        return [
-            Parameter("a", 0.0, unit, description="cosine amplitude"),
-            Parameter("b", 0.0, unit, description="sine amplitude"),
-            Parameter(
-                "order", self.order, "", lower=0.8 * self.order, upper=1.25 * self.order, description="periods per turn"
-            ),
-            *(
-                [
-                    Parameter(
-                        "damping", 0.0, around.per("rate"), lower=0.0, description="damper's answer to the error's rate"
-                    )
-                ]
-                if "speed" in around.ranges
-                else []
-            ),
-            *(
-                [Parameter("reaction", 0.5, "", lower=0.0, upper=1.0, description="share of e'T")]
-                if self._reacts(around)
-                else []
-            ),
-        ]
-
-    def deflection(self, s: Signals, p: Signals) -> Any:
-        angle = p.order * s.position
-        return s.deflection + p.a * torch.cos(angle) + p.b * torch.sin(angle)
-
-    def reaction(self, s: Signals, p: Signals) -> Any:
-        return -p.reaction * _slope(s, p) * s.load if "reaction" in p and "load" in s else None
-
-    def damped(self, s: Signals, p: Signals) -> Any:
-        return p.damping * _slope(s, p) * s.speed if "damping" in p and "speed" in s else None
-
-    def probes(self, around: Surroundings) -> Sequence[Probe]:
-        fixed = {"order": self.order, **({"damping": 0.0} if "speed" in around.ranges else {})}
-        shares: list[dict[str, float]] = [{"reaction": 0.0}, {"reaction": 1.0}] if self._reacts(around) else [{}]
-        return [Probe(("a", "b"), {**fixed, **share}) for share in shares]
-
-    def _reacts(self, around: Surroundings) -> bool:
-        return "load" in around.ranges
-
-
-def _slope(s: Signals, p: Signals) -> Any:
-    """The slope de/dθ of a periodic error."""
-    angle = p.order * s.position
-    return p.order * (p.b * torch.cos(angle) - p.a * torch.sin(angle))

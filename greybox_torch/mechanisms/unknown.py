@@ -28,15 +28,6 @@ class Unknown(Mechanism):
         self.knots = knots
         self.factor = factor
 
-    def signals(self) -> tuple[str, ...]:
-        return (self.signal, self.factor) if self.factor else (self.signal,)
-
-    def centres(self, around: Surroundings) -> list[float]:
-        """Centres of the bumps, in the signal's unit; one lies beyond either end of the range, so that the ends are covered as well."""
-        reached = around.ranges[self.signal]
-        spacing = reached.span / (self.knots - 3)
-        return [reached.low + spacing * (k - 1) for k in range(self.knots)]
-
     def parameters(self, around: Surroundings) -> list[Parameter]:
         centres = self.centres(around)
         unit = around.units.get(self.signal, "")
@@ -57,3 +48,12 @@ class Unknown(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(tuple(f"w_{k}" for k in range(self.knots)))]
+
+    def signals(self) -> tuple[str, ...]:
+        return (self.signal, self.factor) if self.factor else (self.signal,)
+
+    def centres(self, around: Surroundings) -> list[float]:
+        """Centres of the bumps, in the signal's unit; one lies beyond either end of the range, so that the ends are covered as well."""
+        reached = around.ranges[self.signal]
+        spacing = reached.span / (self.knots - 3)
+        return [reached.low + spacing * (k - 1) for k in range(self.knots)]

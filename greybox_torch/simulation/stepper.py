@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from greybox_torch.codegen.lower import lower
-from greybox_torch.codegen.trace import UnsupportedOperation
+from greybox_torch.codegen.operations import UnsupportedOperation
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.packed_normals import PackedNormals
 from greybox_torch.simulation.records import Records

@@ -15,11 +15,14 @@ from greybox_torch.mechanisms.actuator import InputDelay, InputLag, TorqueSatura
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, TorqueRipple
-from greybox_torch.mechanisms.friction import CoulombFriction, FrictionWarmup, PreslidingHysteresis
+from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Surroundings
+from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.sensor import SensorGain, SensorLag
-from greybox_torch.mechanisms.transmission import Backlash, TransmissionError
+from greybox_torch.mechanisms.transmission import Backlash
+from greybox_torch.mechanisms.transmission_error import TransmissionError
+from greybox_torch.mechanisms.varying_friction import FrictionWarmup
 from greybox_torch.model import Balance, Body, GreyBoxModel, Input, Output, Parameter, Signals, State
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.native import NativeStepper

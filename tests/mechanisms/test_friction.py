@@ -10,14 +10,12 @@ from hypothesis import strategies as st
 from greybox_torch.mechanisms.friction import (
     CoulombAsymmetry,
     CoulombFriction,
-    FrictionWarmup,
-    LoadDependentFriction,
-    PositionDependentFriction,
-    PreslidingHysteresis,
     QuadraticDrag,
     StribeckFriction,
     ViscousFriction,
 )
+from greybox_torch.mechanisms.presliding import PreslidingHysteresis
+from greybox_torch.mechanisms.varying_friction import FrictionWarmup, LoadDependentFriction, PositionDependentFriction
 
 SPEEDS = np.linspace(-15.0, 15.0, 301)
 

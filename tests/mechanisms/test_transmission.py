@@ -7,13 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from greybox_torch.mechanisms.transmission import (
-    Backlash,
-    HystereticSpring,
-    NonlinearDamping,
-    NonlinearStiffness,
-    TransmissionError,
-)
+from greybox_torch.mechanisms.transmission import Backlash, HystereticSpring, NonlinearDamping, NonlinearStiffness
+from greybox_torch.mechanisms.transmission_error import TransmissionError
 
 TWIST = np.linspace(-0.06, 0.06, 241)
 RATES = np.linspace(-2.0, 2.0, 81)

@@ -6,11 +6,11 @@ from collections.abc import Iterable, Mapping
 
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.forces import Gravity, TorqueRipple
-from greybox_torch.mechanisms.friction import PositionDependentFriction
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
-from greybox_torch.mechanisms.transmission import TransmissionError
+from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Port
 from greybox_torch.model.ports import driving_body
 

@@ -16,8 +16,8 @@ from greybox_torch.diagnosis.screen.score_test import Screen
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import TorqueRipple
-from greybox_torch.mechanisms.friction import PositionDependentFriction
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
+from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.ports import driving_body
 from greybox_torch.simulation.side_by_side import side_by_side

@@ -8,7 +8,8 @@ from greybox_torch.diagnosis.screen.candidates import attach, candidates, period
 from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.library import LIBRARY
-from greybox_torch.mechanisms.transmission import Backlash, TransmissionError
+from greybox_torch.mechanisms.transmission import Backlash
+from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.systems import RobotArm
 

@@ -19,15 +19,11 @@ from greybox_torch.diagnosis.screen.shortlist import MOST_TIED, NAMED_PER_LENGTH
 from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.forward_step import Round
 from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, TorqueRipple
-from greybox_torch.mechanisms.friction import (
-    FrictionWarmup,
-    PreslidingHysteresis,
-    QuadraticDrag,
-    StribeckFriction,
-    ViscousFriction,
-)
+from greybox_torch.mechanisms.friction import QuadraticDrag, StribeckFriction, ViscousFriction
 from greybox_torch.mechanisms.mechanism import Probe
+from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.mechanisms.varying_friction import FrictionWarmup
 
 
 def look(motor, explained: float) -> ScreenScore:

@@ -1,0 +1,90 @@
+"""What an attached mechanism sees of the model: the signals at its port, its own parameters, and its memory."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.model import Body, Coupling, GreyBoxModel, Signals
+from greybox_torch.model.ports import Actuator, Port, Sensor, Signal, driving_body
+
+
+class LocalSignals:
+    """Signals by the names that mechanisms know, from the states, inputs and parameters of ``base`` with ``attachments``."""
+
+    def __init__(
+        self, base: GreyBoxModel, attachments: Sequence[Attachment], surroundings: Mapping[str, Surroundings]
+    ) -> None:
+        self.base = base
+        self.attachments = tuple(attachments)
+        self.surroundings = surroundings
+        self.ports: dict[str, Port] = {port.name: port for port in base.all_ports}
+
+    def at(self, a: Attachment, x: Any, u: Any, p: Any) -> Signals:
+        """The signals at the port of an attachment."""
+        site = self.ports[a.port]
+        values: dict[str, Any] = {
+            name: value_of(signal, x, u, p) for name, signal in site.signals.items() if name != "position"
+        }
+        if "position" in a.mechanism.needs or getattr(a.mechanism, "signal", "") == "position":
+            values["position"] = self._position(a.position, x, u, p)
+        if isinstance(site, Coupling) and a.position and "load" in self.surroundings[a.port].ranges:
+            values["load"] = value_of(self.body(a.position).signals["load"], x, u, p)
+        if a.mechanism.kinematic and a.position:
+            values["speed"] = value_of(self.body(a.position).speed, x, u, p)
+        driving = driving_body(self.ports.values())
+        if (
+            driving is not None
+            and isinstance(site, Actuator | Coupling)
+            and "speed" in (*a.mechanism.needs, getattr(a.mechanism, "signal", ""))
+        ):
+            values["speed"] = value_of(driving.speed, x, u, p)
+        if isinstance(site, Sensor):
+            values["output"] = self.base.output(x, u, p)[site.output]
+        if "delayed" in a.mechanism.needs:
+            value, slope, at = (u[f"{a.prefix}.{n}"] for n in ("delayed", "slope", "delay"))
+            values["delayed"] = value + (p[f"{a.prefix}.T"] - at) * slope
+        values |= self.clock(x)
+        return Signals("signal", values)
+
+    def clock(self, x: Signals) -> dict[str, Any]:
+        return {"time": x["time"]} if self.need("time") else {}
+
+    def parameters(self, a: Attachment, p: Signals) -> Signals:
+        """The mechanism's own parameters, by their short names."""
+        start = f"{a.prefix}."
+        return Signals(
+            "parameter", {name.removeprefix(start): value for name, value in p.items() if name.startswith(start)}
+        )
+
+    def memory(self, a: Attachment, x: Signals) -> Signals:
+        """The mechanism's own states, by their short names."""
+        names = [s.name for s in a.mechanism.states(self.surroundings[a.port])]
+        return Signals("memory", {n: x[f"{a.prefix}.{n}"] for n in names})
+
+    def need(self, signal: str) -> bool:
+        """Whether any mechanism uses a signal."""
+        return any(
+            signal in a.mechanism.needs or getattr(a.mechanism, "signal", "") == signal for a in self.attachments
+        )
+
+    def integrated_bodies(self) -> list[str]:
+        """Bodies whose position has to be integrated from their speed."""
+        names = [a.position for a in self.attachments if a.position]
+        return [n for n in dict.fromkeys(names) if self.body(n).position is None]
+
+    def body(self, name: str) -> Body:
+        body = self.ports[name]
+        assert isinstance(body, Body)
+        return body
+
+    def _position(self, name: str, x: Signals, u: Signals, p: Signals) -> Any:
+        signal = self.body(name).position
+        return x[f"{name}.position"] if signal is None else value_of(signal, x, u, p)
+
+
+def value_of(signal: Signal, x: Any, u: Any, p: Any) -> Any:
+    """The value of a port's signal: a state, or a function of states, inputs and parameters."""
+    return x[signal] if isinstance(signal, str) else signal(x, u, p)

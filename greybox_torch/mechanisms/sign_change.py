@@ -1,0 +1,48 @@
+"""The sign of a speed, smooth enough for a solver to follow, and dry friction that changes with it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import torch
+
+from greybox_torch.mechanisms.linear_law import LinearLaw
+from greybox_torch.mechanisms.mechanism import Probe, Surroundings
+from greybox_torch.model import Parameter, Signals
+
+
+def smooth_sign(speed: Any, width: Any) -> Any:
+    """tanh(v / v_0), the sign of a speed with a transition that a solver can follow."""
+    return torch.tanh(speed / width)
+
+
+def width_parameter(around: Surroundings) -> Parameter:
+    """The speed v_0 over which a Coulomb force changes its sign."""
+    reach = around.ranges["speed"].reach
+    unit = around.units.get("speed", "")
+    return Parameter(
+        "v_0", 0.03 * reach, unit, lower=2e-3 * reach, upper=0.3 * reach, description="width of the sign change"
+    )
+
+
+def widths(around: Surroundings) -> list[float]:
+    """Widths of the sign change that a screen looks at."""
+    reach = around.ranges["speed"].reach
+    return [0.005 * reach, 0.03 * reach, 0.1 * reach]
+
+
+class DryLaw(LinearLaw):
+    """Dry friction of a level that is proportional to one parameter; the force changes its sign with the speed, over a width v_0.
+
+    A subclass writes :meth:`law`, the force while the speed is positive and large, and the class attributes of :class:`LinearLaw`.
+    """
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        return [self.size(around), width_parameter(around)]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return self.law(s, p[self.parameter]) * smooth_sign(s.speed, p.v_0)
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe((self.parameter,), {"v_0": width}) for width in widths(around)]

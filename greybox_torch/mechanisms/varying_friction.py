@@ -1,0 +1,90 @@
+"""Friction on a body whose level varies: with the load, the position, or the time since the start."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import torch
+
+from greybox_torch.mechanisms.linear_law import Of
+from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
+from greybox_torch.mechanisms.sign_change import DryLaw, smooth_sign, width_parameter, widths
+from greybox_torch.model import Parameter, Signals
+
+
+class LoadDependentFriction(DryLaw):
+    """−c |load| tanh(v / v_0)."""
+
+    name = "load_dependent_friction"
+    kinds = ("body",)
+    needs = ("speed", "load")
+    explanation = "Friction grows with the load carried (gear meshes, bearings under force)."
+    source = "P. Hamon, M. Gautier, P. Garrec, IEEE/RSJ IROS, 2010; A. C. Bittencourt, S. Gunnarsson, J. Dyn. Sys. Meas. Control 134, 2012"
+    experiment = "the same speeds under different loads"
+    parameter, measured_in, lower, upper, description = "c", Of(), 0.0, 2.0, "friction per load"
+
+    def law(self, s: Signals, size: Any) -> Any:
+        return -size * torch.abs(s.load)
+
+
+class PositionDependentFriction(Mechanism):
+    """−(a cos nθ + b sin nθ) tanh(v / v_0)."""
+
+    name = "position_dependent_friction"
+    kinds = ("body",)
+    needs = ("speed", "position")
+    generalises = ("coulomb_friction",)
+    explanation = "The friction level varies periodically with position (bent shaft, eccentric bearing)."
+    source = "M. R. Popović, A. A. Goldenberg, IEEE Trans. Robotics and Automation 14(1), 1998"
+    experiment = "the same positions passed in both directions"
+
+    def __init__(self, order: float = 1.0) -> None:
+        self.order = order
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        return [
+            Parameter("a", 0.0, around.force_unit, description="cosine amplitude"),
+            Parameter("b", 0.0, around.force_unit, description="sine amplitude"),
+            Parameter(
+                "order", self.order, "", lower=0.8 * self.order, upper=1.25 * self.order, description="periods per turn"
+            ),
+            width_parameter(around),
+        ]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        angle = p.order * s.position
+        return -(p.a * torch.cos(angle) + p.b * torch.sin(angle)) * smooth_sign(s.speed, p.v_0)
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        return [Probe(("a", "b"), {"order": self.order, "v_0": widths(around)[1]})]
+
+
+class FrictionWarmup(Mechanism):
+    """−ΔF exp(−t / T) tanh(v / v_0): Coulomb friction that decays (ΔF > 0) or grows with time."""
+
+    name = "friction_warmup"
+    kinds = ("body",)
+    needs = ("speed", "time")
+    explanation = "The friction level drifts as the machine warms up."
+    source = "A. C. Bittencourt, S. Gunnarsson, J. Dyn. Sys. Meas. Control 134, 2012"
+    experiment = "the same motion repeated from cold to warm"
+
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        total = max(around.ranges["time"].high, around.sample_time)
+        return [
+            Parameter("delta", 0.0, around.force_unit, description="level at the start above the final one"),
+            Parameter("T", 0.3 * total, "s", lower=0.02 * total, upper=5 * total, description="time constant"),
+            width_parameter(around),
+        ]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return -p.delta * torch.exp(-s.time / p.T) * smooth_sign(s.speed, p.v_0)
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        total = max(around.ranges["time"].high, around.sample_time)
+        return [
+            Probe(("delta",), {"T": share * total, "v_0": width})
+            for share in (0.1, 0.3, 1.0)
+            for width in widths(around)[:2]
+        ]
