@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from experiments.verdicts.running import diagnose
 from greybox_torch.checkpoint import Checkpoint, load_checkpoint
 from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError, UserError
@@ -54,11 +53,9 @@ def diagnosis(data: DataSet, folder: Path, given: Path | None, time_limit: float
     """
     place = given or folder
     if given is None and not (folder / "verdict.json").is_file():
-        limit = [] if time_limit is None else ["--time-limit", str(time_limit)]
-        command = [sys.executable, "-m", "greybox_torch", "diagnose", str(data.path), "--out", str(folder), *limit]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise NumericalError(f"diagnosing {data.path} failed: {done.stderr.strip()}")
+        outcome = diagnose(Path(data.path), folder, time_limit)
+        if outcome.failure:
+            raise NumericalError(f"diagnosing {data.path} failed: {outcome.failure}")
     try:
         verdict: dict[str, Any] = json.loads((place / "verdict.json").read_text(encoding="utf-8"))
         sentence, seconds = str(verdict["sentence"]), float(verdict["seconds"])

@@ -20,6 +20,7 @@ from typing import Any
 
 from experiments.recordings.cases import CASES, HERE, Case
 from experiments.recordings.table import row, table
+from experiments.verdicts.running import ROOT, VERDICT, diagnose, has_verdict
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.files import json_text, write_text
 
@@ -31,21 +32,19 @@ def run_case(case: Case, out: Path, time_limit: float) -> tuple[dict[str, Any], 
         UserError: one of the two commands failed; the message is its own.
     """
     folder = out / "".join(c if c.isalnum() else "_" for c in case.name.lower()).strip("_")
-    limit = ["--time-limit", f"{time_limit:g}"]
-    verdict = _made(folder / "verdict.json", ["diagnose", str(HERE / case.card), "--out", str(folder), *limit])
-    model = ["--model", str(HERE / case.published_model)] if case.published_model else []
+    if not has_verdict(folder):
+        outcome = diagnose(HERE / case.card, folder, time_limit)
+        if outcome.failure:
+            raise UserError(f"greybox diagnose {case.card}: {outcome.failure}")
     published = folder / "published"
-    fit = _made(published / "fit.json", ["fit", str(HERE / case.published_card), "--out", str(published), *model])
-    return verdict, fit
-
-
-def _made(file: Path, arguments: Sequence[str]) -> dict[str, Any]:
-    if not file.exists():
+    if not (published / "fit.json").exists():
+        model = ["--model", str(HERE / case.published_model)] if case.published_model else []
+        arguments = ["fit", str(HERE / case.published_card), "--out", str(published), *model]
         command = [sys.executable, "-m", "greybox_torch", *arguments]
-        done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=HERE.parents[1])
+        done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
         if done.returncode != 0:
             raise UserError(f"greybox {' '.join(arguments)}: {done.stderr.strip()}")
-    return json.loads(file.read_text())
+    return json.loads((folder / VERDICT).read_text()), json.loads((published / "fit.json").read_text())
 
 
 def chosen(names: str) -> list[Case]:

@@ -157,7 +157,7 @@ CASES = (
 
 
 def key(case: Case) -> dict[str, Any]:
-    """The answer key that :func:`experiments.concealed.scoring.score` reads; the noise of real recordings is not known, so no floor."""
+    """The answer key that :func:`experiments.verdicts.scoring.score` reads; the noise of real recordings is not known, so no floor."""
     return {
         "effects": [c.name for c in case.concealed],
         "accept": [[list(pair) for pair in c.accept] for c in case.concealed],

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from experiments.concealed.scoring import score
 from experiments.recordings.cases import Case, Concealed, key
+from experiments.verdicts.scoring import score
 
 
 def row(case: Case, verdict: Mapping[str, Any], fit: Mapping[str, Any]) -> dict[str, Any]:

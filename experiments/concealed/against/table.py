@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from experiments.concealed.scoring import Scored, score
+from experiments.verdicts.scoring import Scored, score
 
 TOOL = "greybox diagnose"
 METHODS = {
@@ -80,17 +80,7 @@ def _row(name: str, key: Mapping[str, Any], method: str, result: Mapping[str, An
     outside = any(key.get("outside", ()))
     if result.get("failed"):
         return Row(name, concealed, outside, method, None, failed=result["failed"])
-    return Row(name, concealed, outside, method, score(name, _finite(result), key), result.get("can_name", True))
-
-
-def _finite(result: Mapping[str, Any]) -> dict[str, Any]:
-    """The result with the errors of free runs that overflowed, null in JSON, infinite again."""
-    stages = ("start", "refit", "augmented")
-    rows = []
-    for row in result["fit"]:
-        restored = {s: {k: float("inf") if v is None else v for k, v in row[s].items()} for s in stages if s in row}
-        rows.append({**row, **restored})
-    return {**result, "fit": rows}
+    return Row(name, concealed, outside, method, score(name, result, key), result.get("can_name", True))
 
 
 def table(rows: Sequence[Row]) -> str:

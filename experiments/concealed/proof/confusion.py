@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from experiments.concealed.machines import MACHINES
 from experiments.concealed.proof.plan import mechanism
-from experiments.concealed.proof.scores import Row
+from experiments.verdicts.scoring import Scored
 
 NOTHING, NO_VERDICT = "nothing", "no verdict"
 KINDS = ("body", "coupling", "actuator", "sensor")
@@ -21,7 +21,7 @@ def kind(port: str) -> str:
     return first if first in KINDS else "coupling" if port.endswith("_spring") else "body"
 
 
-def matrix(found: Sequence[Row]) -> tuple[list[str], list[str], NDArray[np.int64]]:
+def matrix(found: Sequence[Scored]) -> tuple[list[str], list[str], NDArray[np.int64]]:
     """Labels of the rows (concealed) and columns (said), and counts (rows, columns).
 
     The columns are all labels there are; the rows are those of them that were concealed, in the same order.
@@ -40,12 +40,12 @@ def matrix(found: Sequence[Row]) -> tuple[list[str], list[str], NDArray[np.int64
     return rows, order, counts
 
 
-def _pairs(row: Row) -> list[tuple[str, str]]:
+def _pairs(row: Scored) -> list[tuple[str, str]]:
     catalogue = MACHINES[row.key["machine"]].catalogue
     concealed = [f"{kind(catalogue[e].port)}: {mechanism(catalogue[e])}" for e in row.effects]
-    if row.scored is None:
+    if row.verdict is None:
         return [(label, NO_VERDICT) for label in concealed or [NOTHING]]
-    findings = list(row.scored.findings)
+    findings = list(row.findings)
     pairs = []
     left = list(range(len(row.effects)))
     for finding in [f for f in findings if f.right]:

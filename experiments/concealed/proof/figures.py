@@ -9,19 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from experiments.concealed.calibrate import draw as draw_reliability
-from experiments.concealed.calibrate import reliability
 from experiments.concealed.proof.confusion import matrix
-from experiments.concealed.proof.rates import Rate
-from experiments.concealed.proof.scores import Row
 from experiments.concealed.visibility import DOMINANT, MODERATE
+from experiments.verdicts.calibrate import draw as draw_reliability
+from experiments.verdicts.calibrate import reliability
+from experiments.verdicts.rates import Rate
+from experiments.verdicts.scoring import Scored
 
 EDGES = (0.0, 2.0, 4.0, MODERATE, 12.0, DOMINANT, np.inf)
 COLOURS = {"weak": "#9aa5b1", "moderate": "#3b7dd8", "dominant": "#123a6d"}
 LEAST_SHOWN, MOST_SHOWN = 0.5, 300.0
 
 
-def draw_all(found: Sequence[Row], folder: Path) -> list[str]:
+def draw_all(found: Sequence[Scored], folder: Path) -> list[str]:
     """Write every figure that the cases allow; their file names."""
     folder.mkdir(parents=True, exist_ok=True)
     written = []
@@ -51,7 +51,7 @@ def _save(figure: Any, file: Path) -> bool:
     return True
 
 
-def _confusion(found: Sequence[Row], file: Path) -> bool:
+def _confusion(found: Sequence[Scored], file: Path) -> bool:
     """Rows: what is concealed, by kind of port; columns: what was said. Right answers lie on the diagonal, twins included."""
     labels, columns, counts = matrix(found)
     if not labels:
@@ -74,7 +74,7 @@ def _confusion(found: Sequence[Row], file: Path) -> bool:
     return _save(figure, file)
 
 
-def _strength(found: Sequence[Row], file: Path) -> bool:
+def _strength(found: Sequence[Scored], file: Path) -> bool:
     """Shares of cases detected and of effects located and named, against how visible the effect is."""
     cases = [r for r in found if r.effects and not r.outside]
     if not cases:
@@ -108,18 +108,18 @@ def _strength(found: Sequence[Row], file: Path) -> bool:
     return _save(figure, file)
 
 
-def _shown(row: Row) -> float:
+def _shown(row: Scored) -> float:
     return float(np.clip(row.key["visibility"], 1.05 * LEAST_SHOWN, MOST_SHOWN / 1.1))
 
 
-def _rate(cases: Sequence[Row], what: str) -> Rate:
+def _rate(cases: Sequence[Scored], what: str) -> Rate:
     if what == "detected":
         return Rate(sum(r.detected for r in cases), len(cases))
     hits = sum(r.located if what == "located" else r.named for r in cases)
     return Rate(hits, sum(len(r.effects) for r in cases))
 
 
-def _closure(found: Sequence[Row], file: Path) -> bool:
+def _closure(found: Sequence[Scored], file: Path) -> bool:
     """How many cases have at least so much of their error closed, by strength."""
     cases = [r for r in found if r.closed is not None]
     if not cases:
@@ -143,8 +143,8 @@ def _closure(found: Sequence[Row], file: Path) -> bool:
     return _save(figure, file)
 
 
-def _reliability(found: Sequence[Row], file: Path) -> bool:
-    findings = [f for r in found if r.scored for f in r.scored.findings]
+def _reliability(found: Sequence[Scored], file: Path) -> bool:
+    findings = [f for r in found for f in r.findings]
     if not findings:
         return False
     claimed = np.array([f.probability for f in findings])

@@ -12,10 +12,11 @@ from typing import Any
 from experiments.concealed.proof.figures import draw_all
 from experiments.concealed.proof.files import write_bytes, write_json
 from experiments.concealed.proof.plan import SECTIONS
+from experiments.concealed.proof.promises import STRONG, Promise, promises, scored_cases
 from experiments.concealed.proof.protocol import ROOT, Proof
 from experiments.concealed.proof.results import results
-from experiments.concealed.proof.scores import Promise, Row, promises, rows
 from experiments.concealed.proof.tables import case_table, group_table, mark, misses, promise_table, sweeps
+from experiments.verdicts.scoring import Scored
 
 CAPTIONS = {
     "confusion.png": "What was concealed (rows) against what was said (columns), by kind of port and mechanism. A right answer lies on the "
@@ -50,7 +51,7 @@ PROTOCOL = """\
 3. The tool is run on each case by its command line. It sees the card, the recordings and the nominal model. The hash of each verdict goes
    on record as it comes; a verdict that comes later, or is changed, is refused.
 4. The seal is opened, the commitment checked, and every verdict scored by the rules in
-   [`proof/scores.py`]({root}/experiments/concealed/proof/scores.py). A case without a verdict counts as missed. Where the tool says
+   [`verdicts/scoring.py`]({root}/experiments/verdicts/scoring.py). A case without a verdict counts as missed. Where the tool says
    that it took a validation experiment to choose with as well, the share of the error closed is that over the experiments left.
 
 The seed is public and the generator deterministic, so whoever runs the proof could look up the answers: what is blind is the tool, not the
@@ -60,7 +61,7 @@ person. The record keeps anybody from choosing among verdicts afterwards without
 def publish(proof: Proof, answers: Mapping[str, Mapping[str, Any]], page: Path) -> str:
     """Write results.json into the proof's folder, figures beside the page, and the page; a summary in text."""
     verdicts = {name: proof.verdict(name) for name in answers}
-    found = rows(answers, verdicts, proof.record.verdicts)
+    found = scored_cases(answers, verdicts, proof.record.verdicts)
     kept = promises(found)
     folder = page.parent / page.stem
     figures = draw_all(found, folder)
@@ -74,7 +75,7 @@ def publish(proof: Proof, answers: Mapping[str, Mapping[str, Any]], page: Path) 
 
 
 def _page(
-    proof: Proof, found: Sequence[Row], kept: Sequence[Promise], figures: Sequence[str], folder: str, root: str
+    proof: Proof, found: Sequence[Scored], kept: Sequence[Promise], figures: Sequence[str], folder: str, root: str
 ) -> str:
     parts = [
         "# The proof: concealed effects, scored blind",
@@ -86,9 +87,7 @@ def _page(
         "## By kind of case",
         group_table(found, "section", SECTIONS, lambda r: str(r.key["section"])),
         "## By strength",
-        group_table(
-            [r for r in found if r.effects], "strength", ("weak", "moderate", "dominant"), lambda r: r.strength
-        ),
+        group_table([r for r in found if r.effects], "strength", ("weak", *STRONG), lambda r: r.strength),
         "## By machine",
         group_table(found, "machine", sorted({r.key["machine"] for r in found}), lambda r: str(r.key["machine"])),
         "## Figures",
@@ -103,9 +102,9 @@ def _page(
     return "\n\n".join(parts) + "\n"
 
 
-def _about(proof: Proof, found: Sequence[Row]) -> str:
+def _about(proof: Proof, found: Sequence[Scored]) -> str:
     sealed, opened = proof.record.sealed or {}, proof.record.opened or {}
-    seconds = [float(r.entry["seconds"]) for r in found]
+    seconds = [float(r.seconds) for r in found]
     short = "make proof" if sealed["set"] == "standard" else "make proof-quick"
     command = f"python -m experiments.concealed.proof --set {sealed['set']} --seed {sealed['seed']}"
     return (
@@ -117,7 +116,7 @@ def _about(proof: Proof, found: Sequence[Row]) -> str:
     )
 
 
-def _took_more(row: Row) -> bool:
+def _took_more(row: Scored) -> bool:
     """Whether fewer experiments are left to judge than the three that every case has."""
     judged = {fit["experiment"] for fit in row.verdict["fit"] if fit["role"] == "validation"} if row.verdict else ()
     return row.verdict is not None and len(judged) < 3

@@ -10,7 +10,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from experiments.concealed.proof.diagnosing import diagnose_all
 from experiments.concealed.proof.draw import draw_cases
 from experiments.concealed.proof.errors import ProofError
 from experiments.concealed.proof.files import sha256, write_json
@@ -18,11 +17,12 @@ from experiments.concealed.proof.plan import plans
 from experiments.concealed.proof.record import Record
 from experiments.concealed.proof.seal import seal, unseal
 from experiments.concealed.trial_files import KEY, digest
+from experiments.verdicts.running import VERDICT, Outcome, diagnose_all
 
 Progress = Callable[[str], None]
 ROOT = Path(__file__).parents[3]
-RULES = ("scoring.py", "proof/scores.py", "proof/rates.py")
-"""Of experiments/concealed: what decides on right and wrong; may not change between sealing and scoring."""
+RULES = ("verdicts/scoring.py", "verdicts/contradictions.py", "verdicts/rates.py", "concealed/proof/promises.py")
+"""Of experiments: what decides on right and wrong; may not change between sealing and scoring."""
 
 
 class Proof:
@@ -66,7 +66,18 @@ class Proof:
         self._unchanged_cases()
         if self.record.opened is None:
             self._unchanged_tool()
-            diagnose_all(self.folder, self.record, workers=workers, time_limit=time_limit, progress=self.progress)
+            cases = self._sealed()["cases"]
+            left = {n: self.folder / "cases" / n / "dataset.toml" for n in cases if n not in self.record.verdicts}
+            out = self.folder / "verdicts"
+            diagnose_all(left, out, workers=workers, time_limit=time_limit, tell=self._freeze)
+
+    def _freeze(self, name: str, outcome: Outcome) -> None:
+        """Put on record what the tool said of a case: the hash of its verdict, None where there is none."""
+        file = self._verdict_file(name)
+        found = None if outcome.failure else sha256(file.read_bytes())
+        self.record.add("verdict", case=name, sha256=found, said=outcome.said, seconds=outcome.seconds)
+        done, total = len(self.record.verdicts), len(self._sealed()["cases"])
+        self.progress(f"{done}/{total} {name} {outcome.seconds:.0f} s: {outcome.said}")
 
     def open(self) -> dict[str, Any]:
         """Open the seal, once every case has its verdict; the answers by case, which are now beside the data too.
@@ -98,7 +109,7 @@ class Proof:
                 f"{self.record.file}: no verdict yet on {len(missing)} cases, {missing[0]} among them; expected one on each"
             )
         for name, entry in frozen.items():
-            file = self.folder / "verdicts" / name / "verdict.json"
+            file = self._verdict_file(name)
             found = sha256(file.read_bytes()) if file.is_file() else None
             if found != entry["sha256"]:
                 raise ProofError(
@@ -109,8 +120,11 @@ class Proof:
 
     def verdict(self, name: str) -> dict[str, Any] | None:
         """What the tool said of a case, None where it said nothing."""
-        file = self.folder / "verdicts" / name / "verdict.json"
+        file = self._verdict_file(name)
         return json.loads(file.read_text(encoding="utf-8")) if file.is_file() else None
+
+    def _verdict_file(self, name: str) -> Path:
+        return self.folder / "verdicts" / name / VERDICT
 
     def _sealed(self) -> dict[str, Any]:
         if self.record.sealed is None:
@@ -158,7 +172,7 @@ class Proof:
 
 def rules_hash() -> str:
     """SHA-256 over the files that decide on right and wrong."""
-    return sha256(b"\0".join((Path(__file__).parents[1] / name).read_bytes() for name in RULES))
+    return sha256(b"\0".join((Path(__file__).parents[2] / name).read_bytes() for name in RULES))
 
 
 def tool_version() -> dict[str, str]:

@@ -2,32 +2,26 @@
 
 from __future__ import annotations
 
-from experiments.concealed.proof.diagnosing import sentence
-from experiments.concealed.proof.scores import Row
 from experiments.concealed.visibility import MODERATE
+from experiments.verdicts.scoring import Scored
 
 NOT_SHOWN = 1.5
 """Times the floor below which the refitted model's error in the estimation experiment shows nothing."""
 
 
-def said(row: Row) -> str:
-    """What the tool said of a case, or why it said nothing."""
-    return row.entry["said"] if row.verdict is None else sentence(row.verdict)
-
-
-def reasons(row: Row) -> list[str]:
+def reasons(row: Scored) -> list[str]:
     """Sentences on what went wrong in a case that is not right; empty where nothing did."""
     if row.right:
         return []
-    if row.verdict is None or row.scored is None:
-        return [f"no verdict: {row.entry['said']}"]
+    if row.verdict is None:
+        return [f"no verdict: {row.said}"]
     found = [*_strength(row), *_answers(row), *_alternatives(row)]
     if row.verdict.get("complete") is False:
         found.append("the search was stopped by the time limit")
     return found
 
 
-def _strength(row: Row) -> list[str]:
+def _strength(row: Scored) -> list[str]:
     if not row.effects:
         return []
     found = []
@@ -43,13 +37,12 @@ def _strength(row: Row) -> list[str]:
     return found
 
 
-def _answers(row: Row) -> list[str]:
-    scored = row.scored
-    assert scored is not None and row.verdict is not None
+def _answers(row: Scored) -> list[str]:
+    assert row.verdict is not None
     found = []
-    if not scored.findings:
+    if not row.findings:
         found.append("found missing, but not what" if row.verdict["mismatch"] else "nothing was found")
-    for finding in scored.findings:
+    for finding in row.findings:
         answer = f"{finding.mechanism} at {finding.port}"
         if finding.spurious:
             found.append(f"{answer} is spurious")
@@ -57,13 +50,13 @@ def _answers(row: Row) -> list[str]:
             place = "the place is right" if finding.located else "the place is wrong too"
             near = [finding.port, finding.mechanism] in [pair for pairs in row.key["near"] for pair in pairs]
             found.append(f"{answer} is {'a near miss' if near else 'the wrong name'}; {place}")
-    missing = len(row.effects) - sum(f.right or f.located for f in scored.findings if not f.spurious)
-    if scored.findings and missing > 0:
+    missing = len(row.effects) - sum(f.right or f.located for f in row.findings if not f.spurious)
+    if row.findings and missing > 0:
         found.append(f"{missing} of {len(row.effects)} effects without a finding")
     return found
 
 
-def _alternatives(row: Row) -> list[str]:
+def _alternatives(row: Scored) -> list[str]:
     """Right answers that the verdict held possible."""
     assert row.verdict is not None
     accepted = [pair for pairs in row.key["accept"] for pair in pairs]
@@ -76,7 +69,7 @@ def _alternatives(row: Row) -> list[str]:
     ][:1]
 
 
-def _estimation_ratio(row: Row) -> float | None:
+def _estimation_ratio(row: Scored) -> float | None:
     """Error of the refitted plain model in the estimation experiment, in units of the floor; the larger of several outputs'."""
     assert row.verdict is not None
     sigma = row.key["sigma"]

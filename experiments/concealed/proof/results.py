@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from experiments.concealed.proof.promises import Promise
 from experiments.concealed.proof.protocol import Proof
-from experiments.concealed.proof.reasons import reasons, said
-from experiments.concealed.proof.scores import Promise, Row
+from experiments.concealed.proof.reasons import reasons
+from experiments.verdicts.scoring import Scored
 
 
-def results(proof: Proof, found: Sequence[Row], kept: Sequence[Promise]) -> dict[str, Any]:
+def results(proof: Proof, found: Sequence[Scored], kept: Sequence[Promise]) -> dict[str, Any]:
     """Everything that the page says, for scripts."""
     sealed = proof.record.sealed or {}
     about = {name: sealed[name] for name in ("set", "seed", "commitment", "rules", "tool", "time")}
@@ -26,13 +27,13 @@ def results(proof: Proof, found: Sequence[Row], kept: Sequence[Promise]) -> dict
                 "effects": list(r.effects),
                 "strength": r.strength,
                 "visibility": r.key["visibility"],
-                "said": said(r),
+                "said": r.said,
                 "detected": r.detected,
                 "located": r.located,
                 "named": r.named,
                 "spurious": r.spurious,
                 "closed": r.closed,
-                "seconds": r.entry["seconds"],
+                "seconds": r.seconds,
                 "reasons": reasons(r),
             }
             for r in found

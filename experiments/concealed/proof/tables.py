@@ -6,9 +6,10 @@ import statistics
 from collections.abc import Callable, Sequence
 
 from experiments.concealed.proof.plan import EXCITATION, NOISE
-from experiments.concealed.proof.rates import Rate
-from experiments.concealed.proof.reasons import reasons, said
-from experiments.concealed.proof.scores import Promise, Row
+from experiments.concealed.proof.promises import Promise
+from experiments.concealed.proof.reasons import reasons
+from experiments.verdicts.rates import Rate
+from experiments.verdicts.scoring import Scored
 
 
 def mark(promise: Promise) -> str:
@@ -20,7 +21,7 @@ def promise_table(kept: Sequence[Promise]) -> str:
     return "\n".join([*lines, *(f"| {p.what} | {p.wanted} | {p.measured} | {mark(p)} |" for p in kept)])
 
 
-def group_table(found: Sequence[Row], what: str, groups: Sequence[str], of: Callable[[Row], str]) -> str:
+def group_table(found: Sequence[Scored], what: str, groups: Sequence[str], of: Callable[[Scored], str]) -> str:
     lines = [
         f"| {what} | cases | detected rightly | located | named | spurious | median closed |",
         "|---|---|---|---|---|---|---|",
@@ -32,7 +33,7 @@ def group_table(found: Sequence[Row], what: str, groups: Sequence[str], of: Call
     return "\n".join([*lines, _totals("all", found)])
 
 
-def _totals(label: str, own: Sequence[Row]) -> str:
+def _totals(label: str, own: Sequence[Scored]) -> str:
     effects = sum(len(r.effects) for r in own)
     closed = [r.closed for r in own if r.closed is not None]
     cells = (
@@ -47,7 +48,7 @@ def _totals(label: str, own: Sequence[Row]) -> str:
     return "| " + " | ".join(map(str, cells)) + " |"
 
 
-def sweeps(found: Sequence[Row]) -> list[str]:
+def sweeps(found: Sequence[Scored]) -> list[str]:
     """The same effect under each of the four excitations, and under rising noise."""
     parts = []
     for section, heading, what, varied in (
@@ -68,7 +69,7 @@ def sweeps(found: Sequence[Row]) -> list[str]:
                     _concealed(r),
                     r.key[varied],
                     f"{r.key['visibility']:.1f}",
-                    said(r),
+                    r.said,
                     _yes(r.right),
                 )
                 lines.append("| " + " | ".join(map(str, cells)) + " |")
@@ -76,18 +77,18 @@ def sweeps(found: Sequence[Row]) -> list[str]:
     return parts
 
 
-def misses(found: Sequence[Row]) -> str:
+def misses(found: Sequence[Scored]) -> str:
     missed = [r for r in found if not r.right]
     if not missed:
         return "Nothing did."
     lines = ["| case | machine | concealed | visibility | said | why |", "|---|---|---|---|---|---|"]
     for r in missed:
-        cells = (r.name, r.key["machine"], _concealed(r), _visibility(r), said(r), "; ".join(reasons(r)))
+        cells = (r.name, r.key["machine"], _concealed(r), _visibility(r), r.said, "; ".join(reasons(r)))
         lines.append("| " + " | ".join(map(str, cells)) + " |")
     return "\n".join(lines)
 
 
-def case_table(found: Sequence[Row]) -> str:
+def case_table(found: Sequence[Scored]) -> str:
     lines = [
         "| case | machine | concealed | strength | visibility | said | right | closed | s |",
         "|---|---|---|---|---|---|---|---|---|",
@@ -100,20 +101,20 @@ def case_table(found: Sequence[Row]) -> str:
             _concealed(r),
             r.strength,
             _visibility(r),
-            said(r),
+            r.said,
             _yes(r.right),
             closed,
-            r.entry["seconds"],
+            r.seconds,
         )
         lines.append("| " + " | ".join(map(str, cells)) + " |")
     return "\n".join(lines)
 
 
-def _concealed(row: Row) -> str:
+def _concealed(row: Scored) -> str:
     return ", ".join(row.effects) or "nothing"
 
 
-def _visibility(row: Row) -> str:
+def _visibility(row: Scored) -> str:
     return f"{row.key['visibility']:.1f}" if row.effects else ""
 
 

@@ -11,7 +11,7 @@ from experiments.concealed.against import methods
 from experiments.concealed.against.methods import BASELINES, METHODS, results
 from experiments.concealed.against.neural_residual import neural_residual
 from experiments.concealed.against.plain import Plain
-from experiments.concealed.scoring import score
+from experiments.verdicts.scoring import score
 from greybox_torch.errors import NumericalError
 
 KEY: dict[str, Any] = {

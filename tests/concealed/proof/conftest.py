@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from experiments.concealed.proof import protocol
-from experiments.concealed.proof.files import sha256
+from experiments.verdicts.running import Outcome
 from tests.concealed.proof.by_hand import ANSWERS, VERDICTS
 
 
@@ -25,13 +25,13 @@ def by_hand(monkeypatch: pytest.MonkeyPatch) -> Callable[[], list[str]]:
             (folder / name / "dataset.toml").write_text(f'name = "{name} {seed}"\n')
         return ANSWERS
 
-    def diagnose(case: Path, out: Path, time_limit: float) -> dict[str, Any]:
-        asked.append(case.name)
-        content = json.dumps(VERDICTS[case.name]).encode()
+    def diagnose(card: Path, out: Path, time_limit: float) -> Outcome:
+        name = card.parent.name
+        asked.append(name)
         out.mkdir(parents=True, exist_ok=True)
-        (out / "verdict.json").write_bytes(content)
-        return {"sha256": sha256(content), "said": "said", "seconds": 1.0}
+        (out / "verdict.json").write_text(json.dumps(VERDICTS[name]))
+        return Outcome(1.0, "said")
 
     monkeypatch.setattr(protocol, "draw_cases", draw_cases)
-    monkeypatch.setattr("experiments.concealed.proof.diagnosing._diagnose", diagnose)
+    monkeypatch.setattr("experiments.verdicts.running.diagnose", diagnose)
     return lambda: sorted(asked)

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import json
 import tomllib
-from pathlib import Path
 
 import pytest
 
 from experiments.concealed.machines.stage import Stage
-from experiments.concealed.proof import diagnosing, draw
-from experiments.concealed.proof.files import sha256
+from experiments.concealed.proof import draw
 from experiments.concealed.proof.plan import Planned
 from experiments.concealed.trial_files import digest
 
@@ -74,26 +72,3 @@ def test_a_case_depends_on_seed_and_number_alone(drawn):
     folder, _, again = drawn
     assert digest(folder / "again" / "c000") == digest(folder / "first" / "c003")
     assert list(again) == ["c000"]
-
-
-def test_the_tool_is_called_as_a_user_would(drawn, tmp_path: Path):
-    case = drawn[0] / "first" / "c003"
-    before = digest(case)
-    entry = diagnosing._diagnose(case, tmp_path / "out", 5.0)
-    verdict = tmp_path / "out" / "verdict.json"
-    assert entry["sha256"] == sha256(verdict.read_bytes())
-    assert entry["said"] == diagnosing.sentence(json.loads(verdict.read_text()))
-    assert digest(case) == before
-    assert [f.name for f in tmp_path.iterdir()] == ["out"]  # nothing is left of the attempt's own folder
-
-
-def test_failures_and_endless_runs_go_on_record(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    (tmp_path / "case").mkdir()
-    (tmp_path / "case" / "dataset.toml").write_text('name = "no experiments"\n')
-    entry = diagnosing._diagnose(tmp_path / "case", tmp_path / "out", 5.0)
-    assert entry["sha256"] is None
-    assert entry["said"].startswith("exit 2: ")
-    assert not (tmp_path / "out").exists()
-    monkeypatch.setattr(diagnosing, "GRACE", -5.99)
-    entry = diagnosing._diagnose(tmp_path / "case", tmp_path / "out", 10.0)
-    assert entry["said"].startswith("no verdict after")

@@ -7,12 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from experiments.concealed.proof import diagnosing, protocol
+from experiments.concealed.proof import protocol
 from experiments.concealed.proof.errors import ProofError
 from experiments.concealed.proof.files import canonical, sha256
 from experiments.concealed.proof.protocol import Proof
 from experiments.concealed.proof.record import Record
 from experiments.concealed.proof.seal import SEALED, UNSEALING, seal, unseal
+from experiments.verdicts import running
+from experiments.verdicts.running import Outcome
 from tests.concealed.proof.by_hand import ANSWERS, VERDICTS
 
 
@@ -74,11 +76,8 @@ def test_a_verdict_changed_after_opening_is_refused(tmp_path: Path, by_hand):
 
 
 def test_a_verdict_produced_after_opening_is_refused(tmp_path: Path, by_hand, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(
-        diagnosing,
-        "_diagnose",
-        lambda case, out, limit: {"sha256": None, "said": "no verdict after 1 s", "seconds": 1.0},
-    )
+    failed = Outcome(1.0, "no verdict after 1 s", "no verdict after 1 s")
+    monkeypatch.setattr(running, "diagnose", lambda card, out, limit: failed)
     proof = sealed_and_frozen(tmp_path)
     proof.open()
     late = tmp_path / "verdicts" / "c001" / "verdict.json"
@@ -141,23 +140,23 @@ def test_another_version_of_the_tool_is_refused_until_the_seal_is_open(
 
 
 def test_an_interrupted_proof_goes_on_where_it_was(tmp_path: Path, by_hand, monkeypatch: pytest.MonkeyPatch):
-    asked = diagnosing._diagnose
+    asked = running.diagnose
     left = 3
 
-    def killed(case: Path, out: Path, limit: float) -> dict:
+    def killed(card: Path, out: Path, limit: float) -> Outcome:
         nonlocal left
         left -= 1
-        entry = asked(case, out, limit)
+        outcome = asked(card, out, limit)
         if left < 0:
             raise KeyboardInterrupt  # the verdict is written, and not yet on the record
-        return entry
+        return outcome
 
     proof = Proof(tmp_path, quiet)
     proof.prepare("quick", 7)
-    monkeypatch.setattr(diagnosing, "_diagnose", killed)
+    monkeypatch.setattr(running, "diagnose", killed)
     with pytest.raises(KeyboardInterrupt):
         proof.diagnose(workers=1, time_limit=10)
-    monkeypatch.setattr(diagnosing, "_diagnose", asked)
+    monkeypatch.setattr(running, "diagnose", asked)
     with (tmp_path / "record.jsonl").open("ab") as file:
         file.write(b'{"event": "verd')  # torn by the kill
     again = Proof(tmp_path, quiet)

@@ -1,6 +1,6 @@
 """Do the probabilities of the verdicts mean what they say? Reliability, Brier score, and the map that would make them right.
 
-    python -m experiments.concealed.calibrate OUT CASES VERDICTS [CASES VERDICTS]
+    python -m experiments.verdicts.calibrate OUT CASES VERDICTS [CASES VERDICTS]
 
 The map p' = 1 / (1 + exp(−(a + b·logit p))) is fitted on the first pair of folders; both pairs are scored with it (where there is one
 pair only, the map is fitted on every other finding and scored on the rest). Writes OUT/reliability.png and OUT/calibration.json.
@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from experiments.concealed.scoring import score_all
+from experiments.verdicts.scoring import score_all
 
 EDGES = (0.0, 0.3, 0.5, 0.7, 0.9, 1.0)
 STEPS = 100

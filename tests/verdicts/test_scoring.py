@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from experiments.concealed.calibrate import brier, fitted_map, main, mapped, reliability
-from experiments.concealed.scoring import score, score_all, table
+from experiments.verdicts.calibrate import brier, fitted_map, main, mapped, reliability
+from experiments.verdicts.contradictions import contradictions
+from experiments.verdicts.scoring import score, score_all
+from experiments.verdicts.totals import table
 
 KEY = {
     "effects": ["bias", "friction"],
@@ -28,19 +30,72 @@ def verdict(*effects: tuple[str, str, float], before: float = 1.0, after: float 
     return {"mismatch": bool(effects), "effects": found, "fit": fit, "seconds": 3.0}
 
 
-def test_every_effect_is_matched_once_and_right_answers_come_first() -> None:
-    found = score(
-        "c",
-        verdict(("motor", "coulomb_asymmetry", 0.5), ("actuator", "input_bias", 0.8), ("motor", "gravity", 0.4)),
-        KEY,
-    )
+def test_findings_take_effects_in_the_verdicts_order_each_once() -> None:
+    said = verdict(("motor", "coulomb_asymmetry", 0.5), ("motor", "coulomb_friction", 0.8), ("motor", "gravity", 0.4))
+    found = score("c", said, KEY)
     assert found.detected
     assert [(f.right, f.located, f.spurious) for f in found.findings] == [
-        (False, True, False),  # the place of the friction is right, its name is not
+        (False, True, False),  # a near miss of the bias
         (True, True, False),
         (False, False, True),
     ]
     assert (found.named, found.located, found.spurious) == (1, 2, 1)
+
+
+def test_a_wrong_headline_takes_the_effect_that_a_later_finding_names() -> None:
+    one = {**KEY, "effects": ["bias"], **{k: KEY[k][:1] for k in ("accept", "near", "ports")}}
+    found = score("c", verdict(("motor", "gravity", 0.9), ("motor", "constant_bias", 0.6)), one)
+    assert [(f.right, f.located, f.spurious) for f in found.findings] == [(False, True, False), (False, False, True)]
+
+
+def test_a_class_is_right_where_any_member_is() -> None:
+    said = verdict(("arm", "gravity", 0.4))
+    members = [
+        {"port": "arm", "mechanism": "gravity", "probability": 0.4},
+        {"port": "actuator", "mechanism": "input_bias", "probability": 0.5},
+    ]
+    said["effects"][0]["one_of"] = {"statement": "something pulls", "probability": 0.9, "members": members}
+    (finding,) = score("c", said, KEY).findings
+    assert (finding.right, finding.class_right, finding.class_probability) == (False, True, 0.9)
+
+
+def test_refinements_count_neither_way() -> None:
+    said = verdict(("motor", "coulomb_friction", 0.8)) | {
+        "refinements": [{"port": "motor", "mechanism": "gravity", "probability": 0.3}]
+    }
+    assert score("c", said, KEY).spurious == 0
+
+
+def test_a_free_run_that_overflows_closes_nothing() -> None:
+    said = verdict(("motor", "gravity", 0.4))
+    said["fit"][1]["augmented"]["rmse"] = None
+    scored = score("c", said, KEY)
+    assert scored.closed == -np.inf and scored.worse
+
+
+def test_no_verdict_is_a_miss_that_says_why() -> None:
+    missed = score("c", None, KEY, said="exit 3: the matrix is singular", seconds=2.0)
+    assert (missed.detected, missed.named, missed.closed) == (False, 0, None)
+    text = table([missed])
+    assert "| c | bias, friction | exit 3: the matrix is singular | no | 0/2 | 0/2 | 0 |  |" in text
+    assert "without a verdict: 1: c (exit 3: the matrix is singular)" in text
+
+
+def test_contradictions_are_said() -> None:
+    said = verdict(("motor", "gravity", 1.2), ("motor", "gravity", 0.4), after=1.1) | {
+        "mismatch": False, "schema": "greybox-verdict/2",
+    }  # fmt: skip
+    said["effects"][1] |= {"size": 0.3, "one_of": {"probability": 0.3}, "parameters": {"m": {"value": None}}}
+    assert contradictions(said) == [
+        "effects are named, and nothing is said to be missing",
+        "the recommended model simulates the validation experiments worse than the re-estimated one",
+        "gravity at motor is named twice",
+        "gravity at motor: its probability is 1.2",
+        "gravity at motor: its size is None",
+        "gravity at motor: it is likelier (0.40) than the class that it belongs to (0.30)",
+        "gravity at motor: m has no value",
+    ]
+    assert contradictions(verdict(("motor", "gravity", 0.9))) == contradictions(verdict()) == []
 
 
 def test_a_near_miss_takes_its_effect() -> None:
@@ -58,6 +113,21 @@ def test_where_nothing_is_concealed_every_finding_is_spurious() -> None:
 def test_closure_counts_what_is_above_the_noise() -> None:
     found = score("c", verdict(("motor", "gravity", 0.4), before=0.5, after=np.sqrt(0.01 + 0.06)), KEY)
     assert found.closed == pytest.approx(0.5)
+
+
+def test_a_complete_card_beside_a_key_is_a_case_without_effect(tmp_path: Path) -> None:
+    case = tmp_path / "cases" / "drive"
+    case.mkdir(parents=True)
+    (case / "key.json").write_text(json.dumps(KEY))
+    (case / "complete.toml").write_text("")
+    for name, said in (("drive", verdict()), ("drive_complete", verdict(("motor", "gravity", 0.7)))):
+        (tmp_path / "out" / name).mkdir(parents=True)
+        (tmp_path / "out" / name / "verdict.json").write_text(json.dumps(said))
+    found = score_all(tmp_path / "cases", tmp_path / "out")
+    assert [(s.name, s.effects, s.spurious) for s in found] == [
+        ("drive", ("bias", "friction"), 0),
+        ("drive_complete", (), 1),
+    ]
 
 
 def test_probabilities_that_mean_what_they_say_are_left_alone() -> None:
@@ -91,7 +161,7 @@ def test_the_whole_script(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
         (answer / "verdict.json").write_text(json.dumps(said))
     (tmp_path / "cases" / "unanswered").mkdir()
     (tmp_path / "cases" / "unanswered" / "key.json").write_text(json.dumps(KEY))
-    assert len(score_all(tmp_path / "cases", tmp_path / "verdicts")) == 12
+    assert [s.verdict is None for s in score_all(tmp_path / "cases", tmp_path / "verdicts")] == [*[False] * 12, True]
     main(tmp_path / "out", [tmp_path / "cases", tmp_path / "verdicts"])
     printed = json.loads(capsys.readouterr().out)
     assert printed == json.loads((tmp_path / "out" / "calibration.json").read_text())
@@ -110,9 +180,9 @@ def test_the_table_counts_by_kind_and_shows_misses() -> None:
     ]
     rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table(cases).splitlines()]
     by_name = {row[0]: row[1:] for row in rows}
-    assert by_name["miss"][1:3] == ["nothing missing", "0/2"]
+    assert by_name["miss"][1:5] == ["nothing missing", "no", "0/2", "0/2"]
     assert by_name["alarm"][2] == "no" and by_name["clean"][2] == "yes"
     assert by_name["without effect"][:2] == ["2", "1/2"] and by_name["without effect"][4] == "1"
     assert by_name["outside the library"][:4] == ["1", "1/1", "1/1", "1/1"]
-    assert by_name["two effects"][:4] == ["1", "0/1", "0/2", "0/2"]
+    assert by_name["two effects or more"][:4] == ["1", "0/1", "0/2", "0/2"]
     assert by_name["all"][:3] == ["4", "2/4", "1/3"]
