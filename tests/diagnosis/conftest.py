@@ -1,6 +1,7 @@
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -8,8 +9,14 @@ import numpy as np
 import pytest
 
 from greybox_torch.data import DataSet
-from greybox_torch.diagnosis.select.search import Search
-from greybox_torch.estimate.problem import all_starts_free, make_problem
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.refit.refitted import refitted
+from greybox_torch.diagnosis.select.plain_model import fit_plain_model
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.study import Study
+from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.systems import RobotArm
 from greybox_torch.systems.load import load_model
@@ -70,26 +77,63 @@ def turned(voltage: np.ndarray, torque: Callable[[float, float], float], substep
     return np.array(speeds)
 
 
+@dataclass(frozen=True)
+class Begun:
+    """A search that has fitted the model as it stands and knows its ports, or one that went on from there."""
+
+    study: Study
+    state: SearchState
+
+    @property
+    def problem(self) -> Problem:
+        return self.study.problem
+
+    @property
+    def surroundings(self) -> Mapping[str, Surroundings]:
+        return self.study.surroundings
+
+    @property
+    def shifts(self) -> Mapping[str, str]:
+        return self.study.shifts
+
+    @property
+    def plain(self) -> Hypothesis:
+        return self.state.plain
+
+    @property
+    def current(self) -> Hypothesis:
+        return self.state.current
+
+    def refitted(
+        self, effects: Sequence[Attachment], start: Hypothesis, starts: Sequence[dict[str, float]] = ()
+    ) -> Hypothesis:
+        found = refitted(self.study, effects, start, starts)
+        assert found is not None
+        return found
+
+    def at(self, current: Hypothesis, **changes: Any) -> Begun:
+        return Begun(self.study, replace(self.state.at(current), **changes))
+
+
 @pytest.fixture(scope="session")
-def begun() -> Callable[[DataSet, GreyBoxModel], Search]:
+def begun() -> Callable[[DataSet, GreyBoxModel], Begun]:
     """A search that has fitted the model as it stands, and surveyed its ports."""
 
-    def begin(dataset: DataSet, model: GreyBoxModel, substeps: int = 1) -> Search:
-        search = Search(all_starts_free(dataset, make_problem(dataset, model, dataset.estimation())), substeps)
-        search.begin()
-        return search
+    def begin(dataset: DataSet, model: GreyBoxModel, substeps: int = 1) -> Begun:
+        problem = all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
+        return Begun(*fit_plain_model(Study(problem, substeps)))
 
     return begin
 
 
 @pytest.fixture(scope="session")
-def dead_zone_search(motor_data, motor, begun) -> Search:
+def dead_zone_search(motor_data, motor, begun) -> Begun:
     """The motor whose actuator does nothing below 0.5 V, before the first look."""
     return begun(motor_data(acting=lambda v: np.sign(v) * np.maximum(np.abs(v) - 0.5, 0.0)), motor)
 
 
 @pytest.fixture(scope="session")
-def arm_search(data_set, begun) -> Search:
+def arm_search(data_set, begun) -> Begun:
     """A short, rich record of the robot arm as the model has it."""
     from greybox_torch.simulation.records import Records
     from greybox_torch.simulation.stepper import make_stepper, whole_records

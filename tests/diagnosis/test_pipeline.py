@@ -87,9 +87,15 @@ def test_no_estimation_experiment(motor_data, motor) -> None:
         diagnose(motor_data(200, ("validation", "validation")), motor)
 
 
+def nothing_found(study, state):
+    """A search that takes no step."""
+    yield state
+    return state
+
+
 def test_what_nothing_explains_is_said_to_be_missing(motor_data, motor, monkeypatch) -> None:
     """Seen: an error of twelve times the noise, and "nothing is missing"."""
-    monkeypatch.setattr("greybox_torch.diagnosis.select.search.Search.run", lambda search: search.current)
+    monkeypatch.setattr("greybox_torch.diagnosis.findings.search", nothing_found)
     verdict = diagnose(motor_data(acting=dead_zone), motor).verdict
     assert verdict.complete and verdict.mismatch and verdict.effects == () and verdict.unexplained > 3.0
     assert verdict.confidence == BEYOND_EXPLANATION
@@ -119,7 +125,7 @@ def test_interruption_leaves_a_verdict(motor_data, motor) -> None:
 def test_time_limit_stops_the_search_and_leaves_a_verdict(motor_data, motor, monkeypatch, stub) -> None:
     monkeypatch.setenv("OMP_NUM_THREADS", "1")
     late, real = [0.0], time.perf_counter
-    monkeypatch.setattr("greybox_torch.diagnosis.pipeline.time", stub(perf_counter=lambda: real() + late[0]))
+    monkeypatch.setattr("greybox_torch.diagnosis.stopping.time", stub(perf_counter=lambda: real() + late[0]))
     said = []
 
     def progress(text: str) -> None:

@@ -11,7 +11,7 @@ from greybox_torch.data import DataSet, Recording
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.take_back import UNEXERCISED
 from greybox_torch.diagnosis.hypothesis.final import Final
-from greybox_torch.diagnosis.select.search import Search
+from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.verdict import Trace
 from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.initial import estimate_initial
@@ -29,7 +29,7 @@ class Judgement:
         self,
         dataset: DataSet,
         problem: Problem,
-        search: Search,
+        state: SearchState,
         plain: Final,
         augmented: Final,
         substeps: int,
@@ -42,9 +42,8 @@ class Judgement:
         self.plain, self.augmented, self.substeps, self.device = plain, augmented, substeps, device
         self.start = self._compared(problem, problem.values, None)
         self.refit = self._compared(plain.problem, plain.problem.values, plain)
-        has_effects = bool(search.current.effects)
         self.with_effects = (
-            self._compared(augmented.problem, augmented.problem.values, augmented) if has_effects else self.refit
+            self._compared(augmented.problem, augmented.problem.values, augmented) if state.effects else self.refit
         )
         self.sums = tuple(self._energy(c) for c in (self.refit, self.with_effects))
 

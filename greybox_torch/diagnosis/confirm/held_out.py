@@ -46,13 +46,13 @@ class HeldOut:
     def __init__(self, dataset: DataSet, problem: Problem, substeps: int) -> None:
         others = all_starts_free(dataset, make_problem(dataset, problem.model, dataset.validation()))
         self.problem, self.substeps = replace(others, weights=problem.weights), substeps
-        self._kept: dict[int, tuple[Hypothesis, tuple[WindowFit, ...]]] = {}
+        self._fits: dict[Hypothesis, tuple[WindowFit, ...]] = {}
 
     def fits(self, hypothesis: Hypothesis) -> tuple[WindowFit, ...]:
         """The hypothesis with the parameters it was fitted with, as :func:`held_out_fits`."""
-        if id(hypothesis) not in self._kept:
-            self._kept[id(hypothesis)] = hypothesis, held_out_fits(hypothesis, self.problem, self.substeps)
-        return self._kept[id(hypothesis)][1]
+        if hypothesis not in self._fits:
+            self._fits[hypothesis] = held_out_fits(hypothesis, self.problem, self.substeps)
+        return self._fits[hypothesis]
 
     def times_noise(self, hypothesis: Hypothesis) -> np.ndarray:
         """Root mean square errors in units of the noise, over the windows where they are largest, by experiment, shape (J,).

@@ -10,7 +10,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain
 from greybox_torch.diagnosis.confirm.take_back import BEYOND_CHANCE
 from greybox_torch.diagnosis.hypothesis.noise import far_above_noise
-from greybox_torch.diagnosis.select.search import Search
+from greybox_torch.diagnosis.select.state import SearchState
 
 SHOWN = 1.5
 """How many times the noise the error of another experiment must be to show what nothing was found of."""
@@ -36,33 +36,33 @@ class Promotion:
         )
 
 
-def promote_validation(dataset: DataSet, search: Search, others: HeldOut) -> Promotion | None:
+def promote_validation(dataset: DataSet, state: SearchState, others: HeldOut) -> Promotion | None:
     """The data set with the validation experiment that the search's model fits worst among those to choose with.
 
     None where the others show no more than the estimation experiments do, or where no validation experiment would be left. What has had
     a part in choosing does not score: the experiment changes its role.
     """
-    recordings, found = dataset.validation(), bool(search.current.effects)
-    if len(recordings) < 2 or (found and far_above_noise(search.current)):
+    recordings, found = dataset.validation(), bool(state.effects)
+    if len(recordings) < 2 or (found and far_above_noise(state.current)):
         return None
-    errors = others.times_noise(search.current)
+    errors = others.times_noise(state.current)
     worst = int(np.argmax(errors))
     if errors[worst] < (SHOWN_BESIDE if found else SHOWN):
         return None
-    if found and errors[worst] < LEFT_BESIDE * others.times_noise(search.plain)[worst]:
+    if found and errors[worst] < LEFT_BESIDE * others.times_noise(state.plain)[worst]:
         return None
     name = recordings[worst].name
     changed = tuple(replace(r, role="estimation") if r.name == name else r for r in dataset.recordings)
     return Promotion(replace(dataset, recordings=changed), name, float(errors[worst]))
 
 
-def serves(others: HeldOut, before: Search, after: Search) -> bool:
+def serves(others: HeldOut, before: SearchState, after: SearchState) -> bool:
     """Whether the model of ``after`` may stand in the place of that of ``before``, as experiments that had no part in either say.
 
     Against what was found before it must predict them better. Against nothing it must not be worse than by chance: what was taken shows an
     effect that they need not show.
     """
     fits, fits_before = others.fits(after.current), others.fits(before.current)
-    if before.current.effects:
+    if before.effects:
         return gain(fits_before, fits).share > 0
     return gain(fits, fits_before).errors_away < BEYOND_CHANCE

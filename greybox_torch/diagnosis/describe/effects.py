@@ -10,10 +10,9 @@ import numpy as np
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.profiles import explained_energy, law_curve, local_signals, most_of, profile
 from greybox_torch.diagnosis.hypothesis.final import Final
-from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.select.forward_step import Round
 from greybox_torch.diagnosis.select.posterior import for_all_that_is_left, shared
-from greybox_torch.diagnosis.select.search import Search
+from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
+from greybox_torch.diagnosis.study import Study
 from greybox_torch.diagnosis.verdict import Effect, Profile, Timeline
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
@@ -23,7 +22,7 @@ from greybox_torch.model.ports import Port
 
 
 def describe(
-    search: Search, final: Final, substeps: int, sums: tuple[float, ...], gains: Mapping[str, Gain]
+    study: Study, state: SearchState, final: Final, sums: tuple[float, ...], gains: Mapping[str, Gain]
 ) -> tuple[Effect, ...]:
     """The effects of the search's final hypothesis.
 
@@ -32,47 +31,42 @@ def describe(
         sums: mean squared validation errors of the plain and the augmented model, summed over experiments.
         gains: by effect, on held-out experiments, where there are any.
     """
-    hypothesis = search.current
+    hypothesis = state.current
     assert isinstance(hypothesis.model, AugmentedModel)
-    floor = min(f.mean_square for f in hypothesis.fits) * _experiments(search)
+    floor = min(f.mean_square for f in hypothesis.fits) * max(1, len(study.problem.records.first))
     whole = max(0.0, (sums[0] - sums[1]) / max(sums[0] - floor, 1e-300))
-    parts = _parts(search)
+    parts = _parts(state)
     return tuple(
-        _effect(search, hypothesis, hypothesis.model, e, final, substeps, min(1.0, whole * part), gains.get(e.prefix))
+        _effect(study, state, hypothesis.model, e, final, min(1.0, whole * part), gains.get(e.prefix))
         for e, part in zip(hypothesis.effects, parts, strict=True)
     )
 
 
-def _experiments(search: Search) -> int:
-    return max(1, len(search.problem.records.first))
-
-
-def _parts(search: Search) -> list[float]:
-    """How the explained error divides among several effects, by the gain of the round in which each was taken."""
+def _parts(state: SearchState) -> list[float]:
+    """How the explained error divides among several effects, by the gain of the step in which each was taken."""
     gains = []
-    for effect in search.current.effects:
-        taken = search.round_of(effect.prefix)
+    for effect in state.effects:
+        taken = state.step_of(effect.prefix)
         gains.append(1.0 if taken is None or taken.taken is None else max(taken.taken.gain, 1e-6))
     return [g / sum(gains) for g in gains] if len(gains) > 1 else [1.0]
 
 
 def _effect(
-    search: Search,
-    hypothesis: Hypothesis,
+    study: Study,
+    state: SearchState,
     model: AugmentedModel,
     attachment: Attachment,
     final: Final,
-    substeps: int,
     explained: float,
     gain: Gain | None,
 ) -> Effect:
-    around = search.surroundings[attachment.port]
-    taken = search.round_of(attachment.prefix)
+    around = study.surroundings[attachment.port]
+    taken = state.step_of(attachment.prefix)
     probability, alternatives = (0.5, ()) if taken is None or taken.taken is None else shared(taken.taken, taken.ranked)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     if not isinstance(attachment.mechanism, Unknown):
-        probability = for_all_that_is_left(probability, search.current)
-    profiles = _profiles(search, hypothesis, model, attachment, site, substeps)
+        probability = for_all_that_is_left(probability, state.current)
+    profiles = _profiles(study, state, model, attachment, site)
     timelines = () if gain is None else gain.timelines
     mechanism = attachment.mechanism
     return Effect(
@@ -94,10 +88,10 @@ def _effect(
     )
 
 
-def ceiling_share(done: Round) -> float | None:
-    """The share of the best free curve's gain, in the logarithm of the mean squared error, that the named effect of a round reaches.
+def ceiling_share(done: SelectionStep) -> float | None:
+    """The share of the best free curve's gain, in the logarithm of the mean squared error, that the named effect of a step reaches.
 
-    At most one, where the law does better than any curve; None where there is no curve beside it in the round.
+    At most one, where the law does better than any curve; None where there is no curve beside it in the step.
     """
     gains = [r.gain for r in done.ranked if r.unknown]
     if done.taken is None or done.taken.unknown or not gains or done.taken.gain <= 0:
@@ -133,11 +127,12 @@ def _parameters(model: AugmentedModel, attachment: Attachment, final: Final) -> 
 
 
 def _profiles(
-    search: Search, hypothesis: Hypothesis, model: AugmentedModel, attachment: Attachment, site: Port, substeps: int
+    study: Study, state: SearchState, model: AugmentedModel, attachment: Attachment, site: Port
 ) -> tuple[Profile, ...]:
-    energy = explained_energy(search.without.get(attachment.prefix, search.plain), hypothesis, substeps)
-    local = local_signals(model, attachment, hypothesis.fits[0], hypothesis.stepper, substeps)
-    units = search.surroundings[attachment.port].units
+    hypothesis = state.current
+    energy = explained_energy(state.without.get(attachment.prefix, state.plain), hypothesis, study.substeps)
+    local = local_signals(model, attachment, hypothesis.fits[0], hypothesis.stepper, study.substeps)
+    units = study.surroundings[attachment.port].units
     wanted = attachment.mechanism.signals() or tuple(site.signals)[:1]
     return tuple(
         profile(signal_name(model.base, site, name), units.get(name, ""), local[name], energy)

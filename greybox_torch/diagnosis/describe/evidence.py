@@ -3,33 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.confirm.held_out import Gain
+from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest
 from greybox_torch.diagnosis.hypothesis.noise import ABOVE_NOISE, floor_known, times_noise
 from greybox_torch.diagnosis.select.choice import least_gain
-from greybox_torch.diagnosis.select.search import Search
+from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
+from greybox_torch.diagnosis.verdict import Effect
+from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.attachment import Attachment
-
-if TYPE_CHECKING:
-    from greybox_torch.diagnosis.confirm.held_out import Gain
-    from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest
-    from greybox_torch.diagnosis.verdict import Effect
 
 
 def sentences(
     dataset: DataSet,
-    search: Search,
+    problem: Problem,
+    state: SearchState,
     effects: Sequence[Effect],
     gains: Mapping[str, Gain],
     detected: Sequence[Detection],
     interrupted: bool,
 ) -> tuple[str, ...]:
     """The evidence for a reader: what was looked at, what it showed, and what limits it."""
-    plain, final = search.plain.fits, search.current.fits
-    looked = sum(len(r.looks[0]) for r in search.rounds if r.looks)
+    plain, final = state.plain.fits, state.current.fits
+    looked = sum(len(s.screened[0]) for s in state.steps if s.screened)
     lengths = ", ".join(str(f.windows.steps) for f in plain)
     lines = [
         f"{looked} looks at mechanisms and ports, over windows of {lengths} samples with free start states.",
@@ -38,22 +37,8 @@ def sentences(
         + ("; with the effects: " + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in final) if effects else "")
         + " (weighted output units).",
     ]
-    lines += [_noise(search), *detection_sentences(detected, bool(effects))]
-    for done in search.rounds:
-        best = done.ranked[0] if done.ranked else None
-        if done.taken is not None:
-            name = _name(done.taken.leader.attachment)
-            lines.append(
-                f"{name} lowers the mean squared error by a factor {np.exp(done.taken.gain):.3g}, "
-                f"{done.taken.significance:.1f} standard errors away from chance."
-            )
-        elif best is not None:
-            lines.append(
-                f"The best further candidate, {_name(best.leader.attachment)}, would lower it by {100 * (1 - np.exp(-best.gain)):.2g} % "
-                f"({best.significance:.1f} standard errors); claimed is what exceeds {100 * least_gain(best.fitted):.0f} % and chance."
-            )
-        else:
-            lines.append("No candidate explains any of the remaining error.")
+    lines += [_noise(problem, state), *detection_sentences(detected, bool(effects))]
+    lines += [_step_sentence(done) for done in state.steps]
     lines += [ceiling_sentence(e) for e in effects if e.ceiling is not None]
     for prefix, gain in gains.items():
         low, high = gain.interval
@@ -62,7 +47,7 @@ def sentences(
             f"(95 % interval {100 * low:.1f} to {100 * high:.1f} %)."
         )
     kept = {(e.port, e.mechanism) for e in effects}
-    taken = [done.taken.leader.attachment for done in search.rounds if done.taken is not None]
+    taken = [done.taken.leader.attachment for done in state.steps if done.taken is not None]
     lost = [_name(a) for a in taken if (a.port, a.mechanism.name) not in kept]
     if lost:
         lines.append(f"Taken back, as the other experiments or effects do not bear it out: {', '.join(lost)}.")
@@ -73,6 +58,22 @@ def sentences(
     if interrupted:
         lines.append("The search was stopped before it was done (time limit or interruption): the best verdict so far.")
     return tuple(lines)
+
+
+def _step_sentence(done: SelectionStep) -> str:
+    """What a forward step took, or why it took nothing."""
+    if done.taken is not None:
+        return (
+            f"{_name(done.taken.leader.attachment)} lowers the mean squared error by a factor {np.exp(done.taken.gain):.3g}, "
+            f"{done.taken.significance:.1f} standard errors away from chance."
+        )
+    if not done.ranked:
+        return "No candidate explains any of the remaining error."
+    best = done.ranked[0]
+    return (
+        f"The best further candidate, {_name(best.leader.attachment)}, would lower it by {100 * (1 - np.exp(-best.gain)):.2g} % "
+        f"({best.significance:.1f} standard errors); claimed is what exceeds {100 * least_gain(best.fitted):.0f} % and chance."
+    )
 
 
 def ceiling_sentence(effect: Effect) -> str:
@@ -123,12 +124,12 @@ def _size(largest: Largest, what: str) -> str:
     return f"largest {what} {largest.value:.2g}, 99 % bound {largest.bound:.2g}"
 
 
-def _noise(search: Search) -> str:
-    times = times_noise(search.problem, search.current)
+def _noise(problem: Problem, state: SearchState) -> str:
+    times = times_noise(problem, state.current)
     shown = f"Over the windows that show it best the error is {times:.2g} times the noise that the recordings' high-frequency floor shows"
     if times > ABOVE_NOISE:
         return shown + ": more than noise is left."
-    return shown + ("." if floor_known(search.problem) else ", an upper bound, as part of that is motion.")
+    return shown + ("." if floor_known(problem) else ", an upper bound, as part of that is motion.")
 
 
 def _name(attachment: Attachment) -> str:

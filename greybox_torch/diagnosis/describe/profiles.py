@@ -6,6 +6,7 @@ import numpy as np
 import torch
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.window_errors import window_errors
 from greybox_torch.diagnosis.verdict import Curve, Profile
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit, states_along
@@ -29,16 +30,6 @@ def explained_energy(before: Hypothesis, after: Hypothesis, substeps: int) -> np
 def _squared_errors(fit: WindowFit, stepper: Stepper, substeps: int) -> np.ndarray:
     errors = window_errors(fit, stepper, substeps) * fit.problem.weights[:, None]
     return np.nansum(errors**2, axis=0)
-
-
-def window_errors(fit: WindowFit, stepper: Stepper, substeps: int) -> np.ndarray:
-    """Measured minus simulated over fitted windows (n_y, N), in output units; NaN where a sample is missing."""
-    problem, windows = fit.problem, fit.windows
-    run = stepper.run(problem.driving_records, windows, problem.values, fit.starts, substeps=substeps)
-    simulated = np.full(problem.records.y.shape, np.nan)
-    for w, (first, last) in enumerate(zip(windows.start, windows.last, strict=True)):
-        simulated[:, first : last + 1] = run.y[w, : last - first + 1].T
-    return problem.records.y - simulated
 
 
 def local_signals(

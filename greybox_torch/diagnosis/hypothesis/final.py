@@ -68,7 +68,7 @@ def finish(hypothesis: Hypothesis, substeps: int, *, device: str = "cpu") -> Fin
         if optimum is not None and optimum.model.cost < (1 - 1e-3) * cost:
             best, cost = (run, optimum.point), optimum.model.cost
     if best is None:
-        return Final(problems[0], None)
+        return from_longest_windows(hypothesis)
     run, point = best
     ended = _descended(run, point, SETTINGS)
     point = point if ended is None else ended.point
@@ -78,6 +78,11 @@ def finish(hypothesis: Hypothesis, substeps: int, *, device: str = "cpu") -> Fin
             run, fit = weighed
             return Final(run.at(fit.point), of_information(fit.information), weighed=True)
     return Final(run.at(point), uncertainty(run, point))
+
+
+def from_longest_windows(hypothesis: Hypothesis) -> Final:
+    """The values of the longest windows, as if no whole record could be simulated."""
+    return Final(from_windows(hypothesis.fits[-1]), None)
 
 
 def _descended(run: FreeRun, start: np.ndarray, settings: Settings) -> Optimum[None] | None:

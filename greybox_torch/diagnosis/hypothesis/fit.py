@@ -34,9 +34,9 @@ MOST_TURNS, TURN_GAIN = 3, 0.03
 POLISH_SETTINGS = Settings(iterations=60, tolerance=1e-5, trials=6)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Hypothesis:
-    """A model with some effects attached, fitted: its problem, stepper, and window fits from short to long."""
+    """A model with some effects attached, fitted: its problem, stepper, and window fits from short to long. Equal only to itself."""
 
     effects: tuple[Attachment, ...]
     model: GreyBoxModel

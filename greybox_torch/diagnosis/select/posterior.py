@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,11 +11,9 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import ABOVE_NOISE, far_above_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.significance import surely_better
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
-from greybox_torch.diagnosis.verdict import Alternative
-
-if TYPE_CHECKING:
-    from greybox_torch.diagnosis.select.search import Search
-    from greybox_torch.diagnosis.verdict import Effect
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.verdict import Alternative, Effect
+from greybox_torch.estimate.problem import Problem
 
 TEMPERATURE = 2.0
 """Standard errors that count as one: windows are not independent, and no law of the library is exactly the machine's."""
@@ -50,7 +47,7 @@ def for_all_that_is_left(probability: float, left: Hypothesis) -> float:
 
 
 def shared(chosen: RankedCandidate, ranked: Sequence[RankedCandidate]) -> tuple[float, tuple[Alternative, ...]]:
-    """The probability of the chosen hypothesis of a round, and those of its rivals.
+    """The probability of the chosen hypothesis of a step, and those of its rivals.
 
     Rivals that the data cannot tell apart share it: a rival that the chosen one beats by z standard errors has the weight
     exp(−(z / temperature)² / 2), times the share of the gain that it reaches, and 1/e for every parameter that it has more.
@@ -93,7 +90,9 @@ def _twins(chosen: RankedCandidate, rival: RankedCandidate) -> bool:
     return alone and rival.leader.attachment.mechanism.name in chosen.leader.attachment.mechanism.twins
 
 
-def confidence(search: Search, effects: Sequence[Effect], complete: bool, unexplained: float | None) -> float:
+def confidence(
+    problem: Problem, state: SearchState, effects: Sequence[Effect], complete: bool, unexplained: float | None
+) -> float:
     """How sure the answer to "is anything missing?" is; a search that was stopped before it found anything is not sure of it.
 
     Args:
@@ -105,7 +104,7 @@ def confidence(search: Search, effects: Sequence[Effect], complete: bool, unexpl
         return 0.5
     if unexplained is not None:
         return BEYOND_EXPLANATION
-    if times_noise(search.problem, search.current) > ABOVE_NOISE:
+    if times_noise(problem, state.current) > ABOVE_NOISE:
         return UNEXPLAINED
-    best = max((r.gain for r in search.rounds[-1].ranked), default=0.0) if search.rounds else 0.0
+    best = max((r.gain for r in state.steps[-1].ranked), default=0.0) if state.steps else 0.0
     return 0.95 if best < 0.01 else 0.8

@@ -16,8 +16,7 @@ from greybox_torch.mechanisms.forces import ConstantBias
 @pytest.fixture(scope="module")
 def search(motor_data, motor, begun):
     found = begun(motor_data(torque=lambda q, v: 0.05, noise=0.02), motor)
-    found.current = found._refitted((attach(motor, "rotor", ConstantBias()),), found.plain)
-    return found
+    return found.at(found.refitted((attach(motor, "rotor", ConstantBias()),), found.plain))
 
 
 def lost(hypothesis, name: str):
@@ -49,7 +48,7 @@ def test_drift_beside_an_effect_does_not_bend_the_machine(motor_data, motor, beg
     """Noise over windows, a slow voltage over the whole record: errors weighed by their spectrum leave the parameters where they are."""
     drift = 0.02 * np.sin(np.linspace(0.0, 9.0, 2000))
     search = begun(motor_data(acting=lambda v: v + 0.3 + drift, noise=0.05), motor)
-    drifting = search._refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
+    drifting = search.refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
     assert drifting is not None and noise_over_windows(drifting)
     loud = replace(drifting, fits=tuple(replace(f, mean_square=9.0 * f.mean_square) for f in drifting.fits))
     true = np.array([0.02, 0.05])

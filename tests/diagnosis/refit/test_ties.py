@@ -92,7 +92,7 @@ def test_one_law_by_two_names_is_equally_likely_on_a_machine_that_drifts(motor_d
     laws = []
     for port, mechanism in (("rotor", ConstantBias()), ("actuator", InputBias())):
         attachment = attach(motor, port, mechanism)
-        fitted = search._refitted((attachment,), search.plain)
+        fitted = search.refitted((attachment,), search.plain)
         assert fitted is not None
         laws.append(judged(Candidate(attachment, (), 0.5), search.plain, fitted))
     one, other = rank_by_likelihood(laws, 1)

@@ -73,7 +73,7 @@ def test_memories_of_accepted_effects_are_not_taken_for_positions(motor_data, mo
     data = motor_data(torque=lambda q, v: 0.04 * np.cos(7.0 * q + 0.7), acting=lambda v: lfilter([0.2], [1.0, -0.8], v))
     search = begun(data, motor)
     lag = attach(motor, "actuator", LIBRARY["input_lag"]())
-    fitted = search._refitted((lag,), search.current, [{"actuator.input_lag.T": 0.045}])
+    fitted = search.refitted((lag,), search.current, [{"actuator.input_lag.T": 0.045}])
     assert fitted is not None
     offered = [attach(motor, "rotor", TorqueRipple(7.0))]
     screen = Screen.of(motor, (lag,), offered, search.surroundings, fitted.problem.free_names)

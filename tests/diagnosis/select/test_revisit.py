@@ -16,8 +16,14 @@ from greybox_torch.diagnosis.refit.restarts import restarts
 from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import MOST_TIED, NAMED_PER_LENGTH, Candidate, _with_ties, elsewhere
+from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.choice import alone_at_noise
-from greybox_torch.diagnosis.select.forward_step import Round
+from greybox_torch.diagnosis.select.compare import compare
+from greybox_torch.diagnosis.select.forward_step import forward_step
+from greybox_torch.diagnosis.select.offered import orders_before, screen_scores
+from greybox_torch.diagnosis.select.search import beyond_doubt, revise
+from greybox_torch.diagnosis.select.state import SelectionStep
+from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.friction import QuadraticDrag, StribeckFriction, ViscousFriction
 from greybox_torch.mechanisms.mechanism import Probe
@@ -45,26 +51,26 @@ def test_an_early_wrong_choice_is_mended_beside_the_others(motor_data, motor, be
     data = motor_data(torque=lambda q, v: -0.004 * v * abs(v) + 0.05)
     search = begun(data, motor)
     bias, wrong = attach(motor, "rotor", ConstantBias()), attach(motor, "rotor", TorqueRipple(3.0))
-    search.current = search._refitted((bias, wrong), search.plain)
-    search.without = {
-        bias.prefix: search._refitted((wrong,), search.plain),
-        wrong.prefix: search._refitted((bias,), search.plain),
+    without = {
+        bias.prefix: search.refitted((wrong,), search.plain),
+        wrong.prefix: search.refitted((bias,), search.plain),
     }
-    assert search._revised()
-    assert "torque_ripple" not in {e.mechanism.name for e in search.current.effects}
-    assert isinstance(search.rounds[-1], Round)
+    told = search.at(search.refitted((bias, wrong), search.plain), without=without).state
+    revised = result_of(revise(search.study, told))
+    assert revised.current is not told.current
+    assert "torque_ripple" not in {e.mechanism.name for e in revised.effects}
+    assert revised.took_one and not told.steps, "a state is not changed by what follows from it"
 
 
 def test_what_stands_is_left_where_the_choice_is_the_same(motor_data, motor, begun) -> None:
     search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v) + 0.05), motor)
     drag, bias = attach(motor, "rotor", QuadraticDrag()), attach(motor, "rotor", ConstantBias())
-    search.current = whole = search._refitted((drag, bias), search.plain)
-    search.without = {
-        drag.prefix: search._refitted((bias,), search.plain),
-        bias.prefix: search._refitted((drag,), search.plain),
+    whole = search.refitted((drag, bias), search.plain)
+    without = {
+        drag.prefix: search.refitted((bias,), search.plain),
+        bias.prefix: search.refitted((drag,), search.plain),
     }
-    assert not search._revised()
-    assert {e.mechanism.name for e in search.current.effects} == {e.mechanism.name for e in whole.effects}
+    assert result_of(revise(search.study, search.at(whole, without=without).state)).current is whole
 
 
 def test_hypotheses_keep_their_fits_where_the_order_is_not_that_of_the_gains(motor_data, motor, begun) -> None:
@@ -72,9 +78,9 @@ def test_hypotheses_keep_their_fits_where_the_order_is_not_that_of_the_gains(mot
     ranked = []
     for law, gain in ((QuadraticDrag(), 0.5), (ConstantBias(), 0.1), (StribeckFriction(), 0.4)):
         effect = attach(motor, "rotor", law)
-        fitted = search._refitted((effect,), search.plain)
+        fitted = search.refitted((effect,), search.plain)
         ranked.append(replace(judged(Candidate(effect, (), 0.5), search.plain, fitted), gain=gain))
-    again = search._fairly([[look(motor, 0.5)]], ranked)
+    again = compare(search.study, search.plain, [[look(motor, 0.5)]], ranked).ranked
     assert {r.leader.attachment.prefix for r in again} == {r.leader.attachment.prefix for r in ranked}
     assert all(r.fitted.effects == (r.leader.attachment,) for r in again)
 
@@ -82,18 +88,18 @@ def test_hypotheses_keep_their_fits_where_the_order_is_not_that_of_the_gains(mot
 def test_orders_of_earlier_rounds_are_looked_at_again(motor_data, motor, begun) -> None:
     search = begun(motor_data(), motor)
     effect = attach(motor, "rotor", TorqueRipple(3.0))
-    fitted = search._refitted((effect,), search.plain)
+    fitted = search.refitted((effect,), search.plain)
     ranked = replace(judged(Candidate(effect, (), 0.5), search.plain, fitted), gain=0.5)
-    search.rounds = [Round((), search.plain, (ranked, replace(ranked, gain=0.0)), None)]
-    assert search._orders_before() == [fitted.values()["rotor.torque_ripple.order"]]
-    search.rounds = []
-    assert search._orders_before() == []
+    step = SelectionStep((), search.plain, (ranked, replace(ranked, gain=0.0)), None)
+    assert orders_before(replace(search.state, steps=(step,))) == [fitted.values()["rotor.torque_ripple.order"]]
+    assert orders_before(search.state) == []
 
 
 def test_friction_that_has_coulomb_friction_in_it_is_not_joined_by_it(motor_data, motor, begun) -> None:
     search = begun(motor_data(), motor)
-    search.current = search._refitted((attach(motor, "rotor", PreslidingHysteresis()),), search.plain)
-    offered = {k.attachment.mechanism.name for k in search._screened(fine=False)[0] if k.attachment.port == "rotor"}
+    state = search.at(search.refitted((attach(motor, "rotor", PreslidingHysteresis()),), search.plain)).state
+    shortest = screen_scores(search.study, state, curves=True, fine=False)[0]
+    offered = {k.attachment.mechanism.name for k in shortest if k.attachment.port == "rotor"}
     assert "coulomb_friction" not in offered and "quadratic_drag" in offered
 
 
@@ -116,7 +122,7 @@ def test_a_law_is_also_looked_for_where_the_screen_did_not_put_it_first(arm_sear
 
 def test_names_do_not_stand_for_a_curve_that_alone_leaves_nothing_but_noise(motor_data, motor, begun) -> None:
     search = begun(motor_data(torque=lambda q, v: 0.2, noise=0.1), motor)
-    with_bias = search._refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
+    with_bias = search.refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
     assert alone_at_noise(with_bias, search.plain)
     assert not alone_at_noise(with_bias, with_bias) and not alone_at_noise(search.plain, search.plain)
 
@@ -150,15 +156,16 @@ def test_noise_is_not_known_where_the_motion_is_rough(motor_data, motor, begun) 
 
 def test_what_no_rival_came_near_is_not_chosen_once_more(motor_data, motor, begun, monkeypatch) -> None:
     search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v) + 0.05), motor)
-    while search.step():
-        pass
-    first = search.current.effects[0]
-    search.prune()
-    assert len(search.current.effects) == 2
+    state = result_of(forward_step(search.study, search.state))
+    while state.took_one:
+        state = result_of(forward_step(search.study, state))
+    first = state.effects[0]
+    state = result_of(drop_superfluous(search.study, state))
+    assert len(state.effects) == 2
     monkeypatch.setattr("greybox_torch.diagnosis.select.search.shared", lambda chosen, ranked: (0.96, ()))
-    assert search._beyond_doubt(first) and not search._revised()
+    assert beyond_doubt(state, first) and result_of(revise(search.study, state)).current is state.current
     monkeypatch.setattr("greybox_torch.diagnosis.select.search.shared", lambda chosen, ranked: (0.6, ()))
-    assert not search._beyond_doubt(first)
+    assert not beyond_doubt(state, first)
 
 
 def test_shapes_that_explain_alike_are_tried_from_end_to_end(motor_data, motor, begun) -> None:
@@ -168,24 +175,25 @@ def test_shapes_that_explain_alike_are_tried_from_end_to_end(motor_data, motor, 
     shares = {1.0: 0.1, 2.0: 0.2, 4.0: 0.44, 8.0: 0.443, 16.0: 0.442, 32.0: 0.442, 64.0: 0.442}
     looks = [[ScreenScore(mode, Probe(("mass",), {"omega": w}), 31, share, np.ones(1)) for w, share in shares.items()]]
     ranked = judged(Candidate(mode, (), 0.443), search.plain, search.plain)
-    tried = [start[f"{mode.prefix}.omega"] for start in restarts(looks, ranked, search._card(), search.surroundings)]
+    tried = [start[f"{mode.prefix}.omega"] for start in restarts(looks, ranked, search.study.card, search.surroundings)]
     assert tried == [4.0, 16.0, 64.0]
     looks[0][3] = ScreenScore(mode, Probe(("mass",), {"omega": 8.0}), 31, 0.9, np.ones(1))
-    assert restarts(looks, ranked, search._card(), search.surroundings)[0][f"{mode.prefix}.omega"] == 8.0
+    assert restarts(looks, ranked, search.study.card, search.surroundings)[0][f"{mode.prefix}.omega"] == 8.0
 
 
 def test_what_was_not_screened_has_no_further_shapes(motor, motor_data, begun) -> None:
     """A law that a learned curve suggested."""
     search = begun(motor_data(noise=0.1), motor)
     ranked = judged(Candidate(attach(motor, "rotor", AdditionalMode()), (), 0.4), search.plain, search.plain)
-    assert restarts([[]], ranked, search._card(), search.surroundings) == []
+    assert restarts([[]], ranked, search.study.card, search.surroundings) == []
 
 
 def test_a_law_that_contains_what_is_there_is_chosen_in_its_place_not_beside_it(motor_data, motor, begun) -> None:
     """Seen: a bias, then an asymmetry of friction beside it, then the bias taken back, and the fit worse than with either."""
     search = begun(motor_data(torque=lambda q, v: 0.05), motor)
-    search.current = search._refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
-    offered = {(k.attachment.port, k.attachment.mechanism.name) for at in search._screened(fine=False) for k in at}
+    state = search.at(search.refitted((attach(motor, "rotor", ConstantBias()),), search.plain)).state
+    screened = screen_scores(search.study, state, curves=True, fine=False)
+    offered = {(k.attachment.port, k.attachment.mechanism.name) for at in screened for k in at}
     assert not offered & {("rotor", "constant_bias"), ("rotor", "coulomb_asymmetry")}
     assert ("rotor", "stribeck_friction") in offered
 

@@ -13,6 +13,7 @@ from greybox_torch.diagnosis.screen.candidates import attach, candidates
 from greybox_torch.diagnosis.screen.score_test import ScreenScore, _sound
 from greybox_torch.diagnosis.screen.shortlist import CAUTIOUS, Candidate, shortlist
 from greybox_torch.diagnosis.select.choice import chosen, simplest
+from greybox_torch.diagnosis.select.forward_step import substantial
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
 from greybox_torch.mechanisms.unknown import Unknown
@@ -101,11 +102,10 @@ def test_what_a_law_lacks_is_not_a_curve_of_its_own(dead_zone_search, ranked) ->
     search, left = dead_zone_search, np.full(WINDOWS, 0.1)
     fits = tuple(replace(f, mean_square=1.0) for f in search.plain.fits)
     now = tuple(replace(f, mean_square=0.1) for f in search.plain.fits)
-    rounds = replace(search)
-    rounds.plain, rounds.current = replace(search.plain, fits=fits), replace(search.plain, fits=now)
+    state = replace(search.state, plain=replace(search.plain, fits=fits), current=replace(search.plain, fits=now))
     little, enough = (replace(ranked(Unknown("speed"), left - part), gain=0.2) for part in (0.018, 0.022))
-    assert not rounds._substantial(little)
-    assert rounds._substantial(enough)
-    assert not rounds._substantial(
-        replace(enough, gain=0.09)
+    assert not substantial(state, little)
+    assert substantial(state, enough)
+    assert not substantial(
+        state, replace(enough, gain=0.09)
     )  # within the margin it would give way to names, or to nothing

@@ -1,0 +1,57 @@
+"""Laws that the found ones contain, refitted in their place."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.significance import likelihood_ratio
+from greybox_torch.diagnosis.refit.rank import RankedCandidate
+from greybox_torch.diagnosis.refit.refitted import refitted
+from greybox_torch.diagnosis.select.backward import drop_superfluous
+from greybox_torch.diagnosis.select.choice import LEAST_SIGNIFICANCE
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.stopping import Stage
+from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.simulation.side_by_side import side_by_side
+
+BEYOND_CHANCE = 3.0
+"""Standard errors by which a free curve must beat named effects on held-out experiments, or a law one that it contains, to be preferred."""
+
+
+def with_simpler_laws(study: Study, state: SearchState, others: HeldOut) -> Stage[SearchState]:
+    """Take the law that an effect's law contains instead, where the larger one predicts other experiments no better."""
+    for effect in state.effects:
+        for rival, simpler in _contained(study, state, effect):
+            before, after = side_by_side(partial(others.fits, h) for h in (simpler, state.current))
+            no_farther = gain(before, after).errors_away < BEYOND_CHANCE
+            if no_farther and likelihood_ratio(simpler, state.current) < LEAST_SIGNIFICANCE:
+                state = _with_rival(state, rival, simpler, effect)
+                yield state
+                state = yield from drop_superfluous(study, state)
+                break
+    return state
+
+
+def _contained(study: Study, state: SearchState, effect: Attachment) -> list[tuple[RankedCandidate, Hypothesis]]:
+    """Laws that the law of ``effect`` contains, of those that were refitted beside it, and each in its place beside the others."""
+    done, found = state.step_of(effect.prefix), []
+    for rival in done.ranked if done is not None else ():
+        other = rival.leader.attachment
+        inside = other.port == effect.port and other.mechanism.name in effect.mechanism.generalises
+        if inside and other.prefix not in state.prefixes:
+            study.working_on(f"refitting {other.prefix} in the place of {effect.prefix}")
+            effects = tuple(other if e is effect else e for e in state.effects)
+            fitted = refitted(study, effects, state.current, [rival.fitted.values()])
+            found += [] if fitted is None else [(rival, fitted)]
+    return found
+
+
+def _with_rival(state: SearchState, rival: RankedCandidate, fitted: Hypothesis, effect: Attachment) -> SearchState:
+    """The state with the law of ``rival`` in the place of ``effect``, as if the step had found that."""
+    done = state.step_of(effect.prefix)
+    steps = tuple(replace(s, taken=rival) if s is done else s for s in state.steps)
+    return replace(state.at(fitted), steps=steps)

@@ -1,0 +1,55 @@
+"""Every effect is tried without; what the rest make up for is dropped."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.significance import significance
+from greybox_torch.diagnosis.refit.curve import absorbed
+from greybox_torch.diagnosis.refit.refitted import refitted
+from greybox_torch.diagnosis.select.choice import LEAST_SIGNIFICANCE, least_gain
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.stopping import Stage
+from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.simulation.side_by_side import side_by_side
+
+
+def drop_superfluous(study: Study, state: SearchState) -> Stage[SearchState]:
+    """Drop every effect whose loss the rest make up for, until none can go; the state then knows what each was compared with."""
+    while True:
+        refits = side_by_side(partial(_without, study, state, e) for e in state.effects)
+        without = dict(zip((e.prefix for e in state.effects), refits, strict=True))
+        superfluous = next((h for h in refits if _made_up_for(state, h)), None)
+        if superfluous is None:
+            state = replace(state, without=without)
+            yield state
+            return state
+        state = state.at(superfluous)
+        yield state
+
+
+def drop(study: Study, state: SearchState, prefix: str) -> Stage[SearchState]:
+    """Take one effect back, and what is superfluous without it."""
+    state = state.at(state.without[prefix])
+    yield state
+    return (yield from drop_superfluous(study, state))
+
+
+def _made_up_for(state: SearchState, without: Hypothesis) -> bool:
+    """Whether the other effects do as well alone."""
+    gain = without.score - state.current.score
+    few = gain < least_gain(state.current) or significance(without, state.current) < LEAST_SIGNIFICANCE
+    return len(state.effects) > 1 and few
+
+
+def _without(study: Study, state: SearchState, effect: Attachment) -> Hypothesis:
+    """The hypothesis so far refitted without one of its effects."""
+    rest = tuple(e for e in state.effects if e is not effect)
+    if not rest:
+        return state.plain
+    study.working_on(f"trying without {effect.prefix}")
+    handed_over = absorbed(state.current, effect, study.surroundings)
+    return refitted(study, rest, state.current, [] if handed_over is None else [handed_over]) or state.plain

@@ -1,0 +1,67 @@
+"""Refitted candidates compared with one another and with the hypothesis that they build on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.refit.rank import MOST_TIED, TIE, RankedCandidate, in_order, judged, polished
+from greybox_torch.diagnosis.refit.restarts import restarts
+from greybox_torch.diagnosis.screen.score_test import ScreenScore
+from greybox_torch.diagnosis.select.choice import LEAST_GAIN
+from greybox_torch.diagnosis.study import Study
+from greybox_torch.simulation.side_by_side import side_by_side
+
+CLOSE = 0.7
+"""Share of the best gain from which a rival is polished before it is compared."""
+
+FRONT_RUNNERS = 3
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Candidates, best first, and the hypothesis that they were compared with: the given one, or a better fit of the same."""
+
+    parent: Hypothesis
+    ranked: tuple[RankedCandidate, ...]
+
+
+def compare(
+    study: Study,
+    parent: Hypothesis,
+    screened: Sequence[Sequence[ScreenScore]],
+    ranked: Sequence[RankedCandidate],
+) -> Comparison:
+    """The front runners polished, and compared with their parent refitted from the best one's values.
+
+    Without the first, the order among close rivals would be the luck of their start values; without the second, an effect of next
+    to no size could win merely because its refit got out of a local minimum that the parent sits in.
+    """
+    if not ranked or ranked[0].gain < LEAST_GAIN:
+        return Comparison(parent, tuple(ranked))
+    front = _front(ranked)
+    polish = side_by_side(
+        partial(_polished, study, r.fitted, restarts(screened, r, study.card, study.surroundings)) for r in front
+    )
+    best = min(polish, key=lambda fitted: fitted.score)
+    again = _polished(study, parent, [best.values(), {**best.values(), **study.card}])
+    parent = again if again.score < parent.score else parent
+    rest = [r for r in ranked if all(r is not one for one in front)]
+    fitted = [*polish, *(r.fitted for r in rest)]
+    pairs = zip([*front, *rest], fitted, strict=True)
+    return Comparison(parent, tuple(in_order([judged(r.leader, parent, one) for r, one in pairs])))
+
+
+def _front(ranked: Sequence[RankedCandidate]) -> list[RankedCandidate]:
+    """The first few that come near the best gain, and all that tie with it."""
+    tied = sum(not r.unknown and r.gain > ranked[0].gain - TIE for r in ranked)
+    # Not always the first of the ranking: that has a price for every parameter.
+    close = [r for r in ranked if r.gain > CLOSE * ranked[0].gain]
+    return close[: max(FRONT_RUNNERS, min(tied, MOST_TIED))]
+
+
+def _polished(study: Study, fitted: Hypothesis, starts: Sequence[dict[str, float]]) -> Hypothesis:
+    study.working_on(f"polishing {' + '.join(e.prefix for e in fitted.effects) or 'the model as it stands'}")
+    return polished(study.problem, fitted, study.surroundings, starts, substeps=study.substeps, device=study.device)

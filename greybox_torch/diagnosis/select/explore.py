@@ -1,0 +1,94 @@
+"""Two ways from the same start: from what explains most over all window lengths, and from what explains the short ones."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.refit.rank import PARSIMONY
+from greybox_torch.diagnosis.refit.refitted import refitted
+from greybox_torch.diagnosis.screen.score_test import ScreenScore
+from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
+from greybox_torch.diagnosis.select.choice import CURVE_MARGIN
+from greybox_torch.diagnosis.select.forward import take_effects
+from greybox_torch.diagnosis.select.forward_step import forward_step
+from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
+from greybox_torch.diagnosis.stopping import Stage, result_of
+from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.attachment import Attachment
+
+LEAST_SHARE_PASSED_OVER = 0.5
+"""Share of the residual over the shortest windows from which what explains it is followed, whatever longer ones say."""
+
+
+def explore(study: Study, start: SearchState) -> Stage[SearchState]:
+    """Take effects while it pays; where the first choice passed over what explains short windows, also from there: the better result.
+
+    Two effects that need one another show over short windows, where start states take up what is slow; over long ones neither of
+    them helps alone, and something that is not there may do better than either.
+    """
+    first = yield from take_effects(study, start)
+    if len(first.steps) == len(start.steps):
+        return first
+    passed = passed_over(study, start, first.steps[len(start.steps)])
+    if passed is None or passed.attachment.prefix in first.prefixes:
+        return first
+    other, chosen_again = _from_given(study, start, first, passed)
+    if chosen_again and priced_score(other.current) <= priced_score(first.current) - CURVE_MARGIN:
+        return other
+    return replace(first, plain=other.plain, named=other.named)
+
+
+def priced_score(fitted: Hypothesis) -> float:
+    """Score with a little for every parameter; lower is better."""
+    return fitted.score + PARSIMONY * int(fitted.problem.free.sum())
+
+
+def passed_over(study: Study, before: SearchState, done: SelectionStep) -> Candidate | None:
+    """The named effect that explains most over the shortest windows, if what was taken explains far less of it."""
+    if done.taken is None or done.taken.unknown:
+        return None
+    shortest = done.screened[0]
+    found = [k for k in shortlist(done.screened, before.current.fits, study.surroundings, study.card) if not k.unknown]
+    shares = {k.attachment.prefix: _explained(shortest, k.attachment) for k in found}
+    best = max(found, key=lambda k: shares[k.attachment.prefix], default=None)
+    if best is None or shares[best.attachment.prefix] < LEAST_SHARE_PASSED_OVER:
+        return None
+    contained = [
+        k
+        for k in found
+        if k.attachment.port == best.attachment.port
+        and k.attachment.mechanism.name in best.attachment.mechanism.generalises
+    ]
+    best = next((k for k in contained if shares[k.attachment.prefix] > 0.9 * shares[best.attachment.prefix]), best)
+    taken = _explained(shortest, done.taken.leader.attachment)
+    return best if taken < 0.5 * shares[best.attachment.prefix] else None
+
+
+def _from_given(study: Study, start: SearchState, first: SearchState, given: Candidate) -> tuple[SearchState, bool]:
+    """The search from ``start`` with an effect given, which is then chosen once more beside the others; whether it was.
+
+    What it knows of the plain model it has from ``first``, the other way. Until the given effect is chosen no state of this way is
+    complete: nothing would say how probable it is.
+    """
+    with_given = refitted(study, (*start.effects, given.attachment), start.current, given.starts)
+    if with_given is None:
+        return first, False
+    reached = result_of(take_effects(study, replace(first.at(with_given), steps=start.steps)))
+    rest = tuple(e for e in reached.effects if e is not given.attachment)
+    without = refitted(study, rest, reached.current) if rest else start.current
+    if without is None:
+        return reached, False
+    again = result_of(forward_step(study, replace(reached.at(without), steps=start.steps)))
+    chosen_again = again.took_one and not again.steps[-1].ranked[0].unknown
+    later = reached.steps[len(start.steps) :]
+    again = replace(again, steps=(*again.steps, *(s for s in later if s.taken is not None or s is later[-1])))
+    if chosen_again and reached.current.score < again.current.score and reached.prefixes == again.prefixes:
+        again = again.at(reached.current)
+    return again, chosen_again
+
+
+def _explained(scores: Sequence[ScreenScore], attachment: Attachment) -> float:
+    """The most that any probe of an effect explains."""
+    return max((k.explained for k in scores if k.attachment.prefix == attachment.prefix), default=0.0)

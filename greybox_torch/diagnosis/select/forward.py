@@ -1,0 +1,74 @@
+"""Effects are taken one at a time while it pays."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+from greybox_torch.diagnosis.hypothesis.noise import ABOVE_NOISE, only_noise, times_noise
+from greybox_torch.diagnosis.select.choice import CURVE_MARGIN, alone_at_noise
+from greybox_torch.diagnosis.select.forward_step import forward_step, take_best
+from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
+from greybox_torch.diagnosis.stopping import Stage, only_if
+from greybox_torch.diagnosis.study import Study
+
+MOST_EFFECTS = 4
+
+NAMED_SHARE = 0.85
+"""Share of a free curve's gain (in the logarithm of the mean squared error) from which named effects stand for it: real friction is
+never exactly the law of a book."""
+
+
+def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> Stage[SearchState]:
+    """Forward steps while one pays; a free curve gives way to named effects that come as far.
+
+    Args:
+        curves: whether free curves are offered.
+    """
+    while len(state.effects) < MOST_EFFECTS and not only_noise(study.problem, state.current):
+        before = state
+        state = yield from forward_step(study, before, curves=curves)
+        if not state.took_one and _fine_curves_may_help(study, state, curves):
+            state = yield from forward_step(study, state, curves=curves, fine=True)
+        if not state.took_one:
+            break
+        taken = state.steps[-1]
+        if taken.taken is not None and taken.taken.unknown:
+            state = yield from _named_instead(study, before, state)
+            if len(state.effects) == len(taken.parent.effects):
+                break  # what is there already comes as far as the curve, and no name goes farther
+    return state
+
+
+def _fine_curves_may_help(study: Study, state: SearchState, curves: bool) -> bool:
+    """Where nothing pays and yet more than noise is left, curves fine enough for a narrow law are tried."""
+    return curves and not state.has_curve and times_noise(study.problem, state.current) > ABOVE_NOISE
+
+
+def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -> Stage[SearchState]:
+    """Where a free curve was taken: the search without curves from where that step began, kept if named effects come as far.
+
+    One curve can stand for several laws of the same signal, none of which would come near it alone.
+    """
+    done = with_curve.steps[-1]
+    start = replace(with_curve.at(done.parent), steps=before.steps)
+    branch = yield from only_if(_without_curves(study, start, done), partial(_as_far, with_curve=with_curve))
+    if _as_far(branch, with_curve):
+        return branch
+    found = replace(branch, named=None) if len(branch.effects) > len(done.parent.effects) else with_curve.named
+    return replace(with_curve, plain=branch.plain, named=found)
+
+
+def _without_curves(study: Study, start: SearchState, done: SelectionStep) -> Stage[SearchState]:
+    """The best named candidate of a step taken, and what joins it; nothing where none pays."""
+    names = [r for r in done.ranked if not r.unknown]
+    branch = yield from take_best(study, start, done.screened, names)
+    return (yield from take_effects(study, branch, curves=False)) if branch.took_one else branch
+
+
+def _as_far(branch: SearchState, with_curve: SearchState) -> bool:
+    """Whether the effects of ``branch`` come as far as the curve of ``with_curve``, from the hypothesis that both build on."""
+    before = with_curve.steps[-1].parent
+    reached, ceiling = (before.score - s.current.score for s in (branch, with_curve))
+    share = 1.0 if alone_at_noise(with_curve.current, branch.current) else NAMED_SHARE
+    return reached >= min(ceiling - CURVE_MARGIN, share * ceiling)

@@ -1,0 +1,78 @@
+"""Which effects are offered to the next step, and what the screen says of them."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from greybox_torch.diagnosis.hypothesis.noise import noise_floor
+from greybox_torch.diagnosis.screen.candidates import candidates, periodic_candidates
+from greybox_torch.diagnosis.screen.periodic_orders import distinct_orders, scan_orders
+from greybox_torch.diagnosis.screen.score_test import Screen, ScreenScore
+from greybox_torch.diagnosis.select.choice import LEAST_GAIN
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.simulation.side_by_side import side_by_side
+
+FINE_KNOTS = 40
+"""Knots of the curves that are tried when nothing else pays."""
+
+
+def screen_scores(study: Study, state: SearchState, *, curves: bool, fine: bool) -> tuple[tuple[ScreenScore, ...], ...]:
+    """By window length, the scores of every effect that may join the hypothesis so far.
+
+    Args:
+        curves: whether free curves are offered.
+        fine: offer curves with many knots, and nothing else.
+    """
+    study.working_on("screening fine curves" if fine else "screening every port and mechanism")
+    model, at = study.problem.model, state.current
+    offered = _fine_curves(study) if fine else _offered(study, state, curves)
+    screen = Screen.of(
+        model,
+        at.effects,
+        [a for a in offered if not _is_there(a, at.effects)],
+        study.surroundings,
+        at.problem.free_names,
+        device=study.device,
+    )
+    return tuple(tuple(scores) for scores in side_by_side(partial(screen.look, fit, study.substeps) for fit in at.fits))
+
+
+def _is_there(offered: Attachment, effects: tuple[Attachment, ...]) -> bool:
+    """Whether an effect is in the hypothesis already, as itself, as a law that it contains or as a part of one."""
+    there = {(e.port, e.mechanism.name) for e in effects}
+    there_in_part = {(e.port, name) for e in effects for name in e.mechanism.includes}
+    own = {(offered.port, n) for n in (offered.mechanism.name, *offered.mechanism.generalises)}
+    return bool(there & own) or (offered.port, offered.mechanism.name) in there_in_part
+
+
+def _fine_curves(study: Study) -> list[Attachment]:
+    return candidates(study.problem.model, study.shifts, study.surroundings, flexible=True, knots=FINE_KNOTS)
+
+
+def _offered(study: Study, state: SearchState, curves: bool) -> list[Attachment]:
+    model, at = study.problem.model, state.current
+    over = [f for f in at.fits if f.mean_square > noise_floor(study.problem)] or at.fits
+    scanned = scan_orders(
+        model,
+        at.effects,
+        study.surroundings,
+        at.problem.free_names,
+        over[:2],
+        substeps=study.substeps,
+        device=study.device,
+    )
+    orders = distinct_orders([*scanned, *orders_before(state)])
+    return [
+        *candidates(model, study.shifts, study.surroundings, flexible=False),
+        *periodic_candidates(model, study.shifts, study.surroundings, orders),
+        *(candidates(model, study.shifts, study.surroundings, flexible=True) if curves else []),
+    ]
+
+
+def orders_before(state: SearchState) -> list[float]:
+    """Orders that refits of earlier steps came to: what is there now may hide the one that is right from a scan."""
+    ranked = [r for done in state.steps for r in done.ranked if r.gain > LEAST_GAIN]
+    values = ((r.fitted.values(), f"{r.leader.attachment.prefix}.order") for r in ranked)
+    return [found[name] for found, name in values if name in found]

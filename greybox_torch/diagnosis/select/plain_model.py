@@ -1,0 +1,55 @@
+"""Where a search begins: the model as it stands, fitted, and where the signals at its ports move."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from greybox_torch.diagnosis.hypothesis.fit import POLISH_SETTINGS, hypothesis
+from greybox_torch.diagnosis.hypothesis.window_errors import window_errors
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.study import Study
+from greybox_torch.errors import NumericalError
+from greybox_torch.estimate.shifted_states import shifted_states
+from greybox_torch.estimate.surroundings import surroundings_along
+from greybox_torch.estimate.window_fit import states_along
+
+
+def fit_plain_model(study: Study) -> tuple[Study, SearchState]:
+    """The study with what the fit of the model as it stands shows of its ports, and the state that a search begins from.
+
+    Raises:
+        NumericalError: it overflows even over short windows.
+    """
+    study.report("refitting the model as it stands")
+    model = study.problem.model
+    plain = hypothesis(
+        study.problem, (), {}, [study.card], substeps=study.substeps, settings=POLISH_SETTINGS, device=study.device
+    )
+    if plain is None:
+        raise NumericalError(
+            f"simulating {model.title}: the simulation overflows even over windows of a 64th of the record; "
+            "try start values nearer to the truth, or tighter bounds"
+        )
+    # Over windows, not along the free run: that runs through a stop that the model lacks, and away with a bias.
+    over = plain.fits[min(1, len(plain.fits) - 1)]
+    visited = states_along(over, plain.stepper, study.substeps)
+    study = replace(
+        study,
+        shifts=shifted_states(model, plain.problem),
+        surroundings=surroundings_along(model, over.problem, visited),
+    )
+    return study, SearchState(plain, plain)
+
+
+def weighted_by_noise(study: Study, state: SearchState) -> Study:
+    """The study with the inverse size of the errors of every output over the shortest windows as its weight.
+
+    A noisy sensor must not drown an exact one. This is the maximum-likelihood weighting where the outputs' noises are independent, their
+    sizes estimated from a first fit.
+    """
+    errors = window_errors(state.plain.fits[0], state.plain.stepper, study.substeps)
+    spread = np.nanstd(study.problem.records.y, axis=1)
+    weights = 1.0 / np.sqrt(np.nanmean(errors**2, axis=1) + (1e-4 * spread) ** 2 + 1e-300)
+    return replace(study, problem=replace(study.problem, weights=weights))

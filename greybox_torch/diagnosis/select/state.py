@@ -1,0 +1,75 @@
+"""Where a search stands: values that no step changes; every step makes new ones."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.refit.rank import RankedCandidate
+from greybox_torch.diagnosis.screen.score_test import ScreenScore
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.unknown import Unknown
+
+
+@dataclass(frozen=True)
+class SelectionStep:
+    """One forward step: the scores of the screen by window length, the hypothesis that was built on, the refitted candidates, best first,
+    and which of them was taken (None: nothing).
+    """
+
+    screened: tuple[tuple[ScreenScore, ...], ...]
+    parent: Hypothesis
+    ranked: tuple[RankedCandidate, ...]
+    taken: RankedCandidate | None
+
+
+@dataclass(frozen=True, eq=False)
+class SearchState:
+    """The model as it stands (``plain``), the hypothesis so far (``current``), and the steps that led to it.
+
+    ``without``: by effect, the current hypothesis refitted without it; empty until that was compared. ``named``: effects with names that
+    were found in the place of a free curve that goes farther.
+    """
+
+    plain: Hypothesis
+    current: Hypothesis
+    steps: tuple[SelectionStep, ...] = ()
+    without: Mapping[str, Hypothesis] = field(default_factory=dict)
+    named: SearchState | None = None
+
+    @property
+    def effects(self) -> tuple[Attachment, ...]:
+        """The effects of the hypothesis so far."""
+        return self.current.effects
+
+    @property
+    def prefixes(self) -> set[str]:
+        """What the names of their parameters begin with."""
+        return {e.prefix for e in self.effects}
+
+    @property
+    def has_curve(self) -> bool:
+        """Whether one of them is a free curve."""
+        return any(isinstance(e.mechanism, Unknown) for e in self.effects)
+
+    @property
+    def took_one(self) -> bool:
+        """Whether the last step took an effect."""
+        return bool(self.steps) and self.steps[-1].taken is not None
+
+    @property
+    def compared_without(self) -> bool:
+        """Whether ``without`` is known for every effect."""
+        return set(self.without) == self.prefixes
+
+    def step_of(self, prefix: str) -> SelectionStep | None:
+        """The step in which an effect was taken, the last one where it was chosen anew beside the others."""
+        return next(
+            (s for s in reversed(self.steps) if s.taken is not None and s.taken.leader.attachment.prefix == prefix),
+            None,
+        )
+
+    def at(self, current: Hypothesis) -> SearchState:
+        """With another hypothesis so far, of which it is not known what it is without its effects."""
+        return replace(self, current=current, without={})

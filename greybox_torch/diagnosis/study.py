@@ -1,0 +1,53 @@
+"""What a search is about: the data, the model, and by what it is decided. None of it changes while effects are chosen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
+from greybox_torch.diagnosis.stopping import Deadline
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.mechanisms.mechanism import Surroundings
+
+
+def silent(text: str) -> None:
+    """Reports nothing."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """The estimation experiments with the model as it stands, and how it is looked for what they lack.
+
+    ``surroundings`` and ``shifts`` are what mechanisms need to know of the ports: where signals moved, and which state carries the
+    deflection of a coupling; both are known once the model as it stands is fitted. ``report`` is told what is being done; it does not
+    stop the search, which ``deadline`` does.
+    """
+
+    problem: Problem
+    substeps: int
+    device: str = "cpu"
+    surroundings: Mapping[str, Surroundings] = field(default_factory=dict)
+    shifts: Mapping[str, str] = field(default_factory=dict)
+    settings: DiagnosisSettings = field(default_factory=DiagnosisSettings)
+    budget: SearchBudget = field(default_factory=SearchBudget)
+    report: Callable[[str], None] = silent
+    deadline: Deadline = Deadline()
+
+    def working_on(self, text: str) -> None:
+        """Report what is begun now, if there is time left for it.
+
+        Raises:
+            TimeIsUp: there is not.
+        """
+        self.report(text)
+        self.deadline.check()
+
+    def without_limit(self) -> Study:
+        """The same without a deadline."""
+        return replace(self, deadline=Deadline())
+
+    @property
+    def card(self) -> dict[str, float]:
+        """The parameter values that the problem began with, by name."""
+        return dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
