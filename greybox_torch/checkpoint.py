@@ -23,6 +23,7 @@ from greybox_torch import __version__
 from greybox_torch.checkpoint_card import SCHEMA, CheckpointCard, read_checkpoint_card
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.files import json_text, write_all
+from greybox_torch.reading import read_bytes
 
 _SUFFIXES = (".safetensors", ".json")
 
@@ -107,10 +108,7 @@ _OF_THE_FILES = ("parameters", "tensors")
 
 def _values(tensors: Path, card: Path, content: CheckpointCard) -> dict[str, float]:
     """The values that the tensors hold, in the card's order."""
-    try:
-        packed = tensors.read_bytes()
-    except OSError as error:
-        raise UserError(f"checkpoint {tensors}: cannot be read: {error.strerror or error}") from None
+    packed = read_bytes(tensors, "its tensors", "checkpoint", most=2**30)
     found = hashlib.sha256(packed).hexdigest()
     if found != content.tensors:
         raise UserError(
@@ -167,7 +165,7 @@ def check_same_units(path: Path, checkpoint: Checkpoint, title: str, units: Mapp
 
 def _apart(expected: Iterable[str], found: Iterable[str]) -> tuple[list[str], list[str]]:
     """What is lacking in `found`, and what it has beside the names expected."""
-    wanted, held = list(expected), list(found)
+    wanted, held = dict.fromkeys(expected), dict.fromkeys(found)
     return [name for name in wanted if name not in held], [name for name in held if name not in wanted]
 
 
@@ -176,6 +174,8 @@ def _differences(lacking: Sequence[str], extra: Sequence[str]) -> str:
 
 
 def _halves(path: Path) -> tuple[Path, Path]:
+    if path.name in ("", ".."):
+        raise UserError(f'checkpoint "{path}": not the name of a file; expected one such as results/model')
     stem = path.with_suffix("") if path.suffix in _SUFFIXES else path
     return stem.with_name(stem.name + _SUFFIXES[0]), stem.with_name(stem.name + _SUFFIXES[1])
 

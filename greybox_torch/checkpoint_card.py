@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from greybox_torch.errors import UserError
+from greybox_torch.reading import read_bytes
 
 SCHEMA = "greybox-checkpoint/1"
 
@@ -65,9 +67,7 @@ def read_checkpoint_card(path: Path) -> CheckpointCard:
 
 def _json(path: Path) -> Any:
     try:
-        return json.loads(path.read_bytes().decode("utf-8"))
-    except OSError as error:
-        raise UserError(f"checkpoint {path}: cannot be read: {error.strerror or error}; expected a JSON card") from None
+        return json.loads(read_bytes(path, "a JSON card", "checkpoint").decode("utf-8"))
     except (ValueError, RecursionError) as error:  # not UTF-8, not JSON, a number too long to read, nested without end
         raise UserError(f"checkpoint {path}: not JSON: {error}; expected the card of a checkpoint") from None
 
@@ -82,13 +82,14 @@ def _problem(details: Any) -> str:
 
 def _check_names(path: Path, card: CheckpointCard) -> None:
     """Every parameter once, and with its unit."""
-    twice = _listed(name for name in dict.fromkeys(card.parameters) if card.parameters.count(name) > 1)
+    twice = _listed(name for name, count in Counter(card.parameters).items() if count > 1)
     if twice:
         raise UserError(f'checkpoint {path}: "parameters" names {twice} twice; expected each parameter once')
     without = _listed(name for name in card.parameters if name not in card.units)
     if without:
         raise UserError(f'checkpoint {path}: "units" lacks {without}; expected the unit of every parameter')
-    beside = _listed(name for name in card.units if name not in card.parameters)
+    known = set(card.parameters)
+    beside = _listed(name for name in card.units if name not in known)
     if beside:
         raise UserError(f'checkpoint {path}: "units" has {beside}; expected the names under "parameters" alone')
 
@@ -98,5 +99,8 @@ def _listed(names: Iterable[str]) -> str:
 
 
 def _quoted(value: Any) -> str:
-    text = json.dumps(value, default=str, ensure_ascii=False)
+    try:
+        text = json.dumps(value, default=str, ensure_ascii=False)
+    except (ValueError, RecursionError):  # digits without end, nested without end
+        return "a value too long to show"
     return text if len(text) <= 60 else text[:59] + "…"

@@ -6,7 +6,7 @@ import json
 import math
 import os
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,8 @@ def replacing(path: Path) -> Iterator[Path]:
     The folder is made where it is missing. The temporary name keeps the suffix, as many writers go by it. Raises
     UserError where the folder or the file cannot be written.
     """
+    if "\0" in str(path):
+        raise UserError(f"{str(path)!r}: cannot be written: holds a NUL character; expected a place to write results")
     temporary = path.with_name(f".{path.stem}.{os.getpid()}.partial{path.suffix}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -31,8 +33,8 @@ def replacing(path: Path) -> Iterator[Path]:
             f"{path}: cannot be written: {error.strerror or error}; expected a place to write results"
         ) from error
     finally:
-        if temporary.exists():
-            temporary.unlink()
+        with suppress(OSError):  # a name that is too long for a file was none from the start
+            temporary.unlink(missing_ok=True)
 
 
 def write_text(path: Path, text: str) -> None:

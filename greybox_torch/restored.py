@@ -17,7 +17,7 @@ from greybox_torch.estimate.problem import Problem, all_starts_free, make_proble
 from greybox_torch.mechanisms.stored import restored_model
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.rates import rates_at
-from greybox_torch.systems import load_model
+from greybox_torch.systems import BUILT_IN, load_model
 
 
 @dataclass(frozen=True)
@@ -33,18 +33,19 @@ class SavedModel:
         return rates_at(self.model, self.checkpoint.values, states, inputs)
 
 
-def load_saved_model(path: str | PathLike[str], model: GreyBoxModel | None = None) -> SavedModel:
+def load_saved_model(path: str | PathLike[str], model: GreyBoxModel | str | None = None) -> SavedModel:
     """The model of the checkpoint at ``path``, with its effects.
 
     Args:
-        model: the plain model, loaded already; by default the one that the checkpoint names.
+        model: the plain model, or how to load it ("my_motor.py:Motor"). Not needed where it is a built-in system. A model file that only
+            the checkpoint names is never run: a checkpoint may come from anywhere.
 
     Raises:
-        UserError: the checkpoint is damaged, or is not one of the model it names.
+        UserError: the checkpoint is damaged, is of a model file and ``model`` is not given, or is not one of ``model``.
     """
     path = Path(path)
     checkpoint = load_checkpoint(path)
-    base = load_model(checkpoint.model) if model is None else model
+    base = _plain_model(path, checkpoint, model)
     augmented = _with_effects(path, base, checkpoint.effects) if checkpoint.effects else base
     check_same_parameters(path, checkpoint, base.title, [p.name for p in augmented.declared_parameters])
     check_same_units(path, checkpoint, base.title, {p.name: p.unit for p in base.declared_parameters})
@@ -68,7 +69,7 @@ def restored(data: DataSet, path: str | PathLike[str], model: GreyBoxModel, mode
 
     Raises UserError where the checkpoint is damaged, or is not one of the model it names.
     """
-    data, base, model_name = _own_model(data, load_checkpoint(path), model, model_name)
+    data, base, model_name = _own_model(data, Path(path), load_checkpoint(path), model, model_name)
     saved = load_saved_model(path, base)
     problem = make_problem(data, saved.model, data.recordings)
     problem = problem.with_values(np.array([saved.checkpoint.values[name] for name in problem.names]))
@@ -78,17 +79,34 @@ def restored(data: DataSet, path: str | PathLike[str], model: GreyBoxModel, mode
     return Restored(data, model_name, problem)
 
 
+def _plain_model(path: Path, checkpoint: Checkpoint, model: GreyBoxModel | str | None) -> GreyBoxModel:
+    """The model without effects: the user's, or a built-in system. Code that a checkpoint names is not run on its word."""
+    if model is None and checkpoint.model not in BUILT_IN:
+        raise UserError(
+            f"checkpoint {path}: is of the model {checkpoint.title} in {checkpoint.model}; a model file is run only where you name it "
+            "yourself: give the model as the argument model"
+        )
+    return (
+        load_model(checkpoint.model if model is None else model) if model is None or isinstance(model, str) else model
+    )
+
+
 def _own_model(
-    data: DataSet, checkpoint: Checkpoint, model: GreyBoxModel, model_name: str
+    data: DataSet, path: Path, checkpoint: Checkpoint, model: GreyBoxModel, model_name: str
 ) -> tuple[DataSet, GreyBoxModel, str]:
-    """A model that is not where it was when the checkpoint was written is taken to be the one at hand, if that has the same name."""
+    """The model of a checkpoint is the one at hand, wherever its file lies now, or a built-in system."""
     if checkpoint.model == model_name:
         return data, model, model_name
-    same, file = checkpoint.title == model.title, Path(checkpoint.model.rpartition(":")[0])
-    if same and file.suffix == ".py" and not file.exists():
-        return data, model, model_name
-    data = data if same else replace(data, parameters={}, initial={})  # the card speaks of another model
-    return data, load_model(checkpoint.model), checkpoint.model
+    same = checkpoint.title == model.title
+    if checkpoint.model in BUILT_IN:
+        data = data if same else replace(data, parameters={}, initial={})  # the card speaks of another model
+        return data, load_model(checkpoint.model), checkpoint.model
+    if not same:
+        raise UserError(
+            f"checkpoint {path}: is of the model {checkpoint.title} in {checkpoint.model}, not of {model.title}; a model file is run only "
+            "where you name it yourself: on the card, as --model, or as the argument model"
+        )
+    return data, model, model_name
 
 
 def _with_effects(path: Path, base: GreyBoxModel, effects: Sequence[Mapping[str, Any]]) -> GreyBoxModel:
@@ -101,8 +119,16 @@ def _with_effects(path: Path, base: GreyBoxModel, effects: Sequence[Mapping[str,
 
 
 def _check_admissible(path: Path, problem: Problem) -> None:
+    """Values within the card's bounds, or within the model's own where the card narrows them, and within the model's constraints."""
+    title = problem.model.title
+    for k, parameter in enumerate(problem.model.declared_parameters):
+        lower = min(problem.lower[k], parameter.bounds[0])
+        upper = max(problem.upper[k], parameter.bounds[1])
+        if not lower <= problem.values[k] <= upper:
+            raise UserError(
+                f"checkpoint {path}: {parameter.name} is {problem.values[k]:g}, outside its bounds [{lower:g}, {upper:g}] in model {title}"
+            )
     if not problem.admissible(problem.values):
-        title = problem.model.title
         raise UserError(
             f"checkpoint {path}: its values break a constraint of model {title}; expected values that it allows"
         )

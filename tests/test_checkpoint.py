@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -251,14 +252,14 @@ def test_any_card_is_read_or_refused(tmp_path_factory: pytest.TempPathFactory, k
 @pytest.mark.parametrize("half", [".json", ".safetensors"])
 def test_a_file_that_cannot_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, half: str) -> None:
     save_checkpoint(tmp_path / "model", MOTOR)
-    read = Path.read_bytes
+    system = os.open
 
-    def refusing(path: Path) -> bytes:
-        if path.suffix == half:
+    def refusing(path: Path, *how: int) -> int:
+        if Path(path).suffix == half:
             raise PermissionError(13, "Permission denied")
-        return read(path)
+        return system(path, *how)
 
-    monkeypatch.setattr(Path, "read_bytes", refusing)
+    monkeypatch.setattr(os, "open", refusing)
     with pytest.raises(UserError, match=rf"model{half}: cannot be read: Permission denied"):
         load_checkpoint(tmp_path / "model")
 

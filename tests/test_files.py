@@ -33,6 +33,9 @@ def test_place_that_cannot_be_written(tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
     with pytest.raises(UserError, match=r"folder: cannot be written"):
         write_text(tmp_path / "folder", "")
+    for name in ("a\0b", "x" * 300):
+        with pytest.raises(UserError, match="cannot be written"):
+            write_text(tmp_path / name, "")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["file", "folder"]
 
 

@@ -35,7 +35,7 @@ def saved(tmp_path: Path, machines: Path) -> Save:
         values = {**TRUE, **more}
         units = {name: UNITS.get(name, "") for name in values}
         save_checkpoint(tmp_path / "model", Checkpoint(f"{machines}/motor.py:Motor", "Motor", values, units, effects))
-        return load_saved_model(tmp_path / "model")
+        return load_saved_model(tmp_path / "model", f"{machines}/motor.py:Motor")
 
     return make
 

@@ -26,7 +26,7 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.stored import attachment_json
 from greybox_torch.model import Signals
-from greybox_torch.restored import restored
+from greybox_torch.restored import load_saved_model, restored
 from greybox_torch.systems import load_model
 from greybox_torch.train.hybrid import attach_network, make_network
 
@@ -159,3 +159,34 @@ def test_networks_come_back_as_they_were(
 def own_motor(motor_folder: Make) -> tuple[DataSet, Problem]:
     data = load_dataset(motor_folder() / "dataset.toml")
     return data, make_problem(data, load_model(str(data.model)), data.estimation())
+
+
+EVIL = "from pathlib import Path\nPath(__file__).with_name('ran').touch()\n"
+
+
+@pytest.mark.parametrize("place", ["evil.py", "../elsewhere/evil.py"])
+@pytest.mark.parametrize("title", ["Motor", "Evil"])
+def test_a_model_file_that_only_the_checkpoint_names_never_runs(motor_folder: Make, place: str, title: str) -> None:
+    folder = motor_folder()
+    (folder.parent / "elsewhere").mkdir()
+    evil = folder / place
+    evil.write_text(EVIL + (folder / "my_motor.py").read_text())
+    save_checkpoint(folder / "model", plain(folder, model=f"{evil}:Motor", title=title))
+    result = compare(folder, str(folder / "model"))
+    if title == "Motor":  # the user's own model stands in, whose parameters are those of the checkpoint
+        assert result.exit_code == 0, result.stderr
+    else:
+        assert result.exit_code == 2
+        assert "a model file is run only where you name it yourself: on the card, as --model" in result.stderr
+    with pytest.raises(UserError, match="a model file is run only where you name it yourself"):
+        load_saved_model(folder / "model")
+    assert not evil.with_name("ran").exists()
+    assert load_saved_model(folder / "model", f"{folder}/my_motor.py:Motor").checkpoint.title == title
+
+
+def test_values_outside_the_bounds_are_refused(motor_folder: Make) -> None:
+    folder = motor_folder()
+    save_checkpoint(folder / "model", plain(folder, values={"J": -0.02, "k": 0.1, "b": 0.05}))
+    result = compare(folder, str(folder / "model"))
+    assert result.exit_code == 2
+    assert "J is -0.02, outside its bounds [0, inf] in model Motor" in result.stderr

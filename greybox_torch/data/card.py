@@ -5,14 +5,14 @@ The format is fixed by the project's contract; see the README for an example.
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from greybox_torch.data.card_errors import describe
 from greybox_torch.errors import UserError, did_you_mean
+from greybox_torch.reading import read_toml
 
 TIME = "time"  # in an experiment's `columns`, the key that renames the column of time stamps
 
@@ -154,16 +154,7 @@ class Card(Entry):
 
 def read_card(path: Path) -> Card:
     """The card at `path`. Raises UserError, with one message, for a file or a field that is wrong."""
-    try:
-        content: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except FileNotFoundError:
-        raise UserError(f"{path}: no such file; expected a data card, dataset.toml") from None
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read: {error.strerror}; expected a data card, dataset.toml") from None
-    except UnicodeDecodeError as error:
-        raise UserError(f"{path}: not UTF-8 text (byte {error.start}); expected a data card, dataset.toml") from None
-    except tomllib.TOMLDecodeError as error:
-        raise UserError(f"{path}: not valid TOML: {error}") from None
+    content = read_toml(path, "a data card, dataset.toml")
     try:
         return Card.model_validate(content)
     except ValidationError as error:

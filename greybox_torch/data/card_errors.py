@@ -94,7 +94,10 @@ def _allowed_keys(card: type[BaseModel], location: Sequence[str | int]) -> list[
 
 
 def _quoted(value: Any) -> str:
-    text = json.dumps(value, default=str, ensure_ascii=False)
+    try:
+        text = json.dumps(value, default=str, ensure_ascii=False)
+    except (ValueError, RecursionError):  # digits without end, nested without end
+        return "a value too long to show"
     return text if len(text) <= 60 else text[:59] + "…"
 
 

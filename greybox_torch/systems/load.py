@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import importlib.util
 import sys
-import traceback
 from pathlib import Path
 from types import ModuleType
 
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.check import check_equations
+from greybox_torch.reading import check_file
 from greybox_torch.systems.robot_arm import RobotArm
+from greybox_torch.systems.user_code import users_code
 
 BUILT_IN: dict[str, type[GreyBoxModel]] = {RobotArm.name: RobotArm}
 
@@ -31,7 +32,8 @@ def load_model(name: str) -> GreyBoxModel:
         raise UserError(
             f"model '{name}' is unknown; expected a built-in system ({known}) or a file and class such as my_motor.py:Motor"
         )
-    module = _run(Path(file))
+    path = Path(file)
+    module = _run(path)
     found = getattr(module, class_name, None)
     if not (isinstance(found, type) and issubclass(found, GreyBoxModel)):
         classes = [
@@ -42,41 +44,28 @@ def load_model(name: str) -> GreyBoxModel:
         have = f"it defines {', '.join(classes)}" if classes else "it defines no GreyBoxModel"
         what = "is not a GreyBoxModel" if found is not None else "is not defined"
         raise UserError(f"model file {file}: class '{class_name}' {what}; {have}")
+    place = f"model file {file}, class {class_name}"
     try:
-        model = found()
-        check_equations(model)
+        with users_code(path, place, "creating it"):
+            model = found()
+        with users_code(path, place, "trying its equations"):
+            check_equations(model)
         return model
     except UserError as error:
-        raise UserError(f"model file {file}, class {class_name}: {error}") from None
-    except Exception as error:
-        raise UserError(
-            f"model file {file}, class {class_name}: creating it raised {type(error).__name__}: {error}"
-        ) from None
+        raise UserError(str(error) if str(error).startswith(place) else f"{place}: {error}") from None
 
 
 def _run(file: Path) -> ModuleType:
-    if not file.is_file():
-        raise UserError(f"model file {file}: no such file")
+    check_file(file, "a model file such as my_motor.py", "model file")
     spec = importlib.util.spec_from_file_location(f"greybox_user_{file.stem}", file)
     if spec is None or spec.loader is None:
         raise UserError(f"model file {file}: not a Python file")
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
+    place = f"model file {file}"
     try:
-        spec.loader.exec_module(module)
+        with users_code(file, place, "running it"):
+            spec.loader.exec_module(module)
     except UserError as error:
-        raise UserError(f"model file {file}: {error}") from None
-    except Exception as error:
-        line = _line_in(file, error)
-        raise UserError(f"model file {file}{line}: running it raised {type(error).__name__}: {error}") from None
+        raise UserError(str(error) if str(error).startswith(place) else f"{place}: {error}") from None
     return module
-
-
-def _line_in(file: Path, error: BaseException) -> str:
-    """The last line of ``file`` on the way to the error."""
-    if isinstance(error, SyntaxError):
-        return f", line {error.lineno}"
-    lines = [
-        f.lineno for f in traceback.extract_tb(error.__traceback__) if Path(f.filename).resolve() == file.resolve()
-    ]
-    return f", line {lines[-1]}" if lines else ""

@@ -6,6 +6,7 @@ One file, so that a kill at any moment leaves the one before or this one whole. 
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -17,6 +18,7 @@ from safetensors.numpy import save
 
 from greybox_torch.errors import UserError
 from greybox_torch.files import write_all
+from greybox_torch.reading import check_file
 from greybox_torch.train.physics import Physics
 from greybox_torch.train.state import Epoch, TrainingState
 
@@ -71,16 +73,25 @@ def load_snapshot(path: Path, about: Mapping[str, Any], physics: Physics) -> Sna
     try:
         history = [Epoch(**entry) for entry in content["history"]]
         own: dict[str, Any] = {**content["numbers"], **{name: arrays[name] for name in ARRAYS}}
+        _check_arrays(arrays, physics)
+        _check_numbers(content)
+        np.random.default_rng().bit_generator.state = content["generator"]
         state = TrainingState(generator=content["generator"], history=history, **own)
         then = _with_arrays(physics, arrays)
         return Snapshot(about, state, then, arrays["scale"], float(content["mean_square"]))
-    except (KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         raise _damaged(path, error) from None
 
 
+def check_unknowns(path: Path, snapshot: Snapshot, unknowns: int, states: int) -> None:
+    """Raises UserError unless the snapshot has as many unknowns as the training, and windows that start in as many states."""
+    found = len(snapshot.state.z), snapshot.state.starts.shape[1]
+    if found != (unknowns, states):
+        raise _damaged(path, ValueError(f"{found[0]} unknowns and {found[1]} states, expected {unknowns} and {states}"))
+
+
 def _read(path: Path, about: Mapping[str, Any]) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
-    if not path.is_file():
-        raise UserError(f"--resume: {path}: no such file; expected what an interrupted training has left there")
+    check_file(path, "what an interrupted training has left there", "--resume:")
     try:
         with safe_open(path, framework="np") as file:
             header = file.metadata() or {}
@@ -90,7 +101,7 @@ def _read(path: Path, about: Mapping[str, Any]) -> tuple[dict[str, np.ndarray], 
             raise UserError(f'--resume: {path}: schema is {json.dumps(schema)}, expected "{SCHEMA}"')
         content = json.loads(header["training"])
         _check_same(path, content["about"], about)
-    except (SafetensorError, json.JSONDecodeError, KeyError, TypeError, ValueError) as error:
+    except (SafetensorError, KeyError, TypeError, ValueError, AttributeError, RecursionError, OSError) as error:
         raise _damaged(path, error) from None
     return arrays, content
 
@@ -108,6 +119,36 @@ def _physics_arrays(physics: Physics) -> dict[str, np.ndarray]:
 def _with_arrays(physics: Physics, arrays: Mapping[str, np.ndarray]) -> Physics:
     problem = physics.result.problem.with_values(arrays["physics"], arrays["initial"])
     return Physics(replace(physics.result, problem=problem), arrays["short"])
+
+
+def _check_arrays(arrays: Mapping[str, np.ndarray], physics: Physics) -> None:
+    """Raises ValueError unless the arrays are of one training: float64, finite, and as long as each other and as the physics."""
+    problem = physics.result.problem
+    length = arrays["z"].shape
+    expected = {"physics": problem.values.shape, "initial": problem.initial.shape, "short": physics.values.shape}
+    expected |= dict.fromkeys(("best", "first", "second", "scale"), length)
+    for name in (*ARRAYS, "scale", "physics", "initial", "short"):
+        array = arrays[name]
+        if array.dtype != np.float64 or not np.isfinite(array).all():
+            raise ValueError(f"{name} is not of finite 64-bit numbers")
+        if array.shape != expected.get(name, array.shape) or (name == "starts" and array.ndim != 2):
+            raise ValueError(f"{name} has the shape {array.shape}, expected {expected.get(name, '(windows, states)')}")
+    if len(length) != 1:
+        raise ValueError(f"z has the shape {length}, expected one number for each unknown")
+    if (arrays["scale"] <= 0.0).any():
+        raise ValueError("a scale is not above zero")
+
+
+def _check_numbers(content: Mapping[str, Any]) -> None:
+    numbers = content["numbers"]
+    for name in ("stage", "epoch", "waited", "steps"):
+        if not isinstance(numbers[name], int) or numbers[name] < 0:
+            raise ValueError(f"{name} is {numbers[name]!r:.40}, expected a whole number")
+    for name, value in {**numbers, "mean_square": content["mean_square"]}.items():
+        if name not in NUMBERS and name != "mean_square":
+            raise ValueError(f"unknown entry {name!r:.40}")
+        if isinstance(value, bool) or not isinstance(value, int | float) or math.isnan(value) or value < 0:
+            raise ValueError(f"{name} is {value!r:.40}, expected a number that is not negative")
 
 
 def _check_same(path: Path, found: Mapping[str, Any], expected: Mapping[str, Any]) -> None:

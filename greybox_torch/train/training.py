@@ -28,7 +28,7 @@ from greybox_torch.train.keeper import Keeper
 from greybox_torch.train.physics import Physics, estimate_physics, training_problem, with_physics
 from greybox_torch.train.polish import Polished, polish
 from greybox_torch.train.settings import TrainingSettings
-from greybox_torch.train.snapshot import Snapshot, check_snapshot, load_snapshot
+from greybox_torch.train.snapshot import Snapshot, check_snapshot, check_unknowns, load_snapshot
 from greybox_torch.train.stages import fitted_starts, held_out_samples, stage, window_lengths
 from greybox_torch.train.state import TrainingState
 from greybox_torch.train.trained import Report, Trained
@@ -92,6 +92,8 @@ def train_hybrid(
     surroundings = survey(model, result.problem, plain, result.substeps)
     hybrid = attach_network(result.problem, site.name, learner, surroundings)
     hybrid = _frozen(hybrid) if settings.freeze_physics else _begun(hybrid, alone.values)
+    if before is not None:
+        check_unknowns(_path(snapshot), before, int(hybrid.problem.free.sum()), len(hybrid.problem.model.states))
     stepper = make_stepper(hybrid.problem.model, hybrid.problem.free_names, device=device)
     course = _course(hybrid, stepper, settings, lengths, result, device, before)
     state = TrainingState.new(course.unknowns.start, settings.seed) if before is None else before.state

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from greybox_torch.diagnosis.settings.fields import about, complaint
 from greybox_torch.diagnosis.settings.thresholds import DiagnosisSettings
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.estimate.levenberg_marquardt import Settings
+from greybox_torch.reading import read_toml
 
 
 def settings_from_mapping(mapping: Mapping[str, Any], where: str) -> tuple[DiagnosisSettings, SearchBudget]:
@@ -48,20 +48,7 @@ def settings_from_file(path: Path) -> dict[str, Any]:
     Raises:
         UserError: the file cannot be read, or is not TOML.
     """
-    try:
-        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except FileNotFoundError:
-        raise UserError(f"{path}: no such file; expected settings of a diagnosis, in TOML") from None
-    except OSError as error:
-        raise UserError(
-            f"{path}: cannot be read: {error.strerror}; expected settings of a diagnosis, in TOML"
-        ) from None
-    except UnicodeDecodeError as error:
-        raise UserError(
-            f"{path}: not UTF-8 text (byte {error.start}); expected settings of a diagnosis, in TOML"
-        ) from None
-    except tomllib.TOMLDecodeError as error:
-        raise UserError(f"{path}: not valid TOML: {error}") from None
+    content = read_toml(path, "settings of a diagnosis, in TOML")
     inner = content.get("diagnosis")
     return inner if isinstance(inner, dict) and len(content) == 1 else content
 

@@ -1,0 +1,106 @@
+"""The one place where files that a user names are opened: regular files only, with one message for whatever is wrong.
+
+A pipe would wait for ever, a device never ends, and a file that claims more than it holds must not make anyone allocate it.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from greybox_torch.errors import UserError
+
+MOST_TEXT = 64 * 2**20
+"""Most bytes of a card or another text that is read as a whole."""
+
+_KINDS = (
+    (stat.S_ISFIFO, "is a pipe"),
+    (stat.S_ISCHR, "is a device"),
+    (stat.S_ISBLK, "is a device"),
+    (stat.S_ISSOCK, "is a socket"),
+)
+
+
+@contextmanager
+def opened(path: Path, expected: str, kind: str = "") -> Iterator[BinaryIO]:
+    """The regular file at `path`, open for reading.
+
+    Args:
+        expected: what should be there, to end a message with ("a data card, dataset.toml").
+        kind: what the file is, where messages should begin with that ("checkpoint").
+
+    Raises:
+        UserError: no such file, a folder, a pipe, a device, a file that may not be read, a name that no file can have, or an error of
+            the system while the block reads.
+    """
+    shown = f"{kind} {_shown(path)}".strip()
+    try:
+        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    except FileNotFoundError:
+        raise UserError(f"{shown}: no such file; expected {expected}") from None
+    except OSError as error:
+        raise UserError(f"{shown}: cannot be read: {error.strerror or error}; expected {expected}") from None
+    except ValueError as error:  # a NUL character, or one that the file system's encoding lacks
+        raise UserError(f"{shown}: cannot be the name of a file: {error}; expected {expected}") from None
+    try:
+        _check_regular(shown, os.fstat(descriptor).st_mode, expected)
+        with os.fdopen(descriptor, "rb", closefd=False) as file:
+            yield file
+    except OSError as error:
+        raise UserError(f"{shown}: cannot be read: {error.strerror or error}; expected {expected}") from None
+    finally:
+        os.close(descriptor)
+
+
+def check_file(path: Path, expected: str, kind: str = "") -> int:
+    """The size in bytes of the regular file at `path`. Raises UserError as :func:`opened` does."""
+    with opened(path, expected, kind) as file:
+        return os.fstat(file.fileno()).st_size
+
+
+def read_bytes(path: Path, expected: str, kind: str = "", *, most: int = MOST_TEXT) -> bytes:
+    """All of the file at `path`. Raises UserError as :func:`opened` does, and where it holds more than `most` bytes."""
+    with opened(path, expected, kind) as file:
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise UserError(f"{kind} {path}".strip() + f": has more than {most // 2**20} MiB; expected {expected}")
+    return content
+
+
+def read_text(path: Path, expected: str) -> str:
+    """All of the file at `path`, which is UTF-8. Raises UserError as :func:`read_bytes` does, and where it is not UTF-8."""
+    try:
+        return read_bytes(path, expected).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise UserError(f"{path}: not UTF-8 text (byte {error.start}); expected {expected}") from None
+
+
+def read_toml(path: Path, expected: str) -> dict[str, Any]:
+    """The tables of the TOML file at `path`. Raises UserError as :func:`read_text` does, and where it is not TOML."""
+    text = read_text(path, expected)
+    try:
+        return tomllib.loads(text.replace("\r\n", "\n").replace("\r", "\n"))
+    except RecursionError:
+        raise UserError(f"{path}: not valid TOML: nested too deeply; expected {expected}") from None
+    except ValueError as error:  # TOMLDecodeError, and Python's own limit on the digits of an integer
+        raise UserError(f"{path}: not valid TOML: {error}") from None
+
+
+def _check_regular(shown: str, mode: int, expected: str) -> None:
+    if stat.S_ISDIR(mode):
+        raise UserError(f"{shown}: cannot be read: Is a directory; expected {expected}")
+    if not stat.S_ISREG(mode):
+        kind = next((words for test, words in _KINDS if test(mode)), "is no regular file")
+        raise UserError(f"{shown}: {kind}; expected {expected}, in a regular file")
+
+
+def _shown(path: Path) -> str:
+    """A path as text that a terminal can show, shortened where it is endless."""
+    text = str(path)
+    text = text if text.isprintable() else ascii(text)
+    return text if len(text) <= 300 else f"{text[:150]}…{text[-100:]}"
