@@ -12,12 +12,18 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from greybox_torch.checkpoint import Checkpoint, load_checkpoint
     from greybox_torch.data import DataSet, load_dataset
+    from greybox_torch.data.readers import register_reader, unregister_reader
+    from greybox_torch.data.readers.table import Table
+    from greybox_torch.errors import NumericalError, UserError
     from greybox_torch.evaluation import Evaluation, evaluate
     from greybox_torch.mechanisms.friction_net import FrictionNet
+    from greybox_torch.mechanisms.library import register, unregister
+    from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
     from greybox_torch.mechanisms.residual_net import ResidualNet
-    from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
+    from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Input, Output, Parameter, Signals, State
     from greybox_torch.report.comparison import plot_comparison
     from greybox_torch.report.residuals import plot_residuals
+    from greybox_torch.report.sections.order import register_section, unregister_section
     from greybox_torch.restored import SavedModel, load_saved_model
     from greybox_torch.systems import load_model
     from greybox_torch.train import TrainingSettings, explain, fit_physics, train_hybrid
@@ -34,12 +40,19 @@ __all__ = [
     "FrictionNet",
     "GreyBoxModel",
     "Input",
+    "Mechanism",
+    "NumericalError",
     "Output",
     "Parameter",
+    "Probe",
     "ResidualNet",
     "SavedModel",
+    "Signals",
     "State",
+    "Surroundings",
+    "Table",
     "TrainingSettings",
+    "UserError",
     "evaluate",
     "explain",
     "fit_physics",
@@ -49,7 +62,13 @@ __all__ = [
     "load_saved_model",
     "plot_comparison",
     "plot_residuals",
+    "register",
+    "register_reader",
+    "register_section",
     "train_hybrid",
+    "unregister",
+    "unregister_reader",
+    "unregister_section",
 ]
 
 _HOME_OF = {
@@ -62,22 +81,35 @@ _HOME_OF = {
     "FrictionNet": "greybox_torch.mechanisms.friction_net",
     "GreyBoxModel": "greybox_torch.model",
     "Input": "greybox_torch.model",
+    "Mechanism": "greybox_torch.mechanisms.mechanism",
+    "NumericalError": "greybox_torch.errors",
     "Output": "greybox_torch.model",
     "Parameter": "greybox_torch.model",
+    "Probe": "greybox_torch.mechanisms.mechanism",
     "ResidualNet": "greybox_torch.mechanisms.residual_net",
     "SavedModel": "greybox_torch.restored",
+    "Signals": "greybox_torch.model",
     "State": "greybox_torch.model",
+    "Surroundings": "greybox_torch.mechanisms.mechanism",
+    "Table": "greybox_torch.data.readers.table",
     "TrainingSettings": "greybox_torch.train",
+    "UserError": "greybox_torch.errors",
     "evaluate": "greybox_torch.evaluation",
     "explain": "greybox_torch.train",
+    "fit_physics": "greybox_torch.train",
     "load_checkpoint": "greybox_torch.checkpoint",
     "load_dataset": "greybox_torch.data",
     "load_model": "greybox_torch.systems",
     "load_saved_model": "greybox_torch.restored",
-    "fit_physics": "greybox_torch.train",
     "plot_comparison": "greybox_torch.report.comparison",
     "plot_residuals": "greybox_torch.report.residuals",
+    "register": "greybox_torch.mechanisms.library",
+    "register_reader": "greybox_torch.data.readers",
+    "register_section": "greybox_torch.report.sections.order",
     "train_hybrid": "greybox_torch.train",
+    "unregister": "greybox_torch.mechanisms.library",
+    "unregister_reader": "greybox_torch.data.readers",
+    "unregister_section": "greybox_torch.report.sections.order",
 }
 
 

@@ -1,7 +1,10 @@
 from __future__ import annotations
 
-from collections.abc import Callable
+import importlib.util
+import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import ModuleType
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -9,6 +12,8 @@ import pytest
 from hypothesis import settings
 
 from greybox_torch.data import Channel, DataSet, InitialEntry, ParameterEntry, Recording, Role
+
+RunFile = Callable[..., ModuleType]
 
 settings.register_profile("greybox", deadline=None, max_examples=30)
 settings.load_profile("greybox")
@@ -196,3 +201,29 @@ def edit() -> Callable[[Path, str, str], None]:
         path.write_text(text.replace(old, new))
 
     return replace_once
+
+
+@pytest.fixture
+def run_file(tmp_path: Path) -> Iterator[RunFile]:
+    """Writes a user's file and runs it; what it registers is taken out again after the test."""
+    from greybox_torch.data.readers import READERS
+    from greybox_torch.mechanisms.library import LIBRARY
+    from greybox_torch.report.sections.order import SECTIONS, TEMPLATES
+
+    tables: tuple[dict, ...] = (LIBRARY, READERS, SECTIONS, TEMPLATES)
+    before = [dict(table) for table in tables]
+
+    def run(name: str, text: str) -> ModuleType:
+        file = tmp_path / name
+        file.write_text(text)
+        spec = importlib.util.spec_from_file_location(f"user_{file.stem}", file)
+        assert spec is not None and spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[spec.name] = module
+        spec.loader.exec_module(module)
+        return module
+
+    yield run
+    for table, was in zip(tables, before, strict=True):
+        table.clear()
+        table.update(was)

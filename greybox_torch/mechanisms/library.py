@@ -1,7 +1,8 @@
-"""The hypothesis library: every mechanism by its name, and the way to add one."""
+"""The hypothesis library: every mechanism by its name, and the way to add one and to take it out again."""
 
 from __future__ import annotations
 
+from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.actuator import (
     ActuatorDeadzone,
     InputBias,
@@ -11,6 +12,7 @@ from greybox_torch.mechanisms.actuator import (
     TorqueSaturation,
 )
 from greybox_torch.mechanisms.balance import LinearLeak, ThresholdFlow
+from greybox_torch.mechanisms.check import check_mechanism
 from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndStop, Gravity, TorqueRipple
 from greybox_torch.mechanisms.friction import (
     CoulombAsymmetry,
@@ -70,7 +72,36 @@ LEARNED: dict[str, type[Mechanism]] = {curve.name: curve for curve in (Unknown, 
 """Curves and networks that are learned where no law has a name; never hypotheses of their own."""
 
 
+BUILT_IN = frozenset(LIBRARY)
+
+
 def register(mechanism: type[Mechanism]) -> type[Mechanism]:
-    """Add a mechanism to the library (usable as a class decorator in a user's own file)."""
-    LIBRARY[mechanism.name] = mechanism
+    """Add a mechanism to the library, so that it takes part in every diagnosis (usable as a class decorator in a user's own file).
+
+    The same class from the same module, run again, takes the place of the earlier one.
+
+    Raises:
+        UserError: an attribute or method of the class is missing or wrong, or another mechanism has the name.
+    """
+    check_mechanism(mechanism)
+    name, there = mechanism.name, {**LEARNED, **LIBRARY}.get(mechanism.name)
+    if there is not None and (there.__module__, there.__qualname__) != (mechanism.__module__, mechanism.__qualname__):
+        raise UserError(
+            f"register: mechanism {mechanism.__name__}: the name '{name}' is taken by {there.__module__}.{there.__qualname__}; "
+            f"expected a name that is not in the library"
+        )
+    LIBRARY[name] = mechanism
     return mechanism
+
+
+def unregister(name: str) -> None:
+    """Take a mechanism of one's own out of the library again.
+
+    Raises:
+        UserError: the library does not have it, or it came with the package.
+    """
+    if name in BUILT_IN or name not in LIBRARY:
+        own = ", ".join(n for n in LIBRARY if n not in BUILT_IN) or "none"
+        why = "came with the package" if name in BUILT_IN else "is not in the library"
+        raise UserError(f"unregister: mechanism '{name}' {why}; registered are: {own}")
+    del LIBRARY[name]

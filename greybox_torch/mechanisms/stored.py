@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.library import LEARNED, LIBRARY
+from greybox_torch.mechanisms.library import BUILT_IN, LEARNED, LIBRARY
 from greybox_torch.mechanisms.mechanism import Mechanism, Range, Surroundings
 from greybox_torch.model import GreyBoxModel
 
@@ -17,10 +19,12 @@ from greybox_torch.model import GreyBoxModel
 def attachment_json(attachment: Attachment, around: Surroundings) -> dict[str, Any]:
     """Everything needed to attach the same mechanism again."""
     mechanism = attachment.mechanism
+    file = _defined_in(mechanism)
     return {
         "port": attachment.port,
         "mechanism": mechanism.name,
         "options": mechanism.options(),
+        **({"defined_in": file} if file else {}),
         "position": attachment.position,
         "shifted_state": attachment.shifted_state,
         "surroundings": {
@@ -43,7 +47,7 @@ def restored_model(base: GreyBoxModel, attachments: Sequence[Mapping[str, Any]])
         restored.append(
             Attachment(
                 entry["port"],
-                _mechanism(str(entry["mechanism"]), entry["options"]),
+                _mechanism(str(entry["mechanism"]), entry["options"], str(entry.get("defined_in", ""))),
                 position=entry["position"],
                 shifted_state=entry["shifted_state"],
             )
@@ -54,8 +58,21 @@ def restored_model(base: GreyBoxModel, attachments: Sequence[Mapping[str, Any]])
     return AugmentedModel(base, restored, surroundings)
 
 
-def _mechanism(name: str, options: Mapping[str, Any]) -> Mechanism:
+def _mechanism(name: str, options: Mapping[str, Any], defined_in: str) -> Mechanism:
     known = {**LIBRARY, **LEARNED}
     if name not in known:
-        raise UserError(f"mechanism '{name}' is not in the library; expected one of {', '.join(known)}")
+        raise UserError(
+            f"mechanism '{name}' is not in the library; expected one of {', '.join(known)}, or that {_definition(defined_in)} "
+            f"was run before, for example by putting it into the model's file"
+        )
     return known[name](**options)
+
+
+def _definition(file: str) -> str:
+    return f"{file}, which registered it," if file else "the file that registers it"
+
+
+def _defined_in(mechanism: Mechanism) -> str:
+    """The file of a mechanism that is not the package's, without its folder."""
+    module = sys.modules.get(type(mechanism).__module__)
+    return Path(getattr(module, "__file__", None) or "").name if mechanism.name not in {*BUILT_IN, *LEARNED} else ""

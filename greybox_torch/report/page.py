@@ -2,44 +2,54 @@
 
 from __future__ import annotations
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import ChoiceLoader, DictLoader, Environment, PackageLoader, StrictUndefined, TemplateError
 
 from greybox_torch.diagnosis.verdict import Verdict
+from greybox_torch.errors import UserError
 from greybox_torch.report import text
 from greybox_torch.report.about import About
-from greybox_torch.report.sections.effects import Effects
-from greybox_torch.report.sections.evidence import Evidence
-from greybox_torch.report.sections.headline import Headline
-from greybox_torch.report.sections.limits import Limits
-from greybox_torch.report.sections.making import Making
-from greybox_torch.report.sections.ranking import Ranking
-from greybox_torch.report.sections.scores import Scores
-from greybox_torch.report.sections.spectrum import Spectrum
-from greybox_torch.report.sections.traces import Traces
+from greybox_torch.report.sections.order import SECTIONS, TEMPLATES
 
 
 def render_page(verdict: Verdict, about: About) -> str:
-    """The page as HTML text, from top to bottom: the verdict, what was found, the evidence, what it gains, how it was made."""
-    sections = (
-        Headline.of(verdict),
-        Effects.of(verdict),
-        Evidence.of(verdict),
-        Scores.of(verdict, about),
-        Limits.of(verdict),
-        Traces.of(verdict),
-        Spectrum.of(verdict),
-        Ranking.of(verdict),
-        Making.of(verdict, about),
-    )
-    page = _environment().get_template("page.html.j2")
-    return page.render(
-        title=f"{verdict.dataset}: diagnosis", sections=[s for s in sections if s is not None], version=about.version
-    )
+    """The page as HTML text, with its sections from top to bottom.
+
+    Raises:
+        UserError: a registered section cannot be made or printed.
+    """
+    environment = _environment()
+    printed = [_printed(environment, name, verdict, about) for name in SECTIONS]
+    page = environment.get_template("page.html.j2")
+    return page.render(title=f"{verdict.dataset}: diagnosis", sections=printed, version=about.version)
+
+
+def _printed(environment: Environment, name: str, verdict: Verdict, about: About) -> str:
+    """The HTML of a section, empty where it has nothing to say."""
+    if name not in TEMPLATES:
+        section = SECTIONS[name](verdict, about)
+        return "" if section is None else environment.get_template(section.template).render(section=section)
+    try:
+        section = SECTIONS[name](verdict, about)
+        return "" if section is None else environment.get_template(_own(name)).render(section=section)
+    except TemplateError as error:
+        raise UserError(f"report section '{name}': its template: {type(error).__name__}: {error}") from None
+    except Exception as error:
+        raise UserError(f"report section '{name}': making it raised {type(error).__name__}: {error}") from None
+
+
+def _own(name: str) -> str:
+    """The name of a registered template, where it cannot hide one of the package."""
+    return f"registered/{name}"
 
 
 def _environment() -> Environment:
     environment = Environment(
-        loader=PackageLoader("greybox_torch.report", "templates"),
+        loader=ChoiceLoader(
+            [
+                PackageLoader("greybox_torch.report", "templates"),
+                DictLoader({_own(name): template for name, template in TEMPLATES.items()}),
+            ]
+        ),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import torch
 
-from greybox_torch.mechanisms import library
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Range, Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
@@ -163,14 +162,3 @@ def test_is_finite_where_a_signal_never_moved(mechanism: Mechanism, around: Surr
     for p in mechanism.parameters(still):
         assert np.isfinite(p.value)
     mechanism.probes(still)
-
-
-def test_register_adds_a_users_own_law(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(library, "LIBRARY", {})
-
-    @library.register
-    class Magnet(Mechanism):
-        name = "magnet"
-        kinds = ("body",)
-
-    assert list(library.LIBRARY.items()) == [("magnet", Magnet)]
