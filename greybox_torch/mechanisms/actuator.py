@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import torch
 
+from greybox_torch.mechanisms.degenerate import too_long
 from greybox_torch.mechanisms.linear_law import LinearLaw, Of, Per
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.transmission import dead_zone
@@ -43,6 +44,9 @@ class InputLag(Mechanism):
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (2, 6, 20, 60)]
 
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return too_long("T", values["T"], around)
+
 
 class InputDelay(Mechanism):
     """The input acts later by a dead time: u(t − T)."""
@@ -64,6 +68,9 @@ class InputDelay(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (2, 6, 20, 60)]
+
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return too_long("T", values["T"], around)
 
 
 class InputBias(LinearLaw):

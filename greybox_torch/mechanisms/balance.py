@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import torch
 
+from greybox_torch.mechanisms.degenerate import beyond
 from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
@@ -59,3 +60,6 @@ class ThresholdFlow(Mechanism):
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         level = around.ranges["level"]
         return [Probe(("c",), {"threshold": level.low + f * level.span}) for f in (0.3, 0.5, 0.7, 0.85, 0.95)]
+
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return beyond("threshold", values["threshold"], around, "level")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import torch
 
+from greybox_torch.mechanisms.degenerate import beyond, not_a_frequency_of_the_record, not_seen_to_repeat
 from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals, State
@@ -78,6 +79,9 @@ class TorqueRipple(Mechanism):
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(("a", "b"), {"order": self.order})]
 
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return not_seen_to_repeat(values["order"], around)
+
 
 class EndStop(Mechanism):
     """−k (θ − θ_1) − c ω beyond θ_1 (``side`` +1) or below it (``side`` −1), as long as that pushes back: a stop does not pull."""
@@ -121,6 +125,9 @@ class EndStop(Mechanism):
             Probe(("k",), {"where": travel.low + share * width, "side": -1.0, "c": 0.0}) for share in (0.03, 0.1, 0.25)
         ]
 
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return beyond("where", values["where"], around, "position")
+
     def signals(self) -> tuple[str, ...]:
         return ("position",)
 
@@ -131,6 +138,7 @@ class AdditionalMode(Mechanism):
     name = "additional_mode"
     kinds = ("body",)
     needs = ("speed",)
+    natural = ("zeta",)
     explanation = "One more mass hangs on this body by a spring and a damper (an unmodelled resonance)."
     source = "E. Wernholt, S. Gunnarsson, SYSID 2006; J. P. Den Hartog, Mechanical Vibrations, 1956"
     experiment = "broadband excitation around the resonance"
@@ -165,3 +173,6 @@ class AdditionalMode(Mechanism):
         nyquist = torch.pi / around.sample_time
         shares = (0.002, 0.003, 0.0045, 0.007, 0.01, 0.015, 0.022, 0.033, 0.05, 0.075, 0.11)
         return [Probe(("mass",), {"omega": share * nyquist, "zeta": 0.05}) for share in shares]
+
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return not_a_frequency_of_the_record("omega", values["omega"], around)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import torch
 
+from greybox_torch.mechanisms.degenerate import faster_than_it_went
 from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.sign_change import DryLaw, smooth_sign, width_parameter, widths
@@ -51,6 +52,8 @@ class StribeckFriction(Mechanism):
     needs = ("speed",)
     generalises = ("coulomb_friction", "viscous_friction")
     includes = generalises
+    essential = ("F_s",)
+    natural = ("v_0.lower",)
     explanation = (
         "Friction is highest near standstill and falls with speed before viscous friction takes over (Stribeck effect)."
     )
@@ -79,6 +82,9 @@ class StribeckFriction(Mechanism):
             for share in (0.05, 0.2)
             for width in widths(around)[:2]
         ]
+
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return faster_than_it_went("v_s", values["v_s"], around)
 
 
 class CoulombAsymmetry(DryLaw):

@@ -7,45 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
+from greybox_torch.mechanisms.degenerate import at_a_bound, lost_in_its_deviation
+from greybox_torch.mechanisms.surroundings import Range, Surroundings
 from greybox_torch.model import Parameter, Signals, State
-
-
-@dataclass(frozen=True)
-class Range:
-    """Where a signal moved in the recordings: lowest and highest value, and root mean square, in its unit."""
-
-    low: float
-    high: float
-    rms: float
-
-    @property
-    def reach(self) -> float:
-        """The largest magnitude, never zero."""
-        return max(abs(self.low), abs(self.high), 1e-12)
-
-    @property
-    def span(self) -> float:
-        """From the lowest to the highest value, never zero."""
-        return max(self.high - self.low, 1e-9 * self.reach)
-
-
-@dataclass(frozen=True)
-class Surroundings:
-    """What a mechanism may know of the place it is attached to, to choose sensible ranges.
-
-    ``ranges`` and ``units`` by signal name (``speed``, ``position``, ``load``, ``time``, ``deflection``, ``rate``, ``level``, ``input``,
-    ``output``); ``force_unit`` of the port; ``sample_time`` in s.
-    """
-
-    ranges: Mapping[str, Range]
-    units: Mapping[str, str]
-    force_unit: str
-    sample_time: float
-
-    def per(self, signal: str, power: int = 1) -> str:
-        """The unit of force per signal to a power."""
-        unit = self.units.get(signal, "")
-        return self.force_unit if not unit else f"{self.force_unit}/({unit})" + (f"^{power}" if power > 1 else "")
 
 
 @dataclass(frozen=True)
@@ -60,6 +24,8 @@ class Probe:
 
 
 SHARE = "share"
+
+__all__ = ["SHARE", "Mechanism", "Probe", "Range", "Surroundings"]
 
 
 class Mechanism:
@@ -82,6 +48,10 @@ class Mechanism:
     """Of these the ones whose whole force is a part of its own: beside it they would name the same friction twice."""
     twins: ClassVar[tuple[str, ...]] = ()
     """Mechanisms elsewhere that no recording of one input and one output tells from this one, however well it is fitted."""
+    essential: ClassVar[tuple[str, ...]] = ()
+    """Amplitudes without which this would be another law; by default it is absent only where all are zero."""
+    natural: ClassVar[tuple[str, ...]] = ()
+    """Parameters whose bounds are ends that they may well have (``NAME``, ``NAME.lower`` or ``NAME.upper``); zero always is."""
     explanation: ClassVar[str] = ""
     source: ClassVar[str] = ""
     experiment: ClassVar[str] = ""
@@ -122,6 +92,31 @@ class Mechanism:
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         """The looks that the screen takes."""
         raise NotImplementedError
+
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        """What is wrong with a place, a length or a time among the fitted ``values``, given where the signals moved."""
+        return None
+
+    def degenerate(
+        self, around: Surroundings, values: Mapping[str, float], deviations: Mapping[str, float]
+    ) -> str | None:
+        """In words why the fitted parameters describe nothing on the machine, or None where they may.
+
+        An amplitude is smaller than its standard deviation, a place, length or time lies outside of what was travelled or recorded, or a
+        parameter sits at a bound that is not its natural end.
+
+        Args:
+            values: by parameter name, in the parameters' units.
+            deviations: standard deviations by parameter name, of those that were estimated.
+        """
+        parameters = self.parameters(around)
+        directions = {name for probe in self.probes(around) for name in probe.directions} - {SHARE}
+        amplitudes = [p.name for p in parameters if p.name in directions or (not directions and not p.fixed)]
+        return (
+            lost_in_its_deviation(self.essential or amplitudes, values, deviations)
+            or self.misplaced(around, values)
+            or at_a_bound(parameters, values, self.natural)
+        )
 
     def options(self) -> dict[str, Any]:
         """What the constructor was told, by argument, so that the same mechanism can be made again."""

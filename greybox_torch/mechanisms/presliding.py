@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import torch
 
+from greybox_torch.mechanisms.degenerate import longer_than_the_travel
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals, State
 
@@ -44,6 +45,9 @@ class PreslidingHysteresis(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(("F",), {"z_0": factor * self._smallest(around)}) for factor in (2, 8, 32)]
+
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return longer_than_the_travel("z_0", values["z_0"], around, "position")
 
     def _smallest(self, around: Surroundings) -> float:
         """A bristle deflection whose time constant the sampling still resolves."""

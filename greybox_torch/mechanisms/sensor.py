@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+from greybox_torch.mechanisms.degenerate import too_long
 from greybox_torch.mechanisms.linear_law import LinearLaw, Of
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals, State
@@ -40,6 +41,9 @@ class SensorLag(Mechanism):
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (2, 6, 20)]
 
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return too_long("T", values["T"], around)
+
 
 class OutputDelay(Mechanism):
     """The output is recorded later by a dead time T, as its second-order Padé approximation (1 − sT/2 + s²T²/12)/(1 + sT/2 + s²T²/12)."""
@@ -72,6 +76,9 @@ class OutputDelay(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (3, 8, 24)]
+
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return too_long("T", values["T"], around)
 
 
 class SensorBias(LinearLaw):

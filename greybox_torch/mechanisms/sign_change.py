@@ -38,6 +38,8 @@ class DryLaw(LinearLaw):
     A subclass writes :meth:`law`, the force while the speed is positive and large, and the class attributes of :class:`LinearLaw`.
     """
 
+    natural = ("v_0.lower",)
+
     def parameters(self, around: Surroundings) -> list[Parameter]:
         return [self.size(around), width_parameter(around)]
 

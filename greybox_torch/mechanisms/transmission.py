@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import torch
 
+from greybox_torch.mechanisms.degenerate import longer_than_the_travel
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals, State
 
@@ -80,6 +81,7 @@ class HystereticSpring(Mechanism):
     name = "hysteretic_spring"
     kinds = ("coupling",)
     needs = ("rate",)
+    natural = ("sharpness",)
     explanation = "The coupling remembers: loading and unloading follow different curves (micro-slip, rubber)."
     source = "R. Bouc, 1967; Y.-K. Wen, J. Eng. Mech. 102(2), 1976; M. Ruderman, F. Hoffmann, T. Bertram, IEEE TIE 56(10), 2009"
     experiment = "slow loading and unloading between several limits"
@@ -107,6 +109,9 @@ class HystereticSpring(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(("F",), {"z_0": factor * self._smallest(around), "sharpness": 0.5}) for factor in (2, 8, 32)]
+
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return longer_than_the_travel("z_0", values["z_0"], around, "deflection")
 
     def _smallest(self, around: Surroundings) -> float:
         return around.ranges["rate"].reach * around.sample_time

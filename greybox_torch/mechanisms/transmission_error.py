@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import torch
 
+from greybox_torch.mechanisms.degenerate import not_seen_to_repeat
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
 
@@ -23,6 +24,7 @@ class TransmissionError(Mechanism):
     kinds = ("coupling",)
     needs = ("deflection", "position")
     kinematic = True
+    natural = ("reaction",)
     explanation = "The gear's output does not follow its input exactly: a kinematic error periodic in position."
     source = "T. Tuttle, W. Seering, IEEE Trans. Robotics and Automation 12(3), 1996"
     experiment = "slow constant speed over several turns, in both directions"
@@ -68,6 +70,9 @@ class TransmissionError(Mechanism):
         fixed = {"order": self.order, **({"damping": 0.0} if "speed" in around.ranges else {})}
         shares: list[dict[str, float]] = [{"reaction": 0.0}, {"reaction": 1.0}] if self._reacts(around) else [{}]
         return [Probe(("a", "b"), {**fixed, **share}) for share in shares]
+
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return not_seen_to_repeat(values["order"], around)
 
     def _reacts(self, around: Surroundings) -> bool:
         return "load" in around.ranges

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import torch
 
+from greybox_torch.mechanisms.degenerate import not_a_time_of_the_record, not_seen_to_repeat
 from greybox_torch.mechanisms.linear_law import Of
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.sign_change import DryLaw, smooth_sign, width_parameter, widths
@@ -35,6 +36,7 @@ class PositionDependentFriction(Mechanism):
     kinds = ("body",)
     needs = ("speed", "position")
     generalises = ("coulomb_friction",)
+    natural = ("v_0.lower",)
     explanation = "The friction level varies periodically with position (bent shaft, eccentric bearing)."
     source = "M. R. Popović, A. A. Goldenberg, IEEE Trans. Robotics and Automation 14(1), 1998"
     experiment = "the same positions passed in both directions"
@@ -59,6 +61,9 @@ class PositionDependentFriction(Mechanism):
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(("a", "b"), {"order": self.order, "v_0": widths(around)[1]})]
 
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return not_seen_to_repeat(values["order"], around)
+
 
 class FrictionWarmup(Mechanism):
     """−ΔF exp(−t / T) tanh(v / v_0): Coulomb friction that decays (ΔF > 0) or grows with time."""
@@ -66,6 +71,7 @@ class FrictionWarmup(Mechanism):
     name = "friction_warmup"
     kinds = ("body",)
     needs = ("speed", "time")
+    natural = ("v_0.lower",)
     explanation = "The friction level drifts as the machine warms up."
     source = "A. C. Bittencourt, S. Gunnarsson, J. Dyn. Sys. Meas. Control 134, 2012"
     experiment = "the same motion repeated from cold to warm"
@@ -88,3 +94,6 @@ class FrictionWarmup(Mechanism):
             for share in (0.1, 0.3, 1.0)
             for width in widths(around)[:2]
         ]
+
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return not_a_time_of_the_record("T", values["T"], around)

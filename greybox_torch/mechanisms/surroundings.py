@@ -1,0 +1,44 @@
+"""What a mechanism may know of the place it is attached to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Range:
+    """Where a signal moved in the recordings: lowest and highest value, and root mean square, in its unit."""
+
+    low: float
+    high: float
+    rms: float
+
+    @property
+    def reach(self) -> float:
+        """The largest magnitude, never zero."""
+        return max(abs(self.low), abs(self.high), 1e-12)
+
+    @property
+    def span(self) -> float:
+        """From the lowest to the highest value, never zero."""
+        return max(self.high - self.low, 1e-9 * self.reach)
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What a mechanism may know of the place it is attached to, to choose sensible ranges.
+
+    ``ranges`` and ``units`` by signal name (``speed``, ``position``, ``load``, ``time``, ``deflection``, ``rate``, ``level``, ``input``,
+    ``output``); ``force_unit`` of the port; ``sample_time`` in s.
+    """
+
+    ranges: Mapping[str, Range]
+    units: Mapping[str, str]
+    force_unit: str
+    sample_time: float
+
+    def per(self, signal: str, power: int = 1) -> str:
+        """The unit of force per signal to a power."""
+        unit = self.units.get(signal, "")
+        return self.force_unit if not unit else f"{self.force_unit}/({unit})" + (f"^{power}" if power > 1 else "")

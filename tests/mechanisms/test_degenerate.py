@@ -1,0 +1,122 @@
+"""Fitted parameters that describe nothing on the machine are said to, and sound ones are not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greybox_torch.mechanisms.library import LEARNED, LIBRARY
+from greybox_torch.mechanisms.mechanism import SHARE, Mechanism
+from greybox_torch.mechanisms.surroundings import Surroundings
+from greybox_torch.mechanisms.transmission_error import TransmissionError
+from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
+
+# In the surroundings of conftest: speed −20 to 16 rad/s, position −3 to 5 rad, level 0.5 to 4 m, 10 s at 1 ms.
+SOUND: dict[str, dict[str, float]] = {
+    "stribeck_friction": {"F_c": 1.0, "F_s": 0.5, "c": 0.1, "v_s": 2.0, "v_0": 0.1},
+    "presliding_hysteresis": {"F": 1.0, "z_0": 0.1},
+    "friction_warmup": {"delta": 0.5, "T": 3.0, "v_0": 0.1},
+    "position_dependent_friction": {"a": 0.5, "b": 0.0, "order": 3.0, "v_0": 0.1},
+    "torque_ripple": {"a": 0.5, "b": 0.1, "order": 6.0},
+    "end_stop": {"k": 500.0, "where": 4.5, "c": 1.0, "side": 1.0},
+    "additional_mode": {"mass": 0.1, "omega": 60.0, "zeta": 0.05},
+    "hysteretic_spring": {"F": 1.0, "z_0": 0.01, "sharpness": 0.0},
+    "transmission_error": {"a": 0.01, "b": 0.0, "order": 3.0, "damping": 0.0, "reaction": 1.0},
+    "threshold_flow": {"c": 1.0, "threshold": 2.0},
+    "input_lag": {"T": 0.01},
+    "torque_saturation": {"limit": 4.0},
+    "coulomb_friction": {"F_c": 1.0, "v_0": 0.1},
+    "viscous_friction": {"c": 0.2},
+}
+
+
+def law_of(name: str) -> Mechanism:
+    special = {
+        "position_dependent_friction": PositionDependentFriction(3.0),
+        "transmission_error": TransmissionError(3.0),
+    }
+    if name == "torque_ripple":
+        return LIBRARY[name](order=6.0)  # type: ignore[call-arg]
+    return special.get(name) or LIBRARY[name]()
+
+
+def small(values: dict[str, float]) -> dict[str, float]:
+    return {name: 0.01 * abs(value) + 1e-9 for name, value in values.items()}
+
+
+@pytest.mark.parametrize("name", SOUND)
+def test_sound_parameters_are_not_objected_to(name: str, around: Surroundings) -> None:
+    law, values = law_of(name), SOUND[name]
+    assert set(values) == {p.name for p in law.parameters(around)}
+    assert law.degenerate(around, values, small(values)) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "said"),
+    [
+        ("presliding_hysteresis", {"z_0": 15.9}, "z_0 = 15.9 is more than position moved in all, 8 rad"),
+        ("hysteretic_spring", {"z_0": 0.2}, "z_0 = 0.2 is more than deflection moved in all, 0.11 rad"),
+        ("stribeck_friction", {"v_s": 20.0}, "v_s = 20 is above every recorded speed, 20 rad/s"),
+        ("friction_warmup", {"T": 0.002}, "T = 0.002 s is shorter than 3 samples of 0.001 s"),
+        ("friction_warmup", {"T": 21.0}, "T = 21 s is far longer than the longest record, 10 s"),
+        ("input_lag", {"T": 21.0}, "T = 21 s is far longer than the longest record, 10 s"),
+        ("end_stop", {"where": 5.0}, "where = 5 lies outside of where position was, -3 to 5 rad"),
+        ("threshold_flow", {"threshold": 0.4}, "threshold = 0.4 lies outside of where level was, 0.5 to 4 m"),
+        (
+            "torque_ripple",
+            {"order": 1.5},
+            "order = 1.5 repeats 1.9 times in the travel; 2 are needed to see that it does",
+        ),
+        ("torque_ripple", {"order": 300.0}, "order = 300 leaves 1.5 samples a period at the usual speed"),
+        ("position_dependent_friction", {"order": 1.0}, "order = 1 repeats 1.3 times in the travel"),
+        ("transmission_error", {"order": 1.0}, "order = 1 repeats 1.3 times in the travel"),
+        ("additional_mode", {"omega": 1.0}, "omega = 1 rad/s swings 1.6 times in the longest record; 2 are needed"),
+        ("additional_mode", {"omega": 3500.0}, "omega = 3.5e+03 rad/s is above the Nyquist frequency, 3.14e+03 rad/s"),
+        ("torque_saturation", {"limit": 6.0}, "limit = 6 is at its upper bound"),
+        ("coulomb_friction", {"v_0": 6.0}, "v_0 = 6 is at its upper bound"),
+        ("input_lag", {"T": 0.00045}, "T = 0.00045 is at its lower bound"),
+    ],
+)
+def test_what_lies_outside_of_the_recordings_is_said(name: str, change: dict[str, float], said: str, around) -> None:
+    values = {**SOUND[name], **change}
+    assert str(law_of(name).degenerate(around, values, small(values))).startswith(said)
+
+
+@pytest.mark.parametrize("name", SOUND)
+def test_an_amplitude_below_its_deviation_is_said(name: str, around: Surroundings) -> None:
+    law, values = law_of(name), SOUND[name]
+    wide = {name: 2.0 * abs(value) + 1e-9 for name, value in values.items()}
+    assert "is smaller than its standard deviation" in str(law.degenerate(around, values, wide))
+
+
+def test_what_makes_it_stribeck_counts(around: Surroundings) -> None:
+    """F_s = 14716 ± 101910 is no Stribeck effect, however sure the Coulomb level beside it."""
+    values = {**SOUND["stribeck_friction"], "F_s": 14716.0}
+    said = law_of("stribeck_friction").degenerate(around, values, {**small(values), "F_s": 101910.0})
+    assert said == "F_s = 1.47e+04 is smaller than its standard deviation 1.02e+05"
+
+
+def test_one_sure_amplitude_of_two_is_enough(around: Surroundings) -> None:
+    values = SOUND["torque_ripple"]
+    assert law_of("torque_ripple").degenerate(around, values, {**small(values), "b": 5.0}) is None
+
+
+def test_zero_is_a_natural_bound_and_so_is_true_sticking(around: Surroundings) -> None:
+    values = {**SOUND["coulomb_friction"], "v_0": law_of("coulomb_friction").parameters(around)[1].bounds[0]}
+    assert law_of("coulomb_friction").degenerate(around, values, small(values)) is None
+    values = {**SOUND["end_stop"], "c": 0.0}
+    assert law_of("end_stop").degenerate(around, values, small(values)) is None
+
+
+@pytest.mark.parametrize("law", [pytest.param(law, id=law.name) for law in (*LIBRARY.values(), *LEARNED.values())])
+def test_every_mechanism_answers(law: type[Mechanism], around: Surroundings) -> None:
+    mechanism = Unknown("speed") if law is Unknown else law()
+    values = {p.name: p.value for p in mechanism.parameters(around)}
+    amplitudes = {n for probe in mechanism.probes(around) for n in probe.directions} - {SHARE}
+    tiny = {
+        **values,
+        **{n: min(1e-9, p.bounds[1]) for p in mechanism.parameters(around) for n in [p.name] if n in amplitudes},
+    }
+    answer = mechanism.degenerate(around, tiny, dict.fromkeys(tiny, 1.0) if amplitudes else dict.fromkeys(tiny, np.inf))
+    assert answer is not None and "standard deviation" in answer
