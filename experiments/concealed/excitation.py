@@ -71,6 +71,24 @@ def slow_profile(rng: Generator, samples: int, sample_time: float) -> Array:
     return 40.0 * profile / np.abs(profile).max()
 
 
+def moves(rng: Generator, total: int, samples: int, samples_of_lag: float) -> Array:
+    """A move every 0.1 to 0.25 of the `samples` recorded, to alternating sides and changing places, of 0.6 to 1; rounded corners."""
+    targets = np.empty(total)
+    at, side = 0, rng.choice([-1.0, 1.0])
+    while at < total:
+        length = int(rng.uniform(0.1, 0.25) * samples)
+        targets[at : at + length] = side * rng.uniform(0.6, 1.0)
+        at, side = at + length, -side
+    return smooth(targets, samples_of_lag)
+
+
+def slow_sweep(rng: Generator, total: int, samples: int) -> Array:
+    """Sines of one, two and three periods in the `samples` recorded, scaled to a peak of 1."""
+    turn = 2.0 * np.pi * np.arange(total) / samples
+    waves = sum(rng.uniform(0.4, 1.0) * np.sin(n * turn + rng.uniform(0.0, 2.0 * np.pi)) for n in (1, 2, 3))
+    return np.asarray(waves) / np.abs(waves).max()
+
+
 def draw_excitation(rng: Generator, samples: int, sample_time: float) -> Excitation:
     """One case's four experiments of `samples` recorded samples each."""
     before = round(PRE_ROLL / sample_time)

@@ -1,12 +1,18 @@
-"""Generate cases of concealed effects on the robot arm.
+"""Generate cases of concealed effects: the standard set of the robot arm, or fresh cases on the machines of the proof.
 
     python -m experiments.concealed.generate OUT [--cases 64] [--seed 0] [--effects a,b] [--samples 19838]
                                              [--two 12] [--none 12] [--outside 6] [--strength moderate]
+    python -m experiments.concealed.generate OUT --family mujoco [--cases 12] [--seed 0] [--effects a,b] [--strength drawn] [--workers 2]
+
+The standard set:
 
 writes OUT/NAME/{dataset.toml, estimation.csv, validation1.csv, validation2.csv, validation3.csv, key.json}. Without
 --effects, `--none` cases have no effect, `--outside` one from outside the library of mechanisms, `--two` a pair, and the
 others one each, going round the catalogue; --cases is the total. With --effects every case has one of those listed, in
 turn ("none" and pairs "a+b" are allowed). A case depends on the seed, its number, its plan and the number of samples alone.
+
+With --family (mujoco, own, or the name of one machine of `machines/`) the cases are as in the proof, keys beside: 12 by default, effects
+going round, one case in four without, strengths weak, moderate, dominant, overwhelming (encoder-grade noise), or drawn.
 """
 
 from __future__ import annotations
@@ -22,6 +28,7 @@ from numpy.random import Generator, SeedSequence
 from experiments.concealed.case import Case, draw_case, simulate_cases
 from experiments.concealed.effects import CATALOGUE, LIBRARY, OUTSIDE, STRENGTHS
 from experiments.concealed.files import write_case
+from experiments.concealed.proof.errors import ProofError
 
 
 def draw_pair(rng: Generator) -> tuple[str, str]:
@@ -48,14 +55,16 @@ def standard_plans(seed: int, cases: int, two: int, none: int, outside: int) -> 
 
 def listed_plans(listed: str, cases: int) -> list[tuple[str, ...]]:
     """Plans from the --effects list, in turn."""
-    choices: list[tuple[str, ...]] = []
-    for word in listed.split(","):
-        names = () if word == "none" else tuple(word.split("+"))
-        for name in names:
-            if name not in CATALOGUE:
-                raise ValueError(f"--effects: no effect is called {name!r}; there are none, {', '.join(CATALOGUE)}")
-        choices.append(names)
+    choices = listed_effects(listed)
+    for name in (name for names in choices for name in names):
+        if name not in CATALOGUE:
+            raise ValueError(f"--effects: no effect is called {name!r}; there are none, {', '.join(CATALOGUE)}")
     return [choices[i % len(choices)] for i in range(cases)]
+
+
+def listed_effects(listed: str) -> list[tuple[str, ...]]:
+    """What the words of an --effects list mean: "none", a name, or a pair "a+b"."""
+    return [() if word == "none" else tuple(word.split("+")) for word in listed.split(",") if word]
 
 
 def generate(
@@ -75,23 +84,21 @@ def generate(
 
 
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", type=Path)
-    parser.add_argument("--cases", type=int, default=64)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--effects", help="comma-separated names, 'none', or pairs joined by '+'")
-    parser.add_argument("--samples", type=int, default=19838)
-    parser.add_argument("--two", type=int, default=12)
-    parser.add_argument("--none", type=int, default=12)
-    parser.add_argument("--outside", type=int, default=6)
-    parser.add_argument("--strength", choices=[*STRENGTHS, "drawn"], default="moderate")
+    parser = _parser()
     options = parser.parse_args(arguments)
     try:
+        if options.family:
+            return _fresh(options)
+        count = 64 if options.cases is None else options.cases
         if options.effects:
-            plans = listed_plans(options.effects, options.cases)
+            plans = listed_plans(options.effects, count)
         else:
-            plans = standard_plans(options.seed, options.cases, options.two, options.none, options.outside)
-    except ValueError as error:
+            plans = standard_plans(options.seed, count, options.two, options.none, options.outside)
+        if options.strength not in (*STRENGTHS, "drawn"):
+            raise ValueError(
+                f"--strength {options.strength}: not of the standard set; expected {', '.join(STRENGTHS)} or drawn"
+            )
+    except (ValueError, ProofError) as error:
         parser.error(str(error))
     began = time.perf_counter()
     cases = generate(options.out, plans, seed=options.seed, samples=options.samples, strength=options.strength)
@@ -99,6 +106,39 @@ def main(arguments: list[str] | None = None) -> int:
         print(case.name, "+".join(case.plan) or "none")
     print(f"{len(cases)} cases in {time.perf_counter() - began:.0f} s", file=sys.stderr)
     return 0
+
+
+def _fresh(options: argparse.Namespace) -> int:
+    from experiments.concealed.fresh import fresh_plans, write_fresh
+
+    count = 12 if options.cases is None else options.cases
+    effects = listed_effects(options.effects or "")
+    planned = fresh_plans(options.family, options.seed, count, effects=effects, strength=options.strength)
+    write_fresh(
+        planned, options.seed, options.out, workers=options.workers, progress=lambda text: print(text, file=sys.stderr)
+    )
+    for number, plan in enumerate(planned):
+        print(f"c{number:03d}", plan.machine, "+".join(plan.plan) or "none", " ".join(plan.words))
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    from experiments.concealed.fresh import FAMILIES
+    from experiments.concealed.scaling import WORDS
+
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--family", choices=FAMILIES, metavar="FAMILY", help=", ".join(FAMILIES))
+    parser.add_argument("--cases", type=int)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--effects", help="comma-separated names, 'none', or pairs joined by '+'")
+    parser.add_argument("--samples", type=int, default=19838, help="of the standard set")
+    parser.add_argument("--two", type=int, default=12, help="of the standard set")
+    parser.add_argument("--none", type=int, default=12, help="of the standard set")
+    parser.add_argument("--outside", type=int, default=6, help="of the standard set")
+    parser.add_argument("--strength", choices=[*WORDS, "drawn"], default="moderate")
+    parser.add_argument("--workers", type=int, default=2, help="processes, of --family")
+    return parser
 
 
 if __name__ == "__main__":

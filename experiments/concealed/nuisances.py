@@ -25,6 +25,10 @@ class Nuisances:
     disturbance: Array
     jitter: Array
 
+    def times(self, factor: float) -> Nuisances:
+        """All of them, larger or smaller."""
+        return Nuisances(factor * self.disturbance, factor * self.jitter)
+
 
 def draw_nuisances(
     rng: Generator, outputs: int, total: int, sample_time: float, *, noise: float, drift: float

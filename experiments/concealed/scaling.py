@@ -13,7 +13,7 @@ from experiments.concealed.visibility import free_run, residuals, scatter, sensi
 
 Array = NDArray[np.float64]
 
-WORDS = {"weak": (2.5, 4.0), "moderate": (8.0, 20.0), "dominant": (40.0, 100.0)}
+WORDS = {"weak": (2.5, 4.0), "moderate": (8.0, 20.0), "dominant": (40.0, 100.0), "overwhelming": (300.0, 3000.0)}
 """Visibilities that are aimed at, by word."""
 ROUNDS = 4
 """Of the search for a scale."""

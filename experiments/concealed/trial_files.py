@@ -26,7 +26,7 @@ def card_text(trial: Trial) -> str:
         'hold = "zoh"',
         "",
         "[channels]",
-        *(f'{c.name} = {{ column = "{c.column}", unit = "{c.unit}" }}' for c in (machine.input, *machine.outputs)),
+        *(f'{c.name} = {{ column = "{c.column}", unit = "{c.unit}" }}' for c in (*machine.inputs, *machine.outputs)),
         "",
     ]
     for experiment in EXPERIMENTS:
@@ -45,9 +45,9 @@ def write(folder: Path, trial: Trial, run: Run) -> None:
     """Write card, recordings and, where the machine is not built in, the nominal model. Seven significant digits."""
     machine = trial.machine
     folder.mkdir(parents=True, exist_ok=True)
-    header = ",".join(c.column for c in (machine.input, *machine.outputs))
+    header = ",".join(c.column for c in (*machine.inputs, *machine.outputs))
     for j in range(LANES):
-        table = np.stack([run.command[:, j], *run.outputs[:, :, j]], axis=1)[machine.before :]
+        table = np.column_stack([run.command[..., j], *run.outputs[:, :, j]])[machine.before :]
         np.savetxt(folder / _file(EXPERIMENTS[j]), table, fmt="%.7g", delimiter=",", header=header, comments="")
     if machine.model_file is not None:
         shutil.copyfile(machine.model_file, folder / "model.py")
@@ -74,6 +74,7 @@ def key(trial: Trial) -> dict[str, Any]:
         "section": trial.section,
         "estimation": trial.estimation,
         "noise": trial.noise,
+        "quiet": trial.quiet,
         "visibility": trial.visibility,
         "strength": word(trial.visibility) if effects else "none",
         "seed": trial.seed,

@@ -20,8 +20,8 @@ from experiments.concealed.machines.base import LANES, Machine, Run, Trial
 
 Array = NDArray[np.float64]
 
-MODERATE, DOMINANT = 6.0, 30.0
-"""Visibilities from which on an effect counts as moderate, as dominant, whatever was aimed at."""
+MODERATE, DOMINANT, OVERWHELMING = 6.0, 30.0, 200.0
+"""Visibilities from which on an effect counts as moderate, as dominant, as overwhelming, whatever was aimed at."""
 EVERY = 4
 """Samples from one to the next that the projection looks at."""
 RELATIVE_STEP = 1e-4
@@ -31,7 +31,10 @@ MOST = 1e6
 
 def word(visibility: float) -> str:
     """What the key calls it."""
-    return "dominant" if visibility >= DOMINANT else "moderate" if visibility >= MODERATE else "weak"
+    found = "weak"
+    for name, least in (("moderate", MODERATE), ("dominant", DOMINANT), ("overwhelming", OVERWHELMING)):
+        found = name if visibility >= least else found
+    return found
 
 
 def residuals(machine: Machine, trials: Sequence[Trial], runs: Sequence[Run]) -> list[Array]:
@@ -124,7 +127,7 @@ def visibilities(
 def _together(machine: Machine, runs: Sequence[Run]) -> tuple[Array, Array, Array]:
     """Recorded commands (samples, lanes), start states, and outputs (outputs, samples, lanes) of all runs."""
     b = machine.before
-    command = np.concatenate([run.command[b:] for run in runs], axis=1)
+    command = np.concatenate([run.command[b:] for run in runs], axis=-1)
     start = np.concatenate([run.start for run in runs], axis=1)
     return command, start, np.concatenate([run.outputs[:, b:] for run in runs], axis=2)
 

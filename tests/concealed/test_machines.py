@@ -42,7 +42,7 @@ def mechanisms(machine: str, port: str) -> set[str]:
     kind = port.partition(".")[0]
     if kind in ("actuator", "sensor"):
         return ACTUATOR | {"torque_ripple"} if kind == "actuator" else SENSOR
-    return COUPLING if port.endswith("_spring") else BODY
+    return COUPLING if port.endswith(("_spring", "shaft")) else BODY
 
 
 @pytest.mark.parametrize("machine", MACHINES)
@@ -68,7 +68,7 @@ def test_nominal_model_names_the_channels_and_parameters_of_the_card(machine: st
 
     m = MACHINES[machine]
     model = load_model(m.model if m.model_file is None else f"{m.model_file}:{m.model.partition(':')[2]}")
-    assert [i.name for i in model.inputs] == [m.input.name]
+    assert [(i.name, i.unit) for i in model.inputs] == [(c.name, c.unit) for c in m.inputs]
     assert [(o.name, o.unit) for o in model.outputs] == [(c.name, c.unit) for c in m.outputs]
     assert {p.name for p in model.declared_parameters} == set(m.parameters)
 

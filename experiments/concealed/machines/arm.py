@@ -38,7 +38,7 @@ class Arm(Machine):
     name = "arm"
     title = "Robot arm drive"
     model = "robot_arm"
-    input = Channel("torque", "u", "N m")
+    inputs = (Channel("torque", "u", "N m"),)
     outputs = (Channel("motor_speed", "y", "rad/s"),)
     sample_time = 0.001
     samples = 5000

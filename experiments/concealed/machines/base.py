@@ -48,6 +48,7 @@ class Trial:
     section: str = "library"
     estimation: str = "estimation"
     noise: float = 1.0
+    quiet: float = 1.0
     targets: tuple[float, ...] = ()
     scales: list[float] = field(default_factory=list)
     switches: list[dict[str, float]] = field(default_factory=list)
@@ -65,7 +66,7 @@ class Trial:
         `plain` is the run without effect, of which some draws depend.
         """
         before = self.machine.before
-        peak = float(np.abs(plain.command[before:, 0]).max())
+        peak = float(np.abs(plain.command[before:, ..., 0]).max())
         around = Surroundings(self.truth, plain.position[before:], peak)
         self.switches = []
         for effect, scale in zip(self.effects, self.scales, strict=True):
@@ -79,8 +80,8 @@ class Trial:
 class Run:
     """What one trial's four experiments gave, the run before the recording included.
 
-    command (total, 4), outputs (channels, total, 4), position (total, 4); start (states of the plain model, 4) where the recording
-    begins.
+    command (total, 4), or (total, inputs, 4) where a machine has several; outputs (channels, total, 4), position (total, 4); start (states
+    of the plain model, 4) where the recording begins.
     """
 
     command: Array
@@ -97,7 +98,7 @@ class Machine(ABC):
     model: ClassVar[str]
     """The model's name on the card."""
     model_file: ClassVar[Path | None] = None
-    input: ClassVar[Channel]
+    inputs: ClassVar[tuple[Channel, ...]]
     outputs: ClassVar[tuple[Channel, ...]]
     sample_time: ClassVar[float]
     samples: ClassVar[int]
@@ -146,8 +147,20 @@ class Machine(ABC):
             for name in self.parameters
         }
 
-    def draw(self, seed: int, number: int, plan: tuple[str, ...], *, noise: float = 1.0, **fields: Any) -> Trial:
-        """Draw one trial; the strength of its effects is set by `scaling.calibrate`."""
+    def draw(
+        self,
+        seed: int,
+        number: int,
+        plan: tuple[str, ...],
+        *,
+        noise: float = 1.0,
+        quiet: float = 1.0,
+        **fields: Any,
+    ) -> Trial:
+        """Draw one trial; the strength of its effects is set by `scaling.calibrate`.
+
+        `noise` is that of the sensors, times the usual; `quiet` is what the sensors' noise and all nuisances are multiplied with.
+        """
         rng = np.random.default_rng(SeedSequence([seed, 2, number]))
         truth = self.draw_truth(rng, plan)
         return Trial(
@@ -158,9 +171,10 @@ class Machine(ABC):
             plan=plan,
             truth=truth,
             card=self.draw_card(rng, truth),
-            excitation=self.draw_excitation(rng, plan, noise),
-            nuisances=self.draw_nuisances(rng),
+            excitation=self.draw_excitation(rng, plan, noise * quiet),
+            nuisances=self.draw_nuisances(rng).times(quiet),
             noise=noise,
+            quiet=quiet,
             scales=[1.0] * len(plan),
             **fields,
         )

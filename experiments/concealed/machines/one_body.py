@@ -11,7 +11,7 @@ import numpy as np
 from numpy.random import Generator
 
 from experiments.concealed.case import concealed_laws
-from experiments.concealed.excitation import multisine, smooth
+from experiments.concealed.excitation import moves, multisine, slow_sweep
 from experiments.concealed.machines.base import LANES, Array, Machine, Run, Trial
 from experiments.concealed.nuisances import Nuisances, draw_nuisances, nuisance_laws
 from experiments.concealed.plant_body import BodyDrive, BodyPlant
@@ -72,32 +72,14 @@ class OneBody(Machine):
         level = self.shaking * rng.uniform(0.8, 1.2)
         shaken = [level * multisine(rng, total, self.sample_time, *self.band) for _ in range(3)]
         feedforward = np.stack([*shaken, 0.2 * level * multisine(rng, total, self.sample_time, *self.band)], axis=1)
-        reference = np.stack(
-            [self._moves(rng, total), self._moves(rng, total), np.zeros(total), self._sweep(rng, total)], axis=1
-        )
+        lag = self.corner / self.sample_time
+        paths = [self.move * moves(rng, total, self.samples, lag) for _ in range(2)]
+        sweep = self.sweep * slow_sweep(rng, total, self.samples)
+        reference = np.stack([*paths, np.zeros(total), sweep], axis=1)
         size = np.array(self.sensor_noise)[:, None, None]
         return Shaking(
             feedforward, reference, noise * size * rng.standard_normal((len(size), total, 4)), *self.gains(rng)
         )
-
-    def _moves(self, rng: Generator, total: int) -> Array:
-        """A move every 0.1 to 0.25 of the recording, to alternating sides and changing places."""
-        targets = np.empty(total)
-        at, side = 0, rng.choice([-1.0, 1.0])
-        while at < total:
-            length = int(rng.uniform(0.1, 0.25) * self.samples)
-            targets[at : at + length] = side * rng.uniform(0.6, 1.0) * self.move
-            at, side = at + length, -side
-        return smooth(targets, self.corner / self.sample_time)
-
-    def _sweep(self, rng: Generator, total: int) -> Array:
-        time = np.arange(total) * self.sample_time
-        length = self.samples * self.sample_time
-        waves = sum(
-            rng.uniform(0.4, 1.0) * np.sin(2.0 * np.pi * n * time / length + rng.uniform(0.0, 2.0 * np.pi))
-            for n in (1, 2, 3)
-        )
-        return self.sweep * np.asarray(waves) / np.abs(waves).max()
 
     def draw_nuisances(self, rng: Generator) -> Nuisances:
         total = self.before + self.samples

@@ -67,7 +67,7 @@ class Pendulum(OneBody):
     title = "Pendulum"
     model = "model.py:Pendulum"
     model_file = Path(__file__).parents[1] / "nominal" / "pendulum.py"
-    input = Channel("torque", "torque", "N m")
+    inputs = (Channel("torque", "torque", "N m"),)
     outputs = (Channel("angle", "angle", "rad"), Channel("speed", "speed", "rad/s"))
     sample_time = 0.002
     samples = 4000

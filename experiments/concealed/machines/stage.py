@@ -40,7 +40,7 @@ class Stage(OneBody):
     title = "Positioning stage"
     model = "model.py:PositioningStage"
     model_file = Path(__file__).parents[1] / "nominal" / "positioning_stage.py"
-    input = Channel("force", "force", "N")
+    inputs = (Channel("force", "force", "N"),)
     outputs = (Channel("position", "position", "m"),)
     sample_time = 0.001
     samples = 4000

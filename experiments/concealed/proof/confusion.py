@@ -18,7 +18,7 @@ KINDS = ("body", "coupling", "actuator", "sensor")
 def kind(port: str) -> str:
     """The kind of a port of one of the machines, by its name."""
     first = port.partition(".")[0]
-    return first if first in KINDS else "coupling" if port.endswith("_spring") else "body"
+    return first if first in KINDS else "coupling" if port.endswith(("_spring", "shaft")) else "body"
 
 
 def matrix(found: Sequence[Scored]) -> tuple[list[str], list[str], NDArray[np.int64]]:

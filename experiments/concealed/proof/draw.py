@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from importlib.util import find_spec
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -12,8 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.random import SeedSequence
 
-from experiments.concealed.machines import MACHINES
+from experiments.concealed.machines import ENGINE, MACHINES
 from experiments.concealed.machines.base import Run, Trial
+from experiments.concealed.proof.errors import ProofError
 from experiments.concealed.proof.plan import Planned
 from experiments.concealed.scaling import WORDS, calibrate
 from experiments.concealed.trial_files import key, write
@@ -27,7 +29,12 @@ def draw_cases(
     workers: int = 1,
     progress: Callable[[str], None] = lambda text: None,
 ) -> dict[str, dict[str, Any]]:
-    """Write every case into its folder c000, c001, ... in the order of the plan; the keys by name. One process a machine."""
+    """Write every case into its folder c000, c001, ... in the order of the plan; the keys by name. One process a machine.
+
+    Raises ProofError where a machine needs an engine that is not installed.
+    """
+    if any(plan.machine in ENGINE for plan in planned) and find_spec("mujoco") is None:
+        raise ProofError("mujoco is not installed; expected the extra [proof], which simulates a part of the machines")
     keys: dict[str, dict[str, Any]] = {}
     own = {m: {f"c{i:03d}": p for i, p in enumerate(planned) if p.machine == m} for m in MACHINES}
     own = {machine: cases for machine, cases in own.items() if cases}
@@ -71,7 +78,9 @@ def _simulated(machine: str, own: dict[str, Planned], seed: int) -> dict[str, tu
 
 
 def _drawn(machine: str, plan: Planned, seed: int, *, noise: float = 1.0, targets: tuple[float, ...] = ()) -> Trial:
-    return MACHINES[machine].draw(seed, plan.number, plan.plan, noise=noise, section=plan.section, targets=targets)
+    return MACHINES[machine].draw(
+        seed, plan.number, plan.plan, noise=noise, quiet=plan.quiet, section=plan.section, targets=targets
+    )
 
 
 def _again(machine: str, plan: Planned, seed: int, first: Trial) -> Trial:

@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 
 from experiments.concealed.proof.confusion import matrix
-from experiments.concealed.visibility import DOMINANT, MODERATE
+from experiments.concealed.visibility import DOMINANT, MODERATE, OVERWHELMING
 from experiments.verdicts.calibrate import draw as draw_reliability
 from experiments.verdicts.calibrate import reliability
 from experiments.verdicts.rates import Rate
 from experiments.verdicts.scoring import Scored
 
-EDGES = (0.0, 2.0, 4.0, MODERATE, 12.0, DOMINANT, np.inf)
-COLOURS = {"weak": "#9aa5b1", "moderate": "#3b7dd8", "dominant": "#123a6d"}
-LEAST_SHOWN, MOST_SHOWN = 0.5, 300.0
+EDGES = (0.0, 2.0, 4.0, MODERATE, 12.0, DOMINANT, OVERWHELMING, np.inf)
+COLOURS = {"weak": "#9aa5b1", "moderate": "#3b7dd8", "dominant": "#123a6d", "overwhelming": "#8a2be2"}
+LEAST_SHOWN, MOST_SHOWN = 0.5, 5000.0
 
 
 def draw_all(found: Sequence[Scored], folder: Path) -> list[str]:
@@ -95,13 +95,13 @@ def _strength(found: Sequence[Scored], file: Path) -> bool:
             high.append(rate.interval[1] - rate.share)
         axes.errorbar(x, y, yerr=(low, high), color=colour, label=label, marker="o", ms=4, lw=1.2, capsize=2)
     axes.plot(seen, np.full(len(seen), -0.06), "|", color="0.5", ms=6)
-    for edge in (MODERATE, DOMINANT):
+    for edge in (MODERATE, DOMINANT, OVERWHELMING):
         axes.axvline(edge, color="0.85", lw=1, zorder=0)
-    for word, at in (("weak", 1.7), ("moderate", 9.0), ("dominant", 60.0)):
+    for word, at in (("weak", 1.7), ("moderate", 13.0), ("dominant", 75.0), ("overwhelming", 1000.0)):
         axes.text(at, 1.06, word, color="0.45", fontsize=8, ha="center")
     axes.set(xscale="log", xlim=(LEAST_SHOWN, MOST_SHOWN), ylim=(-0.1, 1.12), ylabel="share (95 % interval)")
     axes.set_xlabel("visibility: error of the refitted plain model, in units of the floor")
-    ticks = (0.5, 1, 2, 5, 10, 20, 50, 100, 200)
+    ticks = (0.5, 1, 2, 5, 10, 30, 100, 300, 1000, 3000)
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.minorticks_off()
     axes.legend(frameon=False, loc="lower right", bbox_to_anchor=(1.0, 0.06))

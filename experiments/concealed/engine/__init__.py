@@ -1,0 +1,1 @@
+"""Machines simulated by MuJoCo: physics, and an engine, that nobody here wrote."""
