@@ -8,15 +8,19 @@ entered by `register_reader`.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Collection
 from pathlib import Path
 
 from greybox_torch.data.readers.csv import read_csv
+from greybox_torch.data.readers.hdf5 import read_hdf5
+from greybox_torch.data.readers.json_log import read_json, read_json_lines
 from greybox_torch.data.readers.matlab import read_matlab
 from greybox_torch.data.readers.npz import read_npz
 from greybox_torch.data.readers.parquet import read_parquet
 from greybox_torch.data.readers.table import Table
 from greybox_torch.errors import UserError, did_you_mean
+from greybox_torch.reading import check_file
 
 Reader = Callable[[Path, Collection[str]], Table]
 
@@ -25,6 +29,15 @@ READERS: dict[str, Reader] = {
     ".mat": read_matlab,
     ".npz": read_npz,
     ".parquet": read_parquet,
+    ".h5": read_hdf5,
+    ".hdf5": read_hdf5,
+    ".json": read_json,
+    ".jsonl": read_json_lines,
+    ".ndjson": read_json_lines,
+    ".tsv": read_csv,
+    ".txt": read_csv,
+    ".dat": read_csv,
+    ".asc": read_csv,
 }
 
 
@@ -60,17 +73,46 @@ def unregister_reader(suffix: str) -> None:
 
 
 def read_table(path: Path, columns: Collection[str]) -> Table:
-    """The named columns of the file at `path`, by the reader for its suffix. Raises UserError as the readers do."""
+    """The named columns of the file at `path`, by the reader for its suffix.
+
+    Raises UserError as the readers do, and for whatever else the library behind a reader raises: a damaged file has ways of its own.
+    """
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise UserError(f'{path}: no reader for files ending in "{path.suffix}"; expected one of {", ".join(READERS)}')
-    if path.is_dir():
-        raise UserError(f"{path}: is a folder; expected a recording")
-    if not path.exists():
-        beside = [other.name for other in path.parent.iterdir()] if path.parent.is_dir() else []
-        hint = did_you_mean(path.name, beside)
-        raise UserError(f"{path}: no such file{hint}; expected a recording, named relative to the data card")
+    _check_there(path)
     try:
-        return reader(path, columns)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # a library's remark on a file is of no use beside our own message
+            return reader(path, columns)
+    except UserError:
+        raise
+    except MemoryError:
+        raise UserError(f"{path}: needs more memory than there is; expected a smaller recording") from None
     except OSError as error:
-        raise UserError(f"{path}: cannot be read: {error.strerror or error}") from None
+        raise UserError(f"{path}: cannot be read: {_said(error)}") from None
+    except Exception as error:
+        raise UserError(
+            f"{path}: cannot be read as {path.suffix.lower()}: {type(error).__name__}: {_said(error)}; "
+            "the file is damaged, or of another kind"
+        ) from None
+
+
+def _check_there(path: Path) -> None:
+    """Raises UserError unless there is a regular file at `path`."""
+    try:
+        check_file(path, "a recording")
+    except UserError as error:
+        if "Is a directory" in str(error):
+            raise UserError(f"{path}: is a folder; expected a recording") from None
+        if "no such file" not in str(error):
+            raise
+        beside = [other.name for other in path.parent.iterdir()] if path.parent.is_dir() else []
+        hint = did_you_mean(path.name, beside[:2000])
+        raise UserError(f"{path}: no such file{hint}; expected a recording, named relative to the data card") from None
+
+
+def _said(error: Exception) -> str:
+    """A library's own words, on one line."""
+    text = " ".join((getattr(error, "strerror", None) or str(error)).split())
+    return text if len(text) <= 200 else f"{text[:200]}…"

@@ -1,4 +1,8 @@
-"""MATLAB files: versions up to 7 by scipy, version 7.3 (which is HDF5) by h5py. One variable a column."""
+"""MATLAB files: versions up to 7 by scipy, version 7.3 (which is HDF5) by h5py.
+
+A variable is a column; fields of structures are "log.motor.u", columns of a matrix "Y[:, 1]", elements of cells "runs[0].u". Whatever
+else the file holds, objects of classes included, is left alone.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from greybox_torch.data.readers.table import Table, as_vector, require
+from greybox_torch.data.readers.column import inside, root_of, steps_of
+from greybox_torch.data.readers.hdf5 import read_groups
+from greybox_torch.data.readers.matlab_directory import variables_of
+from greybox_torch.data.readers.table import Table, as_vector, check_declared, require
 from greybox_torch.errors import UserError
 
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -18,40 +25,33 @@ def read_matlab(path: Path, columns: Collection[str]) -> Table:
     with path.open("rb") as file:
         head = file.read(512 + len(_HDF5_SIGNATURE))
     is_hdf5 = head.startswith(_HDF5_SIGNATURE) or head.endswith(_HDF5_SIGNATURE)  # MATLAB writes 512 bytes ahead of it
-    return _read_v73(path, columns) if is_hdf5 else _read_v5(path, columns)
+    return read_groups(path, columns, is_matlab=True) if is_hdf5 else _read_v5(path, columns)
 
 
 def _read_v5(path: Path, columns: Collection[str]) -> Table:
     import scipy.io
 
     try:
-        found = [name for name, _, _ in scipy.io.whosmat(path)]
-        require(path, columns, found)
-        variables = scipy.io.loadmat(path, variable_names=list(columns))
+        found = variables_of(path)
+        roots = {column: root_of(column, found) for column in columns}
+        require(path, [column for column, root in roots.items() if root not in found], list(found))
+        for column, root in roots.items():
+            check_declared(path, column, found[root].samples, found[root].most_samples)
+        variables = scipy.io.loadmat(path, variable_names=list(dict.fromkeys(roots.values())))
     except UserError:
         raise
     except Exception as error:  # scipy lets many kinds escape from damaged files, down to zlib.error and IndexError
-        raise UserError(f"{path}: cannot be read as a MATLAB file: {error}") from None
+        raise UserError(f"{path}: cannot be read as a MATLAB file: {' '.join(str(error).split())}") from None
     vectors = {}
-    for column in columns:
-        values = variables[column]
-        vectors[column] = as_vector(path, column, values.toarray() if hasattr(values, "toarray") else values)
-    return Table(path, vectors)
-
-
-def _read_v73(path: Path, columns: Collection[str]) -> Table:
-    import h5py
-
-    with h5py.File(path, "r") as file:
-        found = [name for name in map(str, file) if not name.startswith("#")]  # "#refs#" and the like are MATLAB's own
-        require(path, columns, found)
-        vectors = {}
-        for column in columns:
-            variable = file[column]
-            kind = np.asarray(variable.attrs.get("MATLAB_class", b"")).astype(str).item()
-            if not isinstance(variable, h5py.Dataset) or kind in ("char", "cell", "struct"):
-                what = {"char": "text", "cell": "cells"}.get(kind, "a structure")
-                raise UserError(f'{path}, column "{column}": holds {what}; expected real numbers')
-            empty = "MATLAB_empty" in variable.attrs  # MATLAB then stores the shape in the place of values
-            vectors[column] = as_vector(path, column, np.empty(0) if empty else variable[()])
+    for column, root in roots.items():
+        if root not in variables:
+            raise UserError(
+                f'{path}, column "{column}": holds an object of a class of MATLAB\'s; expected real numbers'
+            )
+        values = variables[root]
+        if column != root:
+            values = inside(f'{path}, column "{column}"', values, steps_of(column)[1:])
+        vectors[column] = as_vector(
+            path, column, np.asarray(values.toarray() if hasattr(values, "toarray") else values)
+        )
     return Table(path, vectors)

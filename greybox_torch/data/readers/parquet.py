@@ -1,11 +1,15 @@
-"""Parquet tables. Nulls and NaN are missing samples."""
+"""Parquet tables. Nulls and NaN are missing samples; dates and times are seconds since the first of them."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
 from pathlib import Path
+from typing import Any
 
-from greybox_torch.data.readers.table import Table, as_vector, require
+import numpy as np
+from numpy.typing import NDArray
+
+from greybox_torch.data.readers.table import MOST_SAMPLES, Table, as_vector, check_declared, require
 from greybox_torch.errors import UserError
 
 
@@ -16,15 +20,33 @@ def read_parquet(path: Path, columns: Collection[str]) -> Table:
 
     try:
         with parquet.ParquetFile(path) as file:
-            require(path, columns, file.schema_arrow.names)
+            names = file.schema_arrow.names
+            require(path, columns, names)
+            for column in columns:
+                if names.count(column) > 1:
+                    raise UserError(f'{path}: {names.count(column)} columns are named "{column}"; expected one')
+                check_declared(path, column, file.metadata.num_rows, MOST_SAMPLES)
             table = file.read(columns=list(columns))
     except pa.ArrowException as error:
-        raise UserError(f"{path}: cannot be read as parquet: {error}") from None
-    vectors = {}
-    for column in columns:
-        values = table.column(column)
-        kind = values.type
-        if not (pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_boolean(kind)):
-            raise UserError(f'{path}, column "{column}": holds {kind}; expected real numbers')
-        vectors[column] = as_vector(path, column, values.cast(pa.float64(), safe=False).to_numpy())
-    return Table(path, vectors)
+        raise UserError(f"{path}: cannot be read as parquet: {' '.join(str(error).split())}") from None
+    return Table(path, {column: as_vector(path, column, _numbers(path, column, table)) for column in columns})
+
+
+def _numbers(path: Path, column: str, table: Any) -> NDArray:
+    import pyarrow as pa
+
+    values = table.column(column)
+    kind = values.type
+    if pa.types.is_timestamp(kind) or pa.types.is_duration(kind):
+        stamps = values.to_numpy()
+        known = stamps[~np.isnat(stamps)]
+        since = stamps - known[0] if pa.types.is_timestamp(kind) and known.size else stamps
+        return np.where(np.isnat(stamps), np.nan, since.astype("timedelta64[ns]") / np.timedelta64(1, "s"))
+    if not (
+        pa.types.is_integer(kind)
+        or pa.types.is_floating(kind)
+        or pa.types.is_boolean(kind)
+        or pa.types.is_decimal(kind)
+    ):
+        raise UserError(f'{path}, column "{column}": holds {kind}; expected real numbers')
+    return values.cast(pa.float64(), safe=False).to_numpy()

@@ -2,23 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from greybox_torch.data.checks import KINDS
 from greybox_torch.errors import UserError, did_you_mean
+
+MOST_SAMPLES = 200_000_000
+"""Most samples of a column. What a file declares beyond that is not believed, so that nobody allocates it."""
+
+
+class NoSuchColumn(UserError):
+    """A file does not have the column `column`."""
+
+    def __init__(self, message: str, column: str) -> None:
+        super().__init__(message)
+        self.column = column
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Columns of a file as float64 arrays of shape (N,), and where the format has lines, the line of every sample."""
+    """Columns of a file as float64 arrays of shape (N,), and where the format has lines, the line of every sample.
+
+    `units` are by column, where the file says them.
+    """
 
     path: Path
     columns: dict[str, NDArray[np.float64]]
     lines: Sequence[int] | None = None
+    units: Mapping[str, str] = field(default_factory=dict)
 
     def place(self, column: str, sample: int) -> str:
         """Where a sample stands in the file, to begin a message with."""
@@ -27,11 +43,28 @@ class Table:
 
 
 def require(path: Path, columns: Iterable[str], found: Collection[str]) -> None:
-    """Raises UserError where one of the columns is not among those found in the file."""
+    """Raises NoSuchColumn, a UserError, where one of the columns is not among those found in the file."""
+    known = set(found)
     for column in columns:
-        if column not in found:
-            known = ", ".join(found) or "none"
-            raise UserError(f'{path}: no column "{column}"{did_you_mean(column, found)}; found {known}')
+        if column not in known:
+            listed = list(found)
+            names = ", ".join(listed[:40]) + (f", … ({len(listed)} in all)" if len(listed) > 40 else "") or "none"
+            raise NoSuchColumn(
+                f'{path}: no column "{column}"{did_you_mean(column, listed[:2000])}; found {names}', column
+            )
+
+
+def check_declared(path: Path, column: str, samples: int, most_bytes: int) -> None:
+    """Raises UserError where a file declares more samples than it can hold, before anything is allocated for them.
+
+    Args:
+        most_bytes: what the bytes of the file that belong to the column could at most be unpacked to.
+    """
+    if samples > MOST_SAMPLES or samples > most_bytes:
+        raise UserError(
+            f'{path}, column "{column}": declares {samples:.6g} samples, more than the file can hold or than {MOST_SAMPLES:.0e}; '
+            "the file is damaged, or larger than is read at once"
+        )
 
 
 def as_vector(path: Path, column: str, values: NDArray) -> NDArray[np.float64]:
@@ -40,9 +73,12 @@ def as_vector(path: Path, column: str, values: NDArray) -> NDArray[np.float64]:
     Raises UserError for any other shape, and for text, complex numbers, structures and whatever else is no number.
     """
     if values.dtype.kind not in "fiub":
-        kind = {"U": "text", "S": "text", "c": "complex numbers", "O": "cells or objects", "V": "a structure"}
-        what = kind.get(values.dtype.kind, str(values.dtype))
+        what = "a structure" if values.dtype.names else KINDS.get(values.dtype.kind, str(values.dtype))
         raise UserError(f'{path}, column "{column}": holds {what}; expected real numbers')
     if values.ndim == 0 or max(values.shape) != values.size:
-        raise UserError(f'{path}, column "{column}": has the shape {values.shape}; expected a row or column vector')
-    return values.reshape(-1).astype(np.float64)
+        advice = f'; one column of a matrix is written "{column}[:, 0]"' if values.ndim == 2 and values.size else ""
+        raise UserError(
+            f'{path}, column "{column}": has the shape {values.shape}; expected a row or column vector{advice}'
+        )
+    with np.errstate(over="ignore", invalid="ignore"):
+        return values.reshape(-1).astype(np.float64)

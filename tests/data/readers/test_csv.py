@@ -42,12 +42,28 @@ def test_reads(tmp_path: Path, text: str, u: list[float], y: list[float]) -> Non
     ("text", "message"),
     [
         ("u,y\n1,2\n\n3,abc\n", 'a.csv, line 4, column "y": found "abc", expected a number'),
-        ("u,y\n[V],[rad]\n1,2\n", 'a.csv, line 2, column "u": found "[V]", expected a number'),
+        ("u,y\n1,2\n[V],[rad]\n", 'a.csv, line 3, column "u": found "[V]", expected a number'),
+        ("u,y\nNA,NA\n1,2\n", 'a.csv, line 2, column "u": found "NA", expected a number'),
+        ("u,y\n1_000,2\n", 'a.csv, line 2, column "u": found "1_000", expected a number'),
+        ("u,y\n\u0661\u0662,2\n", 'line 2, column "u": found "\u0661\u0662", expected a number'),
+        ("u,y\n\uff11,2\n", 'column "u": found "\uff11", expected a number'),
+        ("u,y\n0x10,2\n", 'found "0x10"'),
+        (
+            "u;y\n1,5;2.5\n3,5;2\n",
+            'line 2, column "y": found "2.5", expected a number (missing samples are empty cells or NaN; decimals',
+        ),
+        ("u;y\n1.234,5;2\n3,5;2\n", 'line 2, column "u": found "1.234,5"'),
+        (
+            'u,y\n1,2\n3,"4\n5,6\n7,8\n',
+            "a.csv, line 3: not comma-separated values: a quotation mark is opened here and not closed",
+        ),
+        ("a,b\nc,d\n", 'no column "u"; found a, b'),
+        ("#2\n", 'no column "u"; found #2'),
         ("u,y\n1,2\n3,NA\n", 'line 3, column "y": found "NA"'),
         ("u,y\n1,2,3,4\n", "a.csv, line 2: found 4 cell(s), expected 2"),
         ("u,y\n1,2\n3\n", "a.csv, line 3: found 1 cell(s), expected 2"),
         ("u,u,y\n1,2,3\n", 'a.csv, line 1: 2 columns are named "u"; expected one'),
-        ("u;y\n1;2\n", 'no column "u"; found u;y'),
+        ("U;Y\n1;2\n", 'no column "u" (did you mean "U"?); found U, Y'),
         ("", 'no column "u"; found none'),
         ('u,y\n"' + "1" * 140000 + '",2\n', "a.csv, line 2: not comma-separated values"),
     ],
@@ -67,3 +83,51 @@ def test_lines_of_samples_count_what_stands_between(tmp_path: Path) -> None:
     assert table.lines is not None
     assert list(table.lines) == [3, 4, 5]
     assert table.place("u", 2) == f'{path}, line 5, column "u", sample 2 (the first is 0)'
+
+
+@pytest.mark.parametrize(
+    ("text", "encoding"),
+    [
+        ("u;y\n1,5;-2\n3;4e-1\n", "utf-8"),
+        ("u\ty\n1.5\t-2\n3\t4e-1\n", "utf-8"),
+        ("u\ty\n1,5\t-2\n3\t4e-1\n", "utf-8"),
+        ("u|y\n1.5|-2\n3|0.4\n", "utf-8"),
+        ("  u   y\n  1.5  -2\n  3.0 0.4\n", "utf-8"),
+        ("u,y\nV,rad/s\n1.5,-2\n3,0.4\n", "utf-8"),
+        ("t;u;y\n[s];[V];[°/s]\n0;1,5;-2\n1;3;0,4\n", "cp1252"),
+        ("u;y;µ\n1,5;-2;0\n3;0,4;0\n", "utf-16"),
+        ("Bench 3; Müller\n\nDate: 21.11.2026\nRate: 1000 Hz\nt,u,y\n0,1.5,-2\n1,3,0.4\n", "cp1252"),
+        ('# "quoted once\n#\nu,y\n1.5,-2\n3,0.4\n', "utf-8"),
+        ('"u" , "y"\n"1.5" , "-2"\n3,0.4\n', "utf-8"),
+        ('note,u,y\n"a\nb",1.5,-2\n,3,.4\n', "utf-8"),
+    ],
+)
+def test_what_instruments_write(tmp_path: Path, text: str, encoding: str) -> None:
+    (tmp_path / "a.csv").write_bytes(text.encode(encoding))
+    columns = read_csv(tmp_path / "a.csv", ("u", "y")).columns
+    assert (columns["u"].tolist(), columns["y"].tolist()) == ([1.5, 3.0], [-2.0, 0.4])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "0,1.5,-2\n1,3,0.4\n",
+        "0;1,5;-2\n1;3;0,4\n",
+        "0 1.5 -2\n1  3  0.4\n",
+        "t,u,y\n0,1.5,-2\n1,3,0.4\n",
+        "made by hand\n0\t1.5\t-2\n1\t3\t0.4\n",
+    ],
+)
+def test_columns_by_their_position(tmp_path: Path, text: str) -> None:
+    (tmp_path / "a.csv").write_text(text)
+    columns = read_csv(tmp_path / "a.csv", ("#2", "#3")).columns
+    assert (columns["#2"].tolist(), columns["#3"].tolist()) == ([1.5, 3.0], [-2.0, 0.4])
+
+
+def test_lines_count_from_the_beginning_of_the_file(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("made\nby hand\nu;y\n[V];[rad]\n1;2\n3;x\n")
+    table = read_csv(tmp_path / "a.csv", ("u",))
+    assert list(table.lines or ()) == [5, 6]
+    assert table.units == {"u": "V"}
+    with pytest.raises(UserError, match=r'line 6, column "y": found "x"'):
+        read_csv(tmp_path / "a.csv", ("y",))

@@ -1,0 +1,117 @@
+"""JSON logs: an object of arrays, a list of records, or one record a line (`.jsonl`). Null and NaN are missing samples.
+
+Nested members are written with dots: "motor.current" is `{"motor": {"current": …}}`, in every record or around an array.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greybox_torch.data.readers.column import Field, Step, inside, root_of, steps_of
+from greybox_torch.data.readers.table import NoSuchColumn, Table, as_vector, require
+from greybox_torch.errors import UserError
+from greybox_torch.reading import read_text
+
+_EXPECTED = "a log in JSON"
+
+
+def read_json(path: Path, columns: Collection[str]) -> Table:
+    """Reads columns of a JSON file. Raises UserError for files that are not JSON and for columns that do not hold numbers."""
+    try:
+        content = json.loads(read_text(path, _EXPECTED))
+    except (ValueError, RecursionError) as error:
+        raise UserError(f"{path}: not JSON: {_said(error)}; expected {_EXPECTED}") from None
+    if isinstance(content, list):
+        return _from_records(path, content, columns, None)
+    if not isinstance(content, dict):
+        raise UserError(f"{path}: holds neither an object nor a list; expected arrays by name, or a list of records")
+    vectors = {}
+    for column in columns:
+        root = root_of(column, content)
+        require(path, [column] if root not in content else [], list(content))
+        place = f'{path}, column "{column}"'
+        found = content[root] if column == root else inside(place, content[root], steps_of(column)[1:])
+        vectors[column] = as_vector(path, column, _numbers(place, found))
+    return Table(path, vectors)
+
+
+def read_json_lines(path: Path, columns: Collection[str]) -> Table:
+    """Reads columns of a file with one JSON record a line. Raises UserError, with the line, for whatever is no record."""
+    records, lines = [], []
+    for line, text in enumerate(read_text(path, _EXPECTED).splitlines(), start=1):
+        if not text.strip():
+            continue
+        try:
+            records.append(json.loads(text))
+        except (ValueError, RecursionError) as error:
+            raise UserError(f"{path}, line {line}: not JSON: {_said(error)}; expected one record a line") from None
+        lines.append(line)
+    return _from_records(path, records, columns, lines)
+
+
+def _from_records(path: Path, records: list[Any], columns: Collection[str], lines: list[int] | None) -> Table:
+    """One sample from every record. A member that a record lacks is a missing sample; one that all lack is an error."""
+    for k, record in enumerate(records):
+        if not isinstance(record, dict):
+            where = f"line {lines[k]}" if lines else f"entry {k} (the first is 0)"
+            raise UserError(
+                f"{path}, {where}: found {json.dumps(record)[:40]}, expected a record: an object with members"
+            )
+    known = list(dict.fromkeys(name for record in records for name in record))
+    vectors = {}
+    for column in columns:
+        if column in known:
+            values = [record.get(column) for record in records]
+        else:
+            require(path, [column] if root_of(column, known) not in known else [], known)
+            values = [_member(record, steps_of(column)) for record in records]
+            if records and all(value is None for value in values):
+                raise NoSuchColumn(f'{path}: no record has "{column}"; found {", ".join(known)}', column)
+        vectors[column] = as_vector(path, column, _numbers(f'{path}, column "{column}"', values, lines))
+    return Table(path, vectors, lines)
+
+
+def _member(record: Any, steps: list[Step]) -> Any:
+    """What the steps lead to in one record; None where it is not there."""
+    for step in steps:
+        if isinstance(step, Field):
+            record = record.get(step.name) if isinstance(record, dict) else None
+        elif isinstance(record, list) and step.index < len(record):
+            record = record[step.index]
+        else:
+            return None
+    return record
+
+
+def _numbers(place: str, values: Any, lines: list[int] | None = None) -> NDArray[np.float64]:
+    if isinstance(values, np.ndarray):
+        return values
+    if not isinstance(values, list):
+        raise UserError(f"{place}: found {json.dumps(values, default=str)[:40]}, expected a list of numbers")
+    return np.fromiter(_each(place, values, lines), dtype=np.float64, count=len(values))
+
+
+def _each(place: str, values: list[Any], lines: list[int] | None) -> Iterator[float]:
+    for k, value in enumerate(values):
+        if value is None:
+            yield float("nan")
+            continue
+        if isinstance(value, bool | int | float):
+            try:
+                yield float(value)
+                continue
+            except OverflowError:
+                pass
+        line = f"line {lines[k]}, " if lines else ""
+        shown = json.dumps(value)[:40] if not isinstance(value, int) else "a number of very many digits"
+        raise UserError(f"{place}, {line}sample {k} (the first is 0): found {shown}, expected a number")
+
+
+def _said(error: Exception) -> str:
+    return "nested too deeply" if isinstance(error, RecursionError) else str(error)

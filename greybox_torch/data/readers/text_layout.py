@@ -1,0 +1,225 @@
+"""How a text file of samples is laid out: its encoding, what separates cells, the line of names, the line of units, the decimal sign.
+
+All of it is found by looking for the columns that are asked for; nothing is guessed from the numbers alone. Column "#2" is the second
+one of a file, whether or not it has a line of names.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import dataclass, field
+from itertools import islice
+from pathlib import Path
+from typing import TextIO
+
+from greybox_torch.data.readers.table import require
+from greybox_torch.errors import UserError
+
+DELIMITERS = (",", ";", "\t", "|", " ")
+_HEAD = 300  # lines among which the line of names stands
+_LONGEST_LINE = 2**20
+_POSITION = re.compile(r"#([1-9]\d{0,5})")
+_MISSING = {"na", "n/a", "null", "none", "-", "--", "?", "missing", "nil", "#n/a"}
+_UNIT = re.compile(r"[\[(]?[\w°%/·*^².\-–\s]{1,24}[\])]?")
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where things stand in a text file.
+
+    `first` is the number of lines before the samples; `width` how many cells a line of samples has at least; `positions` where each column
+    stands; `decimal` "." or ","; `units` of the columns, where the file has a line of them; `names_line` counts from 1, 0 without names.
+    """
+
+    delimiter: str
+    decimal: str
+    first: int
+    names_line: int
+    width: int
+    positions: dict[str, int]
+    units: dict[str, str] = field(default_factory=dict)
+
+    def rows(self, file: TextIO) -> Iterator[tuple[int, list[str]]]:
+        """Line and cells of everything behind the heading; a line of a cell with line breaks is its last. Raises csv.Error."""
+        for _ in islice(file, self.first):
+            pass
+        return _rows(file, self.delimiter, self.first)
+
+
+def encoding_of(path: Path) -> str:
+    """UTF-8 where the whole file is, UTF-16 where it says so, else Windows' 1252, which most instruments of other encodings write."""
+    with path.open("rb") as file:
+        if file.read(2) in (b"\xff\xfe", b"\xfe\xff"):
+            return "utf-16"
+    try:
+        with path.open(encoding="utf-8") as text:
+            while text.read(2**20):
+                pass
+    except UnicodeDecodeError:
+        return "cp1252"
+    return "utf-8-sig"
+
+
+def layout_of(path: Path, file: TextIO, columns: Collection[str]) -> Layout:
+    """The layout of the text in `file`, from its first lines. Raises UserError where a column is nowhere named."""
+    head = []
+    for line in islice(file, _HEAD):
+        if len(line) > _LONGEST_LINE:
+            raise UserError(
+                f"{path}, line {len(head) + 1}: has more than {_LONGEST_LINE} characters; expected lines of samples"
+            )
+        head.append(line)
+    wanted = [column for column in columns if not _POSITION.fullmatch(column)]
+    numbered = {column: int(m[1]) - 1 for column in columns if (m := _POSITION.fullmatch(column))}
+    found = _named(head, wanted, numbered) if wanted else _numbered(head, numbered)
+    if found is None:
+        names = _likely_names(head, wanted)
+        require(path, wanted, names)
+        raise UserError(
+            f"{path}: no column {', '.join(numbered)}; found {len(names)} columns of numbers, the first of which is #1"
+        )
+    delimiter, line, names = found
+    _check_once(path, line, wanted, names)
+    positions = {column: numbered[column] if column in numbered else names.index(column) for column in columns}
+    width = len(names) if line else max(positions.values()) + 1
+    after = [row for _, row in _rows(iter(head[line:]), delimiter, line, strict=False)]
+    units = _units(after[0], positions) if line and after else None
+    return Layout(
+        delimiter=delimiter,
+        decimal=_decimal(delimiter, after, positions),
+        first=line + (units is not None) if line else _before_numbers(head, delimiter, positions),
+        names_line=line,
+        width=width,
+        positions=positions,
+        units=units or {},
+    )
+
+
+def _named(head: list[str], wanted: list[str], numbered: dict[str, int]) -> tuple[str, int, list[str]] | None:
+    """Delimiter, number and cells of the first line that names all columns; of several delimiters the one that gives most cells."""
+    best: tuple[str, int, list[str]] | None = None
+    for delimiter in DELIMITERS:
+        for line, row in _rows(iter(head), delimiter, 0, strict=False):
+            names = [name.strip() for name in row]
+            if set(wanted) <= set(names) and all(k < len(names) for k in numbered.values()):
+                rank = (line, delimiter == " ", -len(names))
+                if best is None or rank < (best[1], best[0] == " ", -len(best[2])):
+                    best = delimiter, line, names
+                break
+    return best
+
+
+def _numbered(head: list[str], numbered: dict[str, int]) -> tuple[str, int, list[str]] | None:
+    """Without names: the delimiter that gives most columns of numbers, and no line of names."""
+    best: tuple[str, int, list[str]] | None = None
+    for delimiter in DELIMITERS:
+        before = _before_numbers(head, delimiter, numbered)
+        row = next((row for _, row in _rows(iter(head[before:]), delimiter, before, strict=False)), [])
+        cells = [cell.strip() for cell in row]
+        fits = bool(cells) and all(k < len(cells) for k in numbered.values())
+        whole = all(is_number(cell, delimiter) for cell in cells)
+        if fits and whole and (best is None or len(cells) > len(best[2])):
+            best = delimiter, 0, cells
+    return best
+
+
+def _before_numbers(head: list[str], delimiter: str, positions: dict[str, int]) -> int:
+    """How many lines stand before the first whose cells are numbers at the positions."""
+    for k, text in enumerate(head):
+        row = next((row for _, row in _rows(iter([text]), delimiter, k, strict=False)), [])
+        cells = [row[p].strip() for p in positions.values() if p < len(row)]
+        if len(cells) == len(positions) and any(cells) and all(is_number(cell, delimiter) for cell in cells):
+            return k
+    return len(head)
+
+
+def is_number(cell: str, delimiter: str) -> bool:
+    """Whether a cell holds a number, perhaps with a decimal comma, or is empty."""
+    try:
+        float((cell if delimiter == "," else cell.replace(",", ".", 1)) or "nan")
+    except ValueError:
+        return False
+    return True
+
+
+def _likely_names(head: list[str], wanted: list[str]) -> list[str]:
+    """For a message: the line that names most of the columns, else the first, split where it gives most cells."""
+    rows = [[cell.strip() for cell in row] for d in DELIMITERS[:4] for _, row in _rows(iter(head), d, 0, strict=False)]
+    named = max(rows, key=lambda row: len(set(wanted) & set(row)), default=[])
+    if set(wanted) & set(named):
+        return named
+    first = [
+        [cell.strip() for cell in row] for d in DELIMITERS[:4] for _, row in _rows(iter(head[:1]), d, 0, strict=False)
+    ]
+    return max(first, key=len, default=[])
+
+
+def _check_once(path: Path, line: int, wanted: list[str], names: list[str]) -> None:
+    for column in wanted:
+        if names.count(column) > 1:
+            raise UserError(f'{path}, line {line}: {names.count(column)} columns are named "{column}"; expected one')
+
+
+def _units(row: list[str], positions: dict[str, int]) -> dict[str, str] | None:
+    """The units in the line beneath the names: text in every column that is not empty there, and no mark of a missing sample."""
+    cells = {column: row[p].strip() for column, p in positions.items() if p < len(row)}
+    given = {column: cell for column, cell in cells.items() if cell}
+    looks: Callable[[str], bool] = lambda cell: not is_number(cell, "") and cell.lower() not in _MISSING  # noqa: E731
+    if not given or not all(looks(cell) and _UNIT.fullmatch(cell) for cell in given.values()):
+        return None
+    return {column: cell.strip("[]() ") for column, cell in given.items()}
+
+
+def _decimal(delimiter: str, rows: list[list[str]], positions: dict[str, int]) -> str:
+    """A decimal comma is one where commas do not separate cells and a number of the first lines has one."""
+    if delimiter == ",":
+        return "."
+    cells = [row[p].strip() for row in rows for p in positions.values() if p < len(row)]
+    return "," if any("," in cell and is_number(cell, delimiter) for cell in cells) else "."
+
+
+def _rows(lines: Iterable[str], delimiter: str, before: int, *, strict: bool = True) -> Iterator[tuple[int, list[str]]]:
+    """Line number and cells of each row; runs of spaces separate where the delimiter is a space."""
+    if delimiter == " ":
+        yield from ((before + k, line.split()) for k, line in enumerate(lines, start=1))
+        return
+    taken: list[str] = []
+    rows = csv.reader(_kept(lines, taken), delimiter=delimiter, skipinitialspace=delimiter != "\t")
+    last = 0
+    while True:
+        try:
+            row = next(rows)
+            if strict and len(taken) > 1:  # a cell with line breaks, or a quotation mark that is never closed
+                list(csv.reader(taken, delimiter=delimiter, skipinitialspace=delimiter != "\t", strict=True))
+        except StopIteration:
+            return
+        except csv.Error as error:
+            if not strict:
+                return
+            raise UnreadableRow(before + last + 1, _said(error)) from None
+        taken.clear()
+        last = rows.line_num
+        yield before + last, row
+
+
+def _kept(lines: Iterable[str], taken: list[str]) -> Iterator[str]:
+    for line in lines:
+        taken.append(line)
+        yield line
+
+
+class UnreadableRow(Exception):
+    """A row that begins in `line` cannot be taken apart."""
+
+    def __init__(self, line: int, why: str) -> None:
+        super().__init__(why)
+        self.line = line
+
+
+def _said(error: csv.Error) -> str:
+    text = str(error)
+    if "unexpected end" in text or "field larger" in text:
+        return "a quotation mark is opened here and not closed"
+    return text

@@ -1,0 +1,274 @@
+"""Files that are not what they seem: one message, at once, and nothing allocated for what they declare."""
+
+from __future__ import annotations
+
+import os
+import random
+import struct
+import tempfile
+import tracemalloc
+import zipfile
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pyarrow as pa
+import pytest
+import scipy.io
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from pyarrow import parquet
+
+from greybox_torch.data.readers import READERS, read_table
+from greybox_torch.errors import UserError
+
+
+@pytest.fixture
+def little_memory() -> Iterator[None]:
+    """No fault below may take more than 64 MiB."""
+    tracemalloc.start()
+    yield
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 64 * 2**20
+
+
+def npy(shape: str, kind: str = "<f8", data: bytes = b"") -> bytes:
+    header = f"{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}".encode().ljust(118) + b"\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + data
+
+
+def archive(path: Path, content: bytes, method: int = zipfile.ZIP_STORED) -> Path:
+    with zipfile.ZipFile(path, "w", method) as file:
+        file.writestr("u.npy", content)
+    return path
+
+
+def refused(path: Path, message: str) -> None:
+    with pytest.raises(UserError, match=message) as error:
+        read_table(path, ("u",))
+    assert path.name in str(error.value)
+
+
+@pytest.mark.usefixtures("little_memory")
+@pytest.mark.parametrize(
+    "shape", ["(100000000000,)", f"({10**40},)", "(100000, 100000)", "(-5,)", "(2.5,)", "(None,)", "(10,"]
+)
+def test_archive_that_declares_more_than_it_holds(tmp_path: Path, shape: str) -> None:
+    refused(archive(tmp_path / "a.npz", npy(shape, data=bytes(80))), 'column "u"')
+
+
+@pytest.mark.usefixtures("little_memory")
+def test_archive_bomb(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It declares what it holds, and is refused for its size alone."""
+    monkeypatch.setattr("greybox_torch.data.readers.table.MOST_SAMPLES", 10_000_000)
+    path, unpacked = tmp_path / "a.npz", 11_000_000 * 8
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as file, file.open("u.npy", "w") as member:
+        member.write(npy(f"({unpacked // 8},)"))
+        for _ in range(11):
+            member.write(bytes(unpacked // 11))
+    refused(path, r"declares 1.1e\+07 samples")
+
+
+def test_archives_of_other_kinds(tmp_path: Path) -> None:
+    (tmp_path / "empty.npz").write_bytes(b"PK\x05\x06" + bytes(18))
+    refused(tmp_path / "empty.npz", 'no column "u"; found none')
+    refused(archive(tmp_path / "text.npz", b"text"), "magic string")
+    refused(archive(tmp_path / "object.npz", npy("(3,)", "|O", bytes(24))), "Object arrays")
+    refused(
+        archive(tmp_path / "bzip.npz", npy("(3,)", data=bytes(10)), zipfile.ZIP_BZIP2),
+        "declares 3 samples|cannot be read",
+    )
+    path = archive(tmp_path / "locked.npz", npy("(3,)", data=bytes(24)))
+    content = bytearray(path.read_bytes())
+    content[6] |= 1
+    content[content.index(b"PK\x01\x02") + 8] |= 1
+    path.write_bytes(content)
+    refused(path, "encrypted")
+    content[6] &= 0xFE
+    content[content.index(b"PK\x01\x02") + 8] &= 0xFE
+    content[8] = content[content.index(b"PK\x01\x02") + 10] = 99
+    path.write_bytes(content)
+    refused(path, "compression method is not supported|cannot be read")
+
+
+def h5(path: Path) -> h5py.File:
+    return h5py.File(path, "w")
+
+
+def test_hdf5_that_leads_elsewhere(tmp_path: Path) -> None:
+    path = tmp_path / "a.mat"
+    with h5(tmp_path / "other.h5") as file:
+        file["u"] = np.ones(5)
+    for link, message in [
+        (h5py.ExternalLink("other.h5", "/u"), "is a link into another file"),
+        (h5py.SoftLink("/nowhere"), "is a link to nothing"),
+        (h5py.SoftLink("/u"), "is a link to nothing|cannot be read"),
+    ]:
+        with h5(path) as file:
+            file["u"] = link
+        refused(path, message)
+    with h5(path) as file:
+        layout = h5py.VirtualLayout(shape=(5,), dtype="f8")
+        layout[:] = h5py.VirtualSource("other.h5", "u", shape=(5,))
+        file.create_virtual_dataset("u", layout)
+    refused(path, "its numbers stand in other files")
+    with h5(path) as file:
+        file.create_dataset("u", shape=(5,), dtype="f8", external=[("other.bin", 0, 40)])
+    refused(path, "its numbers stand in other files")
+
+
+@pytest.mark.usefixtures("little_memory")
+@pytest.mark.parametrize("shape", [(10**11,), (10**6, 10**6), (10**18,)])
+def test_hdf5_that_declares_more_than_it_holds(tmp_path: Path, shape: tuple[int, ...]) -> None:
+    with h5(tmp_path / "a.mat") as file:
+        file.create_dataset("u", shape=shape, dtype="f8", chunks=(1000,) * len(shape))
+    refused(tmp_path / "a.mat", "declares .* samples")
+
+
+def test_hdf5_of_other_kinds(tmp_path: Path) -> None:
+    with h5(tmp_path / "a.h5") as file:
+        file["u"] = h5py.Empty("f8")
+    refused(tmp_path / "a.h5", "holds nothing")
+    with h5(tmp_path / "b.h5") as file:
+        file["u"] = np.zeros(5, dtype=[("a", "f8"), ("b", "f8")])
+    refused(tmp_path / "b.h5", "holds a structure")
+    with h5(tmp_path / "c.h5") as file:
+        file["u"] = ["one", "two"]
+    refused(tmp_path / "c.h5", "holds cells or objects")
+    with h5(tmp_path / "d.h5") as file:
+        file["u"] = np.ones(5) * 1j
+    refused(tmp_path / "d.h5", "complex")
+
+
+def element(kind: int, data: bytes, length: int | None = None) -> bytes:
+    return struct.pack("<II", kind, len(data) if length is None else length) + data + b"\0" * (-len(data) % 8)
+
+
+def mat(*elements: bytes) -> bytes:
+    return b"MATLAB 5.0".ljust(124) + b"\x00\x01IM" + b"".join(elements)
+
+
+def matrix(dimensions: tuple[int, ...], kind: int = 6, length: int | None = None) -> bytes:
+    inner = element(6, struct.pack("<II", kind, 0)) + element(5, struct.pack(f"<{len(dimensions)}i", *dimensions))
+    return inner + element(1, b"u") + element(9, bytes(40), length)
+
+
+@pytest.mark.usefixtures("little_memory")
+@pytest.mark.parametrize(
+    "content",
+    [
+        mat(element(14, matrix((10**9, 100)))),
+        mat(element(14, matrix((2**31 - 1, 2**31 - 1)))),
+        mat(element(14, matrix((5, 1)), length=2**32 - 8)),
+        mat(element(14, matrix((5, 1), length=2**32 - 8))),
+        mat(element(14, matrix((10**9, 1), kind=1))),
+        mat(element(15, zlib.compress(element(14, matrix((10**9, 100)))))),
+        mat(element(15, zlib.compress(element(14, matrix((5, 1)), length=2**32 - 8)))),
+        mat(element(15, b"not compressed at all")),
+        mat(element(14, b"")),
+        mat(element(14, bytes(100))),
+        mat(),
+        mat() + b"\x0e",
+        b"MATLAB 5.0",
+        b"",
+    ],
+)
+def test_matlab_that_declares_more_than_it_holds(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "a.mat").write_bytes(content)
+    refused(tmp_path / "a.mat", r"declares|cannot be read as|no column")
+
+
+def test_parquet_with_a_column_twice(tmp_path: Path) -> None:
+    parquet.write_table(
+        pa.Table.from_arrays([pa.array([1.0]), pa.array([2.0])], names=["u", "u"]), tmp_path / "a.parquet"
+    )
+    refused(tmp_path / "a.parquet", '2 columns are named "u"')
+
+
+def test_parquet_dates_are_seconds_since_the_first(tmp_path: Path) -> None:
+    stamps = np.datetime64("2026-11-21T08:00:00", "ms") + np.arange(4) * np.timedelta64(250, "ms")
+    parquet.write_table(pa.table({"u": pa.array(stamps)}), tmp_path / "a.parquet")
+    assert read_table(tmp_path / "a.parquet", ("u",)).columns["u"].tolist() == [0.0, 0.25, 0.5, 0.75]
+
+
+@pytest.mark.parametrize("suffix", READERS)
+def test_what_is_no_file(tmp_path: Path, suffix: str) -> None:
+    os.mkfifo(tmp_path / f"pipe{suffix}")
+    refused(tmp_path / f"pipe{suffix}", "is a pipe; expected a recording, in a regular file")
+    (tmp_path / f"zero{suffix}").symlink_to("/dev/zero")
+    refused(tmp_path / f"zero{suffix}", "is a device")
+    (tmp_path / f"empty{suffix}").touch()
+    refused(tmp_path / f"empty{suffix}", "empty")
+    with pytest.raises(UserError, match="File name too long"):
+        read_table(tmp_path / ("x" * 300 + suffix), ("u",))
+    with pytest.raises(UserError, match="cannot be the name of a file"):
+        read_table(tmp_path / f"a\0b{suffix}", ("u",))
+
+
+def sound_files() -> dict[str, bytes]:
+    """A small sound file of every format, to damage."""
+    u = np.arange(30.0)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "a.csv").write_text("u;v\n" + "".join(f"{v:g};1\n" for v in u))
+        (folder / "a.json").write_text('{"u": [' + ", ".join(f"{v:g}" for v in u) + "]}")
+        (folder / "a.jsonl").write_text("".join(f'{{"u": {v:g}}}\n' for v in u))
+        np.savez_compressed(folder / "a.npz", u=u)
+        np.savez(folder / "b.npz", u=u)
+        scipy.io.savemat(folder / "a.mat", {"s": {"x": 1.0}, "u": u}, do_compression=True)
+        scipy.io.savemat(folder / "b.mat", {"s": {"x": 1.0}, "u": u})
+        scipy.io.savemat(folder / "c.mat", {"u": u}, format="4")
+        parquet.write_table(pa.table({"u": u}), folder / "a.parquet")
+        with h5(folder / "a.h5") as file:
+            file["u"] = u
+        with h5(folder / "d.mat") as file:
+            file.create_dataset("u", data=u, compression="gzip").attrs["MATLAB_class"] = np.bytes_("double")
+        return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+SOUND = sound_files()
+
+
+@pytest.fixture(scope="module")
+def fast_folder() -> Iterator[Path]:
+    """A folder in memory where there is one: writing thousands of files to a disk takes longer than reading them."""
+    memory = Path("/dev/shm")
+    with tempfile.TemporaryDirectory(dir=memory if os.access(memory, os.W_OK) else None) as folder:
+        yield Path(folder)
+
+
+def damaged(content: bytes, draw: random.Random) -> bytes:
+    """The content with one to four bytes, lengths or ends of it changed."""
+    held = bytearray(content)
+    for _ in range(draw.randint(1, 4)):
+        place = draw.randrange(len(held) + 1)
+        match draw.randrange(4):
+            case 0:
+                held[place : place + 1] = draw.randbytes(draw.randrange(3))
+            case 1 if draw.random() < 0.2:
+                del held[place:]
+            case 2:
+                held[place : place + 4] = struct.pack("<i", draw.choice([-1, 0, 1, 2**31 - 1, draw.randrange(2**31)]))
+            case _:
+                held[place:place] = draw.randbytes(draw.randint(1, 20))
+    return bytes(held)
+
+
+@given(seed=st.integers(0, 2**32), name=st.sampled_from(sorted(SOUND)))
+@settings(max_examples=400, suppress_health_check=list(HealthCheck))
+def test_damage_of_any_kind_is_told_or_harmless(fast_folder: Path, seed: int, name: str) -> None:
+    """Twenty damaged files an example."""
+    draw, path = random.Random(seed), fast_folder / name
+    for _ in range(20):
+        path.write_bytes(damaged(SOUND[name], draw))
+        try:
+            found = read_table(path, ("u",)).columns["u"]
+        except UserError as error:
+            assert str(error).startswith(str(path))
+            assert "\n" not in str(error)
+        else:
+            assert found.dtype == np.float64
+            assert found.ndim == 1
