@@ -66,7 +66,8 @@ def check_file(path: Path, expected: str, kind: str = "") -> int:
 def read_bytes(path: Path, expected: str, kind: str = "", *, most: int = MOST_TEXT) -> bytes:
     """All of the file at `path`. Raises UserError as :func:`opened` does, and where it holds more than `most` bytes."""
     with opened(path, expected, kind) as file:
-        content = file.read(most + 1)
+        size = os.fstat(file.fileno()).st_size  # what is asked for at once is allocated at once
+        content = file.read(min(most, max(size, 2**20)) + 1)
     if len(content) > most:
         raise UserError(f"{kind} {path}".strip() + f": has more than {most // 2**20} MiB; expected {expected}")
     return content

@@ -81,7 +81,7 @@ def root_of(column: str, found: Mapping[str, Any] | list[str]) -> str:
 
 
 def inside(place: str, value: Any, steps: list[Step]) -> Any:
-    """What the steps lead to from `value`: dictionaries, lists, and the arrays that scipy makes of MATLAB's structures and cells.
+    """What the steps lead to from `value`: dictionaries, lists, and arrays of objects for MATLAB's cells and structures.
 
     Raises UserError, beginning with `place`, where a step leads nowhere.
     """
@@ -93,7 +93,7 @@ def inside(place: str, value: Any, steps: list[Step]) -> Any:
 
 def _bare(value: Any) -> Any:
     """The content of a cell or structure that stands alone in an array of its own."""
-    while isinstance(value, np.ndarray) and value.dtype.kind == "O" and value.size == 1:
+    while isinstance(value, np.ndarray) and value.dtype.kind == "O" and value.size == 1 and value.ndim:
         value = value.flat[0]
     return value
 
@@ -105,21 +105,15 @@ def _field(place: str, value: Any, name: str) -> Any:
         raise UserError(f"{place}: no {name!r} in it{did_you_mean(name, map(str, value))}; found {_listed(value)}")
     if isinstance(value, list) and value and all(isinstance(entry, Mapping) for entry in value):
         return [_bare(entry.get(name)) for entry in value]  # records: one entry a sample
-    names = value.dtype.names if isinstance(value, np.ndarray | np.void) else None
-    if names and name in names:
-        if isinstance(value, np.ndarray) and value.size != 1:
-            raise UserError(
-                f"{place}: is an array of {value.size} structures; expected one, written like name[0].{name}"
-            )
-        return value[name] if isinstance(value, np.void) else value.flat[0][name]
-    if names:
-        raise UserError(f"{place}: no field {name!r}{did_you_mean(name, names)}; found {_listed(names)}")
+    if isinstance(value, np.ndarray) and value.size and isinstance(value.flat[0], Mapping):
+        raise UserError(f"{place}: is an array of {value.size} structures; expected one, written like name[0].{name}")
     raise UserError(f"{place}: nothing has the field {name!r}; expected a structure before the dot")
 
 
 def _part(place: str, value: Any, step: Element | Line) -> Any:
     if isinstance(step, Element):
-        elements = value.ravel(order="F") if isinstance(value, np.ndarray) else value
+        elements: Any = value.ravel(order="F") if isinstance(value, np.ndarray) else value
+        elements = [value] if isinstance(value, Mapping) else elements  # a structure that stands alone
         if not isinstance(elements, np.ndarray | list):
             raise UserError(f"{place}: [{step.index}] is of nothing that has elements")
         if step.index >= len(elements):

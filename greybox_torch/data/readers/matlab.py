@@ -1,4 +1,4 @@
-"""MATLAB files: versions up to 7 by scipy, version 7.3 (which is HDF5) by h5py.
+"""MATLAB files: version 4 by scipy, versions 5 to 7 here, version 7.3 (which is HDF5) by h5py.
 
 A variable is a column; fields of structures are "log.motor.u", columns of a matrix "Y[:, 1]", elements of cells "runs[0].u". Whatever
 else the file holds, objects of classes included, is left alone.
@@ -6,15 +6,17 @@ else the file holds, objects of classes included, is left alone.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from greybox_torch.data.readers.column import inside, root_of, steps_of
 from greybox_torch.data.readers.hdf5 import read_groups
-from greybox_torch.data.readers.matlab_directory import variables_of
-from greybox_torch.data.readers.table import Table, as_vector, check_declared, require
+from greybox_torch.data.readers.matlab_v5 import Other, is_version_5, variables_of
+from greybox_torch.data.readers.table import Table, as_vector, require
 from greybox_torch.errors import UserError
 
 _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -29,29 +31,34 @@ def read_matlab(path: Path, columns: Collection[str]) -> Table:
 
 
 def _read_v5(path: Path, columns: Collection[str]) -> Table:
-    import scipy.io
-
     try:
-        found = variables_of(path)
+        held = variables_of(path) if is_version_5(path) else None
+        found = _version_4(path) if held is None else dict.fromkeys(held.places)
         roots = {column: root_of(column, found) for column in columns}
         require(path, [column for column, root in roots.items() if root not in found], list(found))
-        for column, root in roots.items():
-            check_declared(path, column, found[root].samples, found[root].most_samples)
-        variables = scipy.io.loadmat(path, variable_names=list(dict.fromkeys(roots.values())))
+        values = {root: found[root] if held is None else held.value(root) for root in dict.fromkeys(roots.values())}
     except UserError:
         raise
-    except Exception as error:  # scipy lets many kinds escape from damaged files, down to zlib.error and IndexError
-        raise UserError(f"{path}: cannot be read as a MATLAB file: {' '.join(str(error).split())}") from None
-    vectors = {}
-    for column, root in roots.items():
-        if root not in variables:
-            raise UserError(
-                f'{path}, column "{column}": holds an object of a class of MATLAB\'s; expected real numbers'
-            )
-        values = variables[root]
-        if column != root:
-            values = inside(f'{path}, column "{column}"', values, steps_of(column)[1:])
-        vectors[column] = as_vector(
-            path, column, np.asarray(values.toarray() if hasattr(values, "toarray") else values)
+    except Exception as error:  # damaged files fail in many ways, down to zlib.error and RecursionError
+        said = " ".join(str(error).split())
+        raise UserError(f"{path}: cannot be read as a MATLAB file: {said}") from None
+    return Table(path, {column: _vector(path, column, root, values[root]) for column, root in roots.items()})
+
+
+def _vector(path: Path, column: str, root: str, value: Any) -> NDArray[np.float64]:
+    place = f'{path}, column "{column}"'
+    value = value if column == root else inside(place, value, steps_of(column)[1:])
+    if isinstance(value, Mapping):
+        raise UserError(
+            f"{place}: holds a structure; expected real numbers (its fields are {', '.join(map(str, value))})"
         )
-    return Table(path, vectors)
+    found = np.asarray(value)
+    if found.dtype.kind == "O" and any(isinstance(entry, Other) for entry in found.flat):
+        raise UserError(f"{place}: holds an object of a class of MATLAB's; expected real numbers")
+    return as_vector(path, column, found)
+
+
+def _version_4(path: Path) -> dict[str, Any]:
+    import scipy.io
+
+    return scipy.io.loadmat(path)

@@ -48,10 +48,19 @@ def require(path: Path, columns: Iterable[str], found: Collection[str]) -> None:
     for column in columns:
         if column not in known:
             listed = list(found)
-            names = ", ".join(listed[:40]) + (f", … ({len(listed)} in all)" if len(listed) > 40 else "") or "none"
+            names = (
+                ", ".join(_shown(name) for name in listed[:40])
+                + (f", … ({len(listed)} in all)" if len(listed) > 40 else "")
+                or "none"
+            )
             raise NoSuchColumn(
                 f'{path}: no column "{column}"{did_you_mean(column, listed[:2000])}; found {names}', column
             )
+
+
+def _shown(name: str) -> str:
+    """A name from a file, which may be damaged."""
+    return (name if name.isprintable() else ascii(name))[:80]
 
 
 def check_declared(path: Path, column: str, samples: int, most_bytes: int) -> None:
