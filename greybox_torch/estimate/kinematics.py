@@ -1,0 +1,148 @@
+"""Start values of states that no sensor shows but whose integral one does: the speed behind a measured position.
+
+A start value of zero for such a speed leaves a window far from the measured motion, at times in another valley of its error. Where the
+rates of measured states are a fixed linear function of the states (a position's rate is its speed, a spring's is the difference of two),
+that function and the measured signal's own slope give the others at once.
+
+Source: local polynomial slope, A. Savitzky and M. J. E. Golay, Analytical Chemistry 36(8), 1964.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from weakref import WeakKeyDictionary
+
+import numpy as np
+import torch
+
+from greybox_torch.model import GreyBoxModel, Signals
+from greybox_torch.simulation.records import Records
+
+TRIALS = 6
+"""Random points per unknown coefficient at which a rate is looked at."""
+
+EXACT = 1e-9
+"""Relative deviation up to which a rate is a linear function."""
+
+HALF_WIDTHS = (2, 40)
+"""Fewest and most samples on either side from which a slope is taken."""
+
+SHARE_OF_WINDOW = 8
+"""Part of a window that one side of the slope's stretch is."""
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """Rates of measured states that are linear in states and inputs, whatever the parameters.
+
+    ``outputs`` (K,) indices of the outputs that measure them; ``measured`` and ``hidden`` indices of the model's states with and without
+    a sensor of their own; ``known`` (K, n_measured), ``inputs`` (K, n_u), ``constant`` (K,) and ``inverse`` (n_hidden, K): the hidden
+    states are ``inverse`` (slopes − known x − inputs u − constant), those marked in ``determined`` (n_hidden,) uniquely.
+    """
+
+    outputs: np.ndarray
+    measured: np.ndarray
+    hidden: np.ndarray
+    known: np.ndarray
+    inputs: np.ndarray
+    constant: np.ndarray
+    inverse: np.ndarray
+    determined: np.ndarray
+
+
+_KNOWN: WeakKeyDictionary[GreyBoxModel, Kinematics | None] = WeakKeyDictionary()
+
+
+def kinematics_of(model: GreyBoxModel) -> Kinematics | None:
+    """The kinematic relations of a model; None where there are none. Kept for as long as the model."""
+    if model not in _KNOWN:
+        _KNOWN[model] = _found(model)
+    return _KNOWN[model]
+
+
+def hidden_starts(
+    model: GreyBoxModel, records: Records, states: np.ndarray, samples: np.ndarray, steps: int
+) -> np.ndarray:
+    """``states`` (W, n_x) at ``samples`` (W,), hidden states that kinematics determine filled in.
+
+    Args:
+        states: with the measured states at their measured values.
+        steps: length of the windows that begin there, in samples: a slope is taken over a part of it.
+    """
+    relations = kinematics_of(model)
+    if relations is None:
+        return states
+    half = int(np.clip(steps // SHARE_OF_WINDOW, *HALF_WIDTHS))
+    slopes = np.array([[_slope(records, k, s, half) for k in relations.outputs] for s in samples])
+    rest = slopes - states[:, relations.measured] @ relations.known.T - records.u[:, samples].T @ relations.inputs.T
+    found = (rest - relations.constant) @ relations.inverse.T
+    filled = states.copy()
+    usable = relations.determined & np.isfinite(found)
+    filled[:, relations.hidden] = np.where(usable, found, filled[:, relations.hidden])
+    return filled
+
+
+def _found(model: GreyBoxModel) -> Kinematics | None:
+    outputs = [o.name for o in model.outputs]
+    own = np.array([s.name in outputs or s.initial == "measured" for s in model.states])
+    shown = [(i, outputs.index(s.name)) for i, s in enumerate(model.states) if s.name in outputs]
+    hidden, measured = np.flatnonzero(~own), np.flatnonzero(own)
+    if not shown or not len(hidden):
+        return None
+    signals, rates = _at_random(model)
+    if rates is None:
+        return None
+    rows = []
+    for i, output in shown:
+        found = np.linalg.lstsq(signals, rates[i], rcond=None)[0]
+        exact = np.abs(signals @ found - rates[i]).max() <= EXACT * max(float(np.abs(rates[i]).max()), 1e-300)
+        found = np.where(np.abs(found) > EXACT, found, 0.0)
+        if exact and found[hidden].any():
+            rows.append((output, found))
+    if not rows:
+        return None
+    table, n_x = np.array([found for _, found in rows]), len(model.states)
+    inverse = np.linalg.pinv(table[:, hidden], rcond=1e-8)
+    determined = np.abs(inverse @ table[:, hidden] - np.eye(len(hidden))).max(axis=1) < 1e-6
+    return Kinematics(
+        outputs=np.array([output for output, _ in rows]),
+        measured=measured,
+        hidden=hidden,
+        known=table[:, measured],
+        inputs=table[:, n_x:-1],
+        constant=table[:, -1],
+        inverse=inverse,
+        determined=determined,
+    )
+
+
+def _at_random(model: GreyBoxModel) -> tuple[np.ndarray, np.ndarray | None]:
+    """States, inputs and one (M, n_x + n_u + 1) drawn at random, and the rates (n_x, M) there; None where these are not finite."""
+    n_x, n_u = len(model.states), len(model.inputs)
+    rng = np.random.default_rng(0)
+    count = TRIALS * (n_x + n_u + 1)
+    drawn = rng.standard_normal((n_x + n_u, count))
+    values = {q.name: q.value * (1 + 0.1 * rng.uniform(-1, 1, count)) for q in model.declared_parameters}
+    p = Signals("parameter", {n: torch.as_tensor(v, dtype=torch.float64) for n, v in values.items()})
+    with torch.no_grad():
+        rates = model.rates(torch.as_tensor(drawn[:n_x]), torch.as_tensor(drawn[n_x:]), p).numpy()
+    finite = np.isfinite(rates).all(axis=0)
+    if finite.sum() < 2 * (n_x + n_u + 1):
+        return drawn.T, None
+    return np.hstack([drawn.T, np.ones((count, 1))])[finite], rates[:, finite]
+
+
+def _slope(records: Records, output: int, sample: int, half: int) -> float:
+    """The slope of a measured signal at a sample, from a parabola through the samples around it; NaN where too few are known."""
+    experiment = int(records.experiments(np.array([sample]))[0])
+    span = records.span(experiment)
+    near = slice(max(span.start, sample - half), min(span.stop, sample + half + 1))
+    y = records.y[output, near]
+    known = ~np.isnan(y)
+    if known.sum() < 4:
+        return float("nan")
+    time = np.concatenate([[0.0], np.cumsum(records.dt[near][:-1])])
+    time = time - time[sample - near.start]
+    scale = max(float(np.abs(time).max()), 1e-300)
+    columns = np.vander(time[known] / scale, 3)
+    return float(np.linalg.lstsq(columns, y[known], rcond=None)[0][1] / scale)
