@@ -146,7 +146,7 @@ class AugmentedModel(GreyBoxModel):
 
     def start_trials(self, values: Any) -> list[dict[str, float]]:
         """Positions at which a record may begin: those of bodies that no sensor sees."""
-        if not self.local.integrated_bodies():
+        if not self.local.unseen_positions():
             return self.base.start_trials(values)
         return position_trials(self.local, dict(zip((p.name for p in self.declared_parameters), values, strict=True)))
 

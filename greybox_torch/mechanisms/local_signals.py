@@ -75,6 +75,13 @@ class LocalSignals:
         names = [a.position for a in self.attachments if a.position]
         return [n for n in dict.fromkeys(names) if self.body(n).position is None]
 
+    def unseen_positions(self) -> list[str]:
+        """States with positions that no sensor shows: integrated ones, and those of the model that nothing else depends on."""
+        kept = self.base.carried_states()
+        names = dict.fromkeys(a.position for a in self.attachments if a.position)
+        states = [f"{n}.position" if self.body(n).position is None else self.body(n).position for n in names]
+        return [s for s in states if isinstance(s, str) and (s in kept or s.endswith(".position"))]
+
     def body(self, name: str) -> Body:
         body = self.ports[name]
         assert isinstance(body, Body)

@@ -17,16 +17,16 @@ START_POSITIONS = 12
 
 
 def position_trials(local: LocalSignals, values: Mapping[str, float]) -> list[dict[str, float]]:
-    """Start positions of the bodies whose position is integrated: over one period of the slowest periodic effect, or over the travel."""
-    bodies = local.integrated_bodies()
+    """Start positions of the bodies whose position no sensor shows: over one period of the slowest periodic effect, or over the travel."""
+    states = local.unseen_positions()
     placed = [a for a in local.attachments if a.position]
     if any(not _periodic(a.mechanism) for a in placed):
         travel = [local.surroundings[a.port].ranges["position"] for a in placed]
         span = max(r.high - r.low for r in travel)
-        return [{f"{b}.position": share * span for b in bodies} for share in OFFSETS]
+        return [dict.fromkeys(states, share * span) for share in OFFSETS]
     orders = [abs(float(values.get(f"{a.prefix}.order", 1.0))) for a in placed]
     period = 2 * np.pi / max(min(orders), 1e-9)
-    return [{f"{b}.position": k * period / START_POSITIONS for b in bodies} for k in range(START_POSITIONS)]
+    return [dict.fromkeys(states, k * period / START_POSITIONS) for k in range(START_POSITIONS)]
 
 
 def _periodic(mechanism: Mechanism) -> bool:

@@ -12,6 +12,7 @@ from greybox_torch.model.constraints import parameter_scale, project
 from greybox_torch.model.declarations import Input, Output, Parameter, State
 from greybox_torch.model.ports import Port, actuators, sensors
 from greybox_torch.model.signals import Signals
+from greybox_torch.model.unseen_states import unseen_states
 
 
 class GreyBoxModel(torch.nn.Module):
@@ -46,6 +47,7 @@ class GreyBoxModel(torch.nn.Module):
 
     def __init__(self) -> None:
         super().__init__()
+        self._unseen: tuple[str, ...] | None = None
         self._check_declarations()
         self._scales = {p.name: parameter_scale(p.value, *p.bounds) for p in self.declared_parameters}
         self._set_by_name: frozenset[str] = frozenset()
@@ -79,8 +81,10 @@ class GreyBoxModel(torch.nn.Module):
         return states
 
     def carried_states(self) -> tuple[str, ...]:
-        """States that a window of a record does not begin with freely but takes over from the window before."""
-        return ()
+        """States that a window of a record does not begin with freely but takes over from the window before: those that nothing shows."""
+        if self._unseen is None:
+            self._unseen = unseen_states(self)
+        return self._unseen
 
     @property
     def title(self) -> str:

@@ -25,6 +25,8 @@ class Gain:
     share: float
     error: float
     timelines: tuple[Timeline, ...] = ()
+    size: float = float("nan")
+    """Share of the plain model's held-out mismatch that leaving the effect out brings back."""
 
     @property
     def errors_away(self) -> float:
@@ -143,6 +145,25 @@ def gain(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> Gain:
             scatter = float(np.std(difference - share * old.energies, ddof=1)) if count > 1 else np.inf
             found.append(Gain(share, float(scatter * np.sqrt(count) / total)))
     return max(found, key=lambda g: g.errors_away, default=Gain(0.0, float("inf")))
+
+
+def size(plain: tuple[WindowFit, ...], without: tuple[WindowFit, ...], full: tuple[WindowFit, ...]) -> float:
+    """The share of the mismatch of ``plain`` that leaving an effect out of ``full`` brings back: the mean over window lengths.
+
+    The mismatch is the squared error beyond what the noise alone would leave. Where the plain model cannot be simulated, or leaves no
+    more than noise, the whole is what the model without the effect leaves.
+    """
+    shares = []
+    for level, new in enumerate(full):
+        old = without[level] if level < len(without) else None
+        if old is None:
+            shares.append(1.0)
+            continue
+        whole = plain[level] if level < len(plain) else old
+        noise = noise_floor(new.problem) * float(np.sum(~np.isnan(new.problem.records.y)))
+        mismatch = max(float(whole.energies.sum()) - noise, float(old.energies.sum()) - float(new.energies.sum()), 1e-300)
+        shares.append((float(old.energies.sum()) - float(new.energies.sum())) / mismatch)
+    return float(np.mean(shares)) if shares else float("nan")
 
 
 def timelines(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> tuple[Timeline, ...]:
