@@ -80,7 +80,7 @@ class AugmentedModel(GreyBoxModel):
             local, own, memory = self._given(a, seen, u if isinstance(site, Actuator) else acting, p)
             if not a.mechanism.kinematic and not isinstance(site, Actuator | Sensor):
                 forces[a.port] = forces[a.port] + self._share(a, p) * a.mechanism.force(local, own, memory)
-            for place, force in _kinematic_forces(a, local, own):
+            for place, force in (*_kinematic_forces(a, local, own), *a.mechanism.elsewhere(local, own, memory).items()):
                 forces[place] = forces[place] + self._share(a, p) * force
             for name, rate in a.mechanism.rates(local, own, memory).items():
                 extra[f"{a.prefix}.{name}"] = rate

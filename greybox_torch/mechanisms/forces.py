@@ -27,29 +27,6 @@ class ConstantBias(LinearLaw):
         return size
 
 
-class Gravity(Mechanism):
-    """−(a sin θ + b cos θ): once per turn."""
-
-    name = "gravity"
-    kinds = ("body",)
-    needs = ("position",)
-    explanation = "Weight pulls with a torque that depends on the angle, once per turn."
-    source = "W. Khalil, E. Dombre, Modeling, Identification and Control of Robots, 2002"
-    experiment = "slow motion over a full turn"
-
-    def parameters(self, around: Surroundings) -> list[Parameter]:
-        return [
-            Parameter("a", 0.0, around.force_unit, description="sine amplitude"),
-            Parameter("b", 0.0, around.force_unit, description="cosine amplitude"),
-        ]
-
-    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return -(p.a * torch.sin(s.position) + p.b * torch.cos(s.position))
-
-    def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(("a", "b"))]
-
-
 class TorqueRipple(Mechanism):
     """a cos nθ + b sin nθ with an order n above one."""
 

@@ -13,7 +13,7 @@ from greybox_torch.mechanisms.actuator import (
 )
 from greybox_torch.mechanisms.balance import LinearLeak, ThresholdFlow
 from greybox_torch.mechanisms.check import check_mechanism
-from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndStop, Gravity, TorqueRipple
+from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndStop, TorqueRipple
 from greybox_torch.mechanisms.friction import (
     CoulombAsymmetry,
     CoulombFriction,
@@ -22,6 +22,7 @@ from greybox_torch.mechanisms.friction import (
     ViscousFriction,
 )
 from greybox_torch.mechanisms.friction_net import FrictionNet
+from greybox_torch.mechanisms.gravity import Gravity
 from greybox_torch.mechanisms.mechanism import Mechanism
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.residual_net import ResidualNet

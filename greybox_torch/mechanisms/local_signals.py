@@ -46,6 +46,7 @@ class LocalSignals:
         if "delayed" in a.mechanism.needs:
             value, slope, at = (u[f"{a.prefix}.{n}"] for n in ("delayed", "slope", "delay"))
             values["delayed"] = value + (p[f"{a.prefix}.T"] - at) * slope
+        values |= {f"position@{link}": self._position(link, x, u, p) for link in a.mechanism.links}
         values |= self.clock(x)
         return Signals("signal", values)
 

@@ -38,6 +38,8 @@ class Mechanism:
     name: ClassVar[str]
     kinds: ClassVar[tuple[str, ...]]
     needs: tuple[str, ...] = ()
+    links: tuple[str, ...] = ()
+    """Bodies of a chain whose positions the law uses, as signals ``position@BODY``."""
     kinematic: ClassVar[bool] = False
     """Whether the law changes a coupling's deflection (:meth:`deflection`) instead of adding a force."""
     fades: ClassVar[bool] = False
@@ -76,6 +78,10 @@ class Mechanism:
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         """The extra generalised force (at an actuator or sensor: the change of the signal), from the local signals ``s``."""
         raise NotImplementedError
+
+    def elsewhere(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
+        """Forces on other bodies by their names, for a law that acts at several with common parameters."""
+        return {}
 
     def deflection(self, s: Signals, p: Signals) -> Any:
         """For a kinematic law, the deflection that the spring sees."""

@@ -25,6 +25,7 @@ def attachment_json(attachment: Attachment, around: Surroundings) -> dict[str, A
         "mechanism": mechanism.name,
         "options": mechanism.options(),
         **({"defined_in": file} if file else {}),
+        "label": attachment.label,
         "position": attachment.position,
         "shifted_state": attachment.shifted_state,
         "surroundings": {
@@ -48,6 +49,7 @@ def restored_model(base: GreyBoxModel, attachments: Sequence[Mapping[str, Any]])
             Attachment(
                 entry["port"],
                 _mechanism(str(entry["mechanism"]), entry["options"], str(entry.get("defined_in", ""))),
+                label=entry.get("label", ""),
                 position=entry["position"],
                 shifted_state=entry["shifted_state"],
             )

@@ -35,10 +35,10 @@ def unseen_states(model: GreyBoxModel) -> tuple[str, ...]:
         )
 
 
-def _same(
-    model: GreyBoxModel, x: torch.Tensor, u: torch.Tensor, p: Signals, state: int, before: torch.Tensor
-) -> bool:
+def _same(model: GreyBoxModel, x: torch.Tensor, u: torch.Tensor, p: Signals, state: int, before: torch.Tensor) -> bool:
     """Whether rates and outputs stay as they are when one state is moved."""
     moved = x.clone()
     moved[state] += 1.0
-    return torch.equal(torch.nan_to_num(torch.cat([model.rates(moved, u, p), model.measured(moved, u, p)])), torch.nan_to_num(before))
+    return torch.equal(
+        torch.nan_to_num(torch.cat([model.rates(moved, u, p), model.measured(moved, u, p)])), torch.nan_to_num(before)
+    )

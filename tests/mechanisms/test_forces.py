@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from greybox_torch.mechanisms.balance import LinearLeak, ThresholdFlow
-from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndStop, Gravity, TorqueRipple
+from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndStop, TorqueRipple
+from greybox_torch.mechanisms.gravity import Gravity
 
 ANGLES = np.linspace(-4.0, 4.0, 201)
 

@@ -161,7 +161,9 @@ def size(plain: tuple[WindowFit, ...], without: tuple[WindowFit, ...], full: tup
             continue
         whole = plain[level] if level < len(plain) else old
         noise = noise_floor(new.problem) * float(np.sum(~np.isnan(new.problem.records.y)))
-        mismatch = max(float(whole.energies.sum()) - noise, float(old.energies.sum()) - float(new.energies.sum()), 1e-300)
+        mismatch = max(
+            float(whole.energies.sum()) - noise, float(old.energies.sum()) - float(new.energies.sum()), 1e-300
+        )
         shares.append((float(old.energies.sum()) - float(new.energies.sum())) / mismatch)
     return float(np.mean(shares)) if shares else float("nan")
 

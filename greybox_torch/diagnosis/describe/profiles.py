@@ -77,7 +77,7 @@ def law_curve(model: AugmentedModel, attachment: Attachment, around: Surrounding
         return None
     name = signals[0]
     grid = torch.linspace(around.ranges[name].low, around.ranges[name].high, POINTS, dtype=torch.float64)
-    if "delayed" in attachment.mechanism.needs:
+    if "delayed" in attachment.mechanism.needs or attachment.mechanism.links:
         return None
     held = {n: torch.full_like(grid, around.ranges[n].rms) for n in around.ranges if n != name}
     force = model.curve(attachment, {**held, name: grid}, parameters_of(problem))

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 from greybox_torch.mechanisms.attachment import Attachment, attach
-from greybox_torch.mechanisms.forces import Gravity, TorqueRipple
+from greybox_torch.mechanisms.forces import TorqueRipple
+from greybox_torch.mechanisms.gravity import Gravity
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.mechanisms.transmission_error import TransmissionError
@@ -62,7 +64,17 @@ def candidates(
                 and (shifted or not mechanism.kinematic)
             ):
                 found.append(attach(model, port.name, mechanism, shifted))
-    return found
+    return found if flexible else [*found, *chain_candidates(model, surroundings)]
+
+
+def chain_candidates(model: GreyBoxModel, surroundings: Mapping[str, Surroundings]) -> list[Attachment]:
+    """The weight of a chain of links, where two bodies or more have an angle: one law that acts at all of their joints."""
+    links = [
+        port.name
+        for port in model.ports
+        if isinstance(port, Body) and port.position is not None and _is_angle(surroundings[port.name])
+    ]
+    return [replace(attach(model, links[0], Gravity(links)), label="_of_chain")] if len(links) > 1 else []
 
 
 def periodic_candidates(

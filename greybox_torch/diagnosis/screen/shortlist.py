@@ -123,6 +123,7 @@ def identity_of(attachment: Attachment) -> tuple:
     return (
         attachment.port,
         mechanism.name,
+        attachment.label,
         getattr(mechanism, "signal", ""),
         None if order is None else round(order, 2),
     )

@@ -16,7 +16,8 @@ from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.posterior import CEILING, shared
 from greybox_torch.mechanisms.actuator import InputBias
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.forces import ConstantBias, Gravity, TorqueRipple
+from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.gravity import Gravity
 from greybox_torch.mechanisms.unknown import Unknown
 
 SAMPLES = 20_000
