@@ -153,11 +153,11 @@ def _judged(
     """Effects taken back, the weakest first, until those left hold on the validation experiments."""
     study.working_on("judging on the validation experiments")
     judge = partial(Judgement, dataset, problem)
-    judged = judge(state, plain, augmented, study.substeps, study.device, gains)
+    judged = judge(state, plain, augmented, study.substeps, study.device)
     while state.effects and not judged.holds:
         if not state.compared_without:
             state = result_of(drop_superfluous(study, state))
         state, gains = take_back_weakest(study, state, gains)
         augmented = _finish(study, state.current) if state.effects else plain
-        judged = judge(state, plain, augmented, study.substeps, study.device, gains)
+        judged = judge(state, plain, augmented, study.substeps, study.device)
     return state, gains, judged

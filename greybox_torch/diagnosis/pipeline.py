@@ -10,9 +10,12 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.confirm.free_runs import Judgement
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
+from greybox_torch.diagnosis.confirm.standing import least_size, sizes
 from greybox_torch.diagnosis.describe.effects import describe
 from greybox_torch.diagnosis.describe.evidence import sentences
+from greybox_torch.diagnosis.describe.left import what_is_left
 from greybox_torch.diagnosis.describe.ranking import ranking
 from greybox_torch.diagnosis.describe.residual_tests import detect
 from greybox_torch.diagnosis.findings import Findings, find, find_with_more
@@ -23,7 +26,7 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import Deadline, or_else
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study, silent
-from greybox_torch.diagnosis.verdict import Verdict
+from greybox_torch.diagnosis.verdict import Effect, Verdict
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.stored import attachment_json
@@ -97,13 +100,11 @@ def diagnose(
 def _diagnosis(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int, clock: Stopwatch) -> Diagnosis:
     """The findings as a verdict, and the model that follows from them."""
     study, state, judged = found.study, found.state, found.judged
-    effects = describe(study, state, judged.augmented, judged.sums, found.gains) if state.effects else ()
-    if not found.complete:
-        effects = of_a_stopped_search(effects)
+    effects, refinements = _told(found) if state.effects else ((), ())
     traces = judged.traces(bool(effects))
     detected = detect(judged.problem, traces)
     clock.lap("validation and report data")
-    unexplained = None if effects else _unexplained(study, state, found.others)
+    unexplained = None if effects else _unexplained(study, state, found.others, judged)
     verdict = Verdict(
         dataset=dataset.name,
         model=model.title,
@@ -122,6 +123,8 @@ def _diagnosis(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int
         traces=traces,
         complete=found.complete,
         unexplained=unexplained,
+        refinements=refinements,
+        left=what_is_left(judged, detected, bool(effects)),
     )
     final = judged.augmented if effects else judged.plain
     chosen = state.current if effects else state.plain
@@ -129,12 +132,32 @@ def _diagnosis(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int
     return Diagnosis(verdict, chosen.model, final.values(), _starts(final.problem), attachments)
 
 
-def _unexplained(study: Study, state: SearchState, others: HeldOut | None) -> float | None:
-    """How many times the noise the model's error is on the worst experiment, if that is too much for badly determined friction."""
+def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
+    """The effects that are findings, and those that are too small for that; the latter by themselves are none of the model's."""
+    study, state, judged = found.study, found.state, found.judged
+    by_effect = sizes(study, state, found.gains)
+    told = describe(study, state, judged.augmented, judged.sums, found.gains, by_effect)
+    if not found.complete:
+        told = of_a_stopped_search(told)
+    least = least_size(study, state, found.others)
+    small = [by_effect.get(e.prefix, np.inf) < least for e in state.effects]
+    return (
+        tuple(e for e, is_small in zip(told, small, strict=True) if not is_small),
+        tuple(e for e, is_small in zip(told, small, strict=True) if is_small),
+    )
+
+
+def _unexplained(study: Study, state: SearchState, others: HeldOut | None, judged: Judgement) -> float | None:
+    """How many times the noise the model's error is on the worst experiment, if that is too much for badly determined friction.
+
+    By windows and by free runs: where either shows hardly more than noise, nothing says that anything is missing.
+    """
     errors = [times_noise(study.problem, state.plain)] if floor_known(study.problem) else []
     if others is not None and floor_known(others.problem):
         errors += list(others.times_noise(state.plain))
-    return max((e for e in errors if FAR_ABOVE_NOISE < e < np.inf), default=None)
+    by_windows = max((e for e in errors if FAR_ABOVE_NOISE < e < np.inf), default=0.0)
+    least = min(by_windows, float(np.nanmax(judged.times_noise, initial=0.0)))
+    return least if least > FAR_ABOVE_NOISE else None
 
 
 def _starts(problem: Problem) -> dict[str, dict[str, float]]:

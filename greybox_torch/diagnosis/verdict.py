@@ -10,7 +10,7 @@ import numpy as np
 
 from greybox_torch.estimate.comparison import Score
 
-SCHEMA = "greybox-verdict/1"
+SCHEMA = "greybox-verdict/2"
 
 
 @dataclass(frozen=True)
@@ -80,6 +80,27 @@ class Effect:
     separating_experiment: str = ""
     ceiling: float | None = None
     timelines: tuple[Timeline, ...] = ()
+    size: float = float("nan")
+    """Share of the mean squared held-out mismatch of the refitted plain model that leaving the effect out brings back."""
+
+    @property
+    def sentence(self) -> str:
+        """What a reader has to know of it where it is no finding."""
+        return (
+            f"{spoken(self.mechanism)} at {self.port} accounts for {100 * self.size:.2g} % of the whole mismatch: "
+            "too little to be told from what the laws found lack to be exactly the machine's"
+        )
+
+
+@dataclass(frozen=True)
+class Left:
+    """What the recommended model leaves on the validation experiments: ``share`` of the refitted plain model's mean squared error beyond
+    the noise, root mean square error in ``times_noise``, and a ``sentence`` for a reader.
+    """
+
+    share: float
+    times_noise: float
+    sentence: str
 
 
 @dataclass(frozen=True)
@@ -120,6 +141,9 @@ class Verdict:
     """Whether the search ran to its end, rather than into a time limit or an interruption."""
     unexplained: float | None = None
     """How many times the noise the error is where nothing was found that explains it, if clearly more than noise."""
+    refinements: tuple[Effect, ...] = ()
+    """What is significant and small beside the findings; in the model where there are findings, never in the headline."""
+    left: Left | None = None
 
     @property
     def mismatch(self) -> bool:
@@ -140,7 +164,7 @@ class Verdict:
             return f"Nothing was found to be missing from {self.model} before the search was stopped: no answer yet."
         if not self.effects:
             return f"Nothing is missing from {self.model} that these recordings can show (confidence {self.confidence:.2f})."
-        parts = [f"{_spoken(e.mechanism)} at {e.port} (probability {e.probability:.2f})" for e in self.effects]
+        parts = [f"{spoken(e.mechanism)} at {e.port} (probability {e.probability:.2f})" for e in self.effects]
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
         return f"The mismatch is {found}{self._gain()}."
 
@@ -175,14 +199,29 @@ class Verdict:
             "confidence": self.confidence,
             "sentence": self.sentence,
             "effects": [_effect(e) for e in self.effects],
+            "refinements": [_refinement(e) for e in self.refinements],
+            "left": None
+            if self.left is None
+            else {n: getattr(self.left, n) for n in ("share", "times_noise", "sentence")},
             "fit": rows,
             "evidence": list(self.evidence),
             "stages": dict(self.stages),
         }
 
 
-def _spoken(mechanism: str) -> str:
+def spoken(mechanism: str) -> str:
     return "an unknown effect" if mechanism == "unknown" else mechanism.replace("_", " ")
+
+
+def _refinement(effect: Effect) -> dict[str, Any]:
+    return {
+        "port": effect.port,
+        "mechanism": effect.mechanism,
+        "size": effect.size,
+        "probability": effect.probability,
+        "sentence": f"{effect.sentence}.",
+        "parameters": {n: dict(v) for n, v in effect.parameters.items()},
+    }
 
 
 def _effect(effect: Effect) -> dict[str, Any]:
@@ -190,6 +229,7 @@ def _effect(effect: Effect) -> dict[str, Any]:
         "port": effect.port,
         "mechanism": effect.mechanism,
         "probability": effect.probability,
+        "size": effect.size,
         "signals": list(effect.signals),
         "where": effect.where,
         "parameters": {n: dict(v) for n, v in effect.parameters.items()},

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from greybox_torch.data import DataSet, Recording
-from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.take_back import UNEXERCISED
 from greybox_torch.diagnosis.hypothesis.final import Final
+from greybox_torch.diagnosis.hypothesis.noise import output_floors
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.verdict import Trace
-from greybox_torch.estimate.comparison import Comparison, compare
+from greybox_torch.estimate.comparison import Comparison, Score, compare
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.simulation.stepper import Stepper, make_stepper
-
-CONFIRMED = 5.0
-"""Standard errors of held-out gain from which a finding stands whatever the free runs of the validation experiments say."""
 
 
 class Judgement:
@@ -34,9 +31,7 @@ class Judgement:
         augmented: Final,
         substeps: int,
         device: str,
-        gains: Mapping[str, Gain],
     ) -> None:
-        self.gains = gains
         self.recordings = dataset.recordings
         self.problem = all_starts_free(dataset, make_problem(dataset, problem.model, dataset.recordings))
         self.plain, self.augmented, self.substeps, self.device = plain, augmented, substeps, device
@@ -49,12 +44,28 @@ class Judgement:
 
     @property
     def holds(self) -> bool:
-        """Whether the effects are borne out: over windows of the validation experiments, or by their free runs.
+        """Whether the model with effects simulates the validation experiments no worse than the one without.
 
-        A free run can go astray where the machine is nearly bistable, however right the model is; windows with free starts cannot.
+        By the mean squared error, outputs in units of their spread, and by the mean fit in %: what a user sees.
         """
-        confirmed = bool(self.gains) and all(g.errors_away > CONFIRMED for g in self.gains.values())
-        return confirmed or self.sums[1] < (1 + UNEXERCISED) * self.sums[0]
+        before, after = (_mean_fit(c.scores) for c in (self._judged(self.refit), self._judged(self.with_effects)))
+        return self.sums[1] <= (1 + UNEXERCISED) * self.sums[0] and after >= before - 100 * UNEXERCISED
+
+    @property
+    def times_noise(self) -> np.ndarray:
+        """How many times the sensors' noise the free runs' errors of the refitted model are, root mean square, by experiment (E,)."""
+        return self._times_noise(self.refit)
+
+    def left(self, effects: bool) -> tuple[float, float]:
+        """What the recommended model leaves of the validation experiments: the share of the refitted model's mean squared error beyond the
+        noise, and the root mean square error in units of the noise.
+        """
+        floors = np.nan_to_num(output_floors(self.problem))
+        final = self.with_effects if effects else self.refit
+        beyond = [self._energy(c, floors) for c in (self.refit, final)]
+        roles = [r.role for r in self.recordings]
+        of = [role == "validation" or "validation" not in roles for role in roles]
+        return beyond[1] / max(beyond[0], 1e-300), float(np.max(self._times_noise(final)[of]))
 
     def comparisons(self, effects: bool) -> dict[str, Comparison]:
         return {"start": self.start, "refit": self.refit, "augmented": self.with_effects if effects else self.refit}
@@ -91,10 +102,37 @@ class Judgement:
             started = replace(started, initial=initial)
         return _scored(started, self.recordings, stepper, self.substeps)
 
-    def _energy(self, comparison: Comparison) -> float:
+    def _times_noise(self, comparison: Comparison) -> np.ndarray:
+        errors = np.array([s.rmse for s in comparison.scores]).reshape(len(self.recordings), -1)
+        ratios = errors**2 / np.maximum(output_floors(self.problem), 1e-300)
+        return np.sqrt(np.nanmean(np.where(np.isfinite(output_floors(self.problem)), ratios, np.nan), axis=1))
+
+    def _judged(self, comparison: Comparison) -> Comparison:
+        """The validation experiments alone, where there are any."""
         roles = [s.role for s in comparison.scores]
-        judged = [s for s in comparison.scores if s.role == "validation" or "validation" not in roles]
-        return float(sum(s.rmse**2 for s in judged))
+        return replace(
+            comparison,
+            scores=tuple(s for s in comparison.scores if s.role == "validation" or "validation" not in roles),
+        )
+
+    def _energy(self, comparison: Comparison, floors: np.ndarray | None = None) -> float:
+        """Sum of the mean squared validation errors, outputs in units of their spread, beyond ``floors`` (E, n_y) where those are given."""
+        spread = {
+            o.name: float(np.nanstd(row))
+            for o, row in zip(self.problem.model.outputs, self.problem.records.y, strict=True)
+        }
+        order = [r.name for r in self.recordings], [o.name for o in self.problem.model.outputs]
+        total = 0.0
+        for score in self._judged(comparison).scores:
+            floor = 0.0 if floors is None else floors[order[0].index(score.experiment), order[1].index(score.output)]
+            total += max(score.rmse**2 - floor, 0.0) / max(spread[score.output] ** 2, 1e-300)
+        return float(total)
+
+
+def _mean_fit(scores: Sequence[Score]) -> float:
+    """Mean fit in %, of the outputs that move."""
+    moving = [s.fit for s in scores if s.fit > -np.inf or not np.isfinite(s.rmse)]
+    return float(np.mean(moving)) if moving else 0.0
 
 
 def _scored(problem: Problem, recordings: tuple[Recording, ...], stepper: Stepper, substeps: int) -> Comparison:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, timelines
+from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, size, timelines
 from greybox_torch.diagnosis.confirm.simpler_laws import BEYOND_CHANCE, with_simpler_laws
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
@@ -45,9 +45,11 @@ def confirm(study: Study, state: SearchState, others: HeldOut) -> Stage[SearchSt
 
 def held_out_gains(state: SearchState, others: HeldOut) -> dict[str, Gain]:
     """By effect, what it gains on held-out experiments beside the others."""
-    full, *without = side_by_side(partial(others.fits, h) for h in (state.current, *state.without.values()))
+    plain, full, *without = side_by_side(
+        partial(others.fits, h) for h in (state.plain, state.current, *state.without.values())
+    )
     return {
-        p: replace(gain(fits, full), timelines=timelines(fits, full))
+        p: replace(gain(fits, full), timelines=timelines(fits, full), size=size(plain, fits, full))
         for p, fits in zip(state.without, without, strict=True)
     }
 

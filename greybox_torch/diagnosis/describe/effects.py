@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,12 @@ from greybox_torch.model.ports import Port
 
 
 def describe(
-    study: Study, state: SearchState, final: Final, sums: tuple[float, ...], gains: Mapping[str, Gain]
+    study: Study,
+    state: SearchState,
+    final: Final,
+    sums: tuple[float, ...],
+    gains: Mapping[str, Gain],
+    sizes: Mapping[str, float],
 ) -> tuple[Effect, ...]:
     """The effects of the search's final hypothesis.
 
@@ -30,6 +36,7 @@ def describe(
         final: that hypothesis fitted to whole records.
         sums: mean squared validation errors of the plain and the augmented model, summed over experiments.
         gains: by effect, on held-out experiments, where there are any.
+        sizes: by effect, the share of the whole mismatch that it accounts for.
     """
     hypothesis = state.current
     assert isinstance(hypothesis.model, AugmentedModel)
@@ -37,7 +44,10 @@ def describe(
     whole = max(0.0, (sums[0] - sums[1]) / max(sums[0] - floor, 1e-300))
     parts = _parts(state)
     return tuple(
-        _effect(study, state, hypothesis.model, e, final, min(1.0, whole * part), gains.get(e.prefix))
+        replace(
+            _effect(study, state, hypothesis.model, e, final, min(1.0, whole * part), gains.get(e.prefix)),
+            size=sizes.get(e.prefix, float("nan")),
+        )
         for e, part in zip(hypothesis.effects, parts, strict=True)
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -82,6 +83,15 @@ def noise_floor(problem: Problem, order: int = DIFFERENCES) -> float:
         known = rough[~np.isnan(rough)]
         squares, count = squares + float((known**2).sum()), count + known.size
     return squares / factor / max(count, 1)
+
+
+def output_floors(problem: Problem) -> np.ndarray:
+    """The variance (E, n_y) of white sensor noise by the high-frequency floor of every output, in its unit; NaN where unknown."""
+    factor, records = float((_binomial(DIFFERENCES) ** 2).sum()), problem.records
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # an output that is missing throughout an experiment
+        rough = [np.diff(records.y[:, records.span(e)], DIFFERENCES, axis=1) for e in range(len(records.first))]
+        return np.array([np.nanmean(r**2, axis=1) for r in rough]) / factor
 
 
 def _binomial(order: int) -> np.ndarray:

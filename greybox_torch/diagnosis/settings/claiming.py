@@ -35,10 +35,18 @@ class ConfirmationSettings:
         "Gain below which, either way, the experiments do not exercise an effect: they cannot take it back.",
         unit=HELD_OUT_SHARE,
     )
-    confirmed: float = number(
-        5.0,
-        "Held-out gain from which a finding stands whatever the free runs of the validation experiments say.",
-        unit=SIGMA,
+    least_size: float = share(
+        0.02,
+        "Size from which an effect is a finding: the part of the plain model's held-out mismatch that leaving it out brings back. "
+        "What is smaller is a refinement.",
+        unit="share of the plain model's held-out mismatch",
+        chosen_by="cases simulated elsewhere: what a law lacks to be the machine's stays below 0.005, effects begin at 0.05",
+    )
+    least_size_at_noise: float = share(
+        1e-3,
+        "The same where with all effects hardly more than noise is left on held-out experiments: then nothing lacks that it could be.",
+        unit="share of the plain model's held-out mismatch",
+        chosen_by="pairs of effects of which one is 25 times as large as the other",
     )
     promote_error: float = ratio(
         1.5, "Error from which a validation experiment shows what nothing was found of.", unit=NOISE_MULTIPLE

@@ -1,0 +1,41 @@
+"""How large effects are, and which of them are findings: significance against noise is not evidence for a law, size is.
+
+No law is exactly the machine's. What a law lacks stands far above the noise of a good sensor, and some other law will always take up part
+of it; but it is small beside the mismatch that the law itself removes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
+from greybox_torch.diagnosis.hypothesis.noise import ABOVE_NOISE, floor_known, times_noise
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.study import Study
+
+
+def sizes(study: Study, state: SearchState, gains: Mapping[str, Gain]) -> dict[str, float]:
+    """By effect, the share of the plain model's mismatch that leaving it out brings back.
+
+    On held-out experiments; on the estimation experiments where those do not exercise the effect, or where there are none.
+    """
+    found = {}
+    for prefix in state.without:
+        gain = gains.get(prefix)
+        idle = gain is None or abs(gain.share) + gain.error < study.settings.unexercised or not np.isfinite(gain.size)
+        own = size(state.plain.fits, state.without[prefix].fits, state.current.fits)
+        found[prefix] = own if gain is None or idle else gain.size
+    return found
+
+
+def least_size(study: Study, state: SearchState, others: HeldOut | None) -> float:
+    """The size from which an effect is a finding: much less where with all of them hardly more than noise is left."""
+    if others is not None and floor_known(others.problem):
+        left = float(np.max(others.times_noise(state.current)))
+    elif others is None and floor_known(study.problem):
+        left = times_noise(study.problem, state.current)
+    else:
+        left = np.inf
+    return study.settings.least_size_at_noise if left < ABOVE_NOISE else study.settings.least_size

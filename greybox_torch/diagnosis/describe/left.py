@@ -1,0 +1,25 @@
+"""What the recommended model leaves of the mismatch, in the form of the verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from greybox_torch.diagnosis.confirm.free_runs import Judgement
+from greybox_torch.diagnosis.describe.residual_tests import Detection
+from greybox_torch.diagnosis.verdict import Left
+
+
+def what_is_left(judged: Judgement, detected: Sequence[Detection], effects: bool) -> Left:
+    """What remains on the validation experiments, and whether it is repeatable."""
+    share, times = judged.left(effects)
+    beyond = any(d.final.past.beyond for d in detected)
+    coloured = any(d.final.colour.beyond for d in detected)
+    how = (
+        "it is correlated with past inputs, so that part of it is repeatable"
+        if beyond
+        else "it is not white, and no linear function of past inputs"
+        if coloured
+        else "it is white, as noise is"
+    )
+    whole = f"{100 * share:.2g} % of the mismatch remains" if effects else "The model as it stands is recommended"
+    return Left(share, times, f"{whole}: its error is {times:.2g} times the noise, and {how}.")
