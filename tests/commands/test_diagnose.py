@@ -126,7 +126,7 @@ def test_what_is_written(motor_folder: Make, finding: Callable[..., dict[str, An
     verdict = json.loads(text)
     contract = {"schema", "dataset", "model", "seed", "seconds", "mismatch", "confidence", "effects", "fit"}
     assert contract <= set(verdict)
-    assert (verdict["schema"], verdict["seed"], verdict["mismatch"]) == ("greybox-verdict/1", 5, True)
+    assert (verdict["schema"], verdict["seed"], verdict["mismatch"]) == ("greybox-verdict/2", 5, True)
     (effect,) = verdict["effects"]
     fields = {"port", "mechanism", "probability", "signals", "where", "parameters", "explained", "alternatives"}
     assert set(effect) == fields

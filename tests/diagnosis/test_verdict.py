@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.verdict import Alternative, Curve, Effect, Verdict
+from greybox_torch.diagnosis.verdict import Alternative, Curve, Effect, Left, Verdict
 from greybox_torch.estimate.comparison import Score
 
 BACKLASH = Effect(
@@ -21,6 +21,7 @@ BACKLASH = Effect(
     explained=0.97,
     alternatives=(Alternative("gear_spring", "nonlinear_stiffness", 0.04),),
     curve=None,
+    size=0.9,
 )
 CURVE = Curve("speed", "rad/s", np.array([0.0, 1.0]), np.array([0.0, 0.5]), "N m")
 
@@ -49,13 +50,14 @@ def test_keys_are_those_of_the_contract() -> None:
     found = json.loads(json.dumps(verdict(BACKLASH).as_json()))
     agreed = {"schema", "dataset", "model", "seed", "seconds", "mismatch", "confidence", "effects", "fit"}
     assert agreed <= set(found)
-    assert found["schema"] == "greybox-verdict/1"
+    assert found["schema"] == "greybox-verdict/2"
     assert (found["dataset"], found["model"], found["seed"], found["mismatch"]) == ("made", "Motor", 3, True)
     assert found["effects"] == [
         {
             "port": "gear_spring",
             "mechanism": "backlash",
             "probability": 0.94,
+            "size": 0.9,
             "signals": ["gear_twist"],
             "where": "|gear_twist| < 0.031 rad",
             "parameters": {"half_gap": {"value": 0.031, "std": 0.0004, "unit": "rad"}},
@@ -76,6 +78,23 @@ def test_keys_are_those_of_the_contract() -> None:
 def test_share_of_the_ceiling_where_it_is_known() -> None:
     first, second = verdict(BACKLASH, replace(BACKLASH, ceiling=0.9)).as_json()["effects"]
     assert "ceiling" not in first and second["ceiling"] == 0.9
+
+
+def test_refinements_and_what_is_left_stand_beside_the_findings() -> None:
+    small = replace(BACKLASH, port="motor", mechanism="coulomb_friction", size=0.003)
+    left = Left(0.04, 2.1, "4 % of the mismatch remains.")
+    told = replace(verdict(BACKLASH), refinements=(small,), left=left)
+    found = json.loads(json.dumps(told.as_json()))
+    assert [e["mechanism"] for e in found["effects"]] == ["backlash"]
+    (refinement,) = found["refinements"]
+    assert (refinement["port"], refinement["mechanism"], refinement["size"]) == ("motor", "coulomb_friction", 0.003)
+    assert refinement["sentence"].startswith("coulomb friction at motor accounts for 0.3 % of the whole mismatch")
+    assert found["left"] == {"share": 0.04, "times_noise": 2.1, "sentence": "4 % of the mismatch remains."}
+    assert "coulomb" not in told.sentence
+
+
+def test_refinements_alone_are_no_mismatch() -> None:
+    assert replace(verdict(), refinements=(replace(BACKLASH, size=1e-4),)).mismatch is False
 
 
 def test_nothing_missing() -> None:
