@@ -23,10 +23,10 @@ def position_trials(local: LocalSignals, values: Mapping[str, float]) -> list[di
     if any(not _periodic(a.mechanism) for a in placed):
         travel = [local.surroundings[a.port].ranges["position"] for a in placed]
         span = max(r.high - r.low for r in travel)
-        return [dict.fromkeys(states, share * span) for share in OFFSETS]
+        return [{s: float(share) * span for s in states} for share in OFFSETS]
     orders = [abs(float(values.get(f"{a.prefix}.order", 1.0))) for a in placed]
     period = 2 * np.pi / max(min(orders), 1e-9)
-    return [dict.fromkeys(states, k * period / START_POSITIONS) for k in range(START_POSITIONS)]
+    return [{s: k * period / START_POSITIONS for s in states} for k in range(START_POSITIONS)]
 
 
 def _periodic(mechanism: Mechanism) -> bool:
