@@ -58,7 +58,7 @@ class Effect:
     alone: tuple[Pair, ...] = ()
     """Further answers that are right as long as nothing else is concealed, and near otherwise."""
     sharp: bool = False
-    """Physics with an edge (standstill, impacts) in place of the smooth law that the standard set has; for the proof alone."""
+    """Physics with an edge, or richer than the library's law, in place of the law that the standard set has; for the proof alone."""
 
 
 def _sign(rng: Generator) -> float:
@@ -83,6 +83,7 @@ BIAS: tuple[Pair, ...] = (
 DELAY: tuple[Pair, ...] = (("actuator", "input_delay"), ("sensor", "output_delay"))
 LAG: tuple[Pair, ...] = (("actuator", "input_lag"), ("sensor", "sensor_lag"))
 BODIES = ("motor", "gearbox", "arm")
+DRY_NAMES = ("coulomb_friction", "stribeck_friction", "presliding_hysteresis")
 
 
 def _friction_effects() -> list[Effect]:
@@ -288,6 +289,23 @@ def _outside_effects() -> list[Effect]:
 def _sharp_effects() -> list[Effect]:
     near = (("gearbox", "coulomb_friction"), ("gearbox", "stribeck_friction"), ("arm", "presliding_hysteresis"))
     gear = "gear_spring"
+
+    def seat(g: Generator, s: float, c: Surroundings) -> Switches:
+        level, reach = s * g.uniform(0.25, 0.4), g.uniform(0.03, 0.08)
+        return {"level": level, "stiffness": level / reach, "damping": 0.02 * level}
+
+    def lugre(g: Generator, s: float, c: Surroundings) -> Switches:
+        level, reach = s * g.uniform(0.12, 0.2), g.uniform(0.02, 0.05)
+        return {
+            "level": level, "extra": level * g.uniform(0.8, 1.5), "v_s": g.uniform(3.0, 6.0), "c": s * g.uniform(0.001, 0.003),
+            "stiffness": level / reach, "damping": 0.02 * level,
+        }  # fmt: skip
+
+    def loop(g: Generator, s: float, c: Surroundings) -> Switches:
+        slip, yielding = s * g.uniform(0.25, 0.4), g.uniform(0.024, 0.048)
+        share, power = g.uniform(0.55, 0.95), g.uniform(1.0, 3.0)
+        return {"stiffness": slip / yielding, "yield": yielding, "share": share, "power": power}
+
     return [
         Effect("arm_stick", dry.DryCoulomb, "arm", "friction", lambda g, s, c: {"level": s * g.uniform(0.25, 0.45)},
                (("arm", "coulomb_friction"), ("arm", "stribeck_friction")), near, ("arm", "gearbox"), sharp=True),
@@ -296,6 +314,23 @@ def _sharp_effects() -> list[Effect]:
                (("arm", "stribeck_friction"),), (("arm", "coulomb_friction"), *near), ("arm", "gearbox"), sharp=True),
         Effect("gear_impacts", coupling.BacklashWithImpacts, gear, "gear", lambda g, s, c: {"half_gap": s * g.uniform(0.03, 0.045)},
                ((gear, "backlash"),), ((gear, "nonlinear_stiffness"), (gear, "hysteretic_spring")), (gear,), sharp=True),
+        Effect(
+            name="motor_seat", law=dry.DryPresliding, port="motor", family="bristle", draw=seat,
+            accept=(("motor", "presliding_hysteresis"),),
+            near=(("gearbox", "presliding_hysteresis"), ("motor", "coulomb_friction"), ("motor", "stribeck_friction")),
+            ports=("motor", "gearbox"), sharp=True,
+        ),
+        Effect(
+            name="arm_lugre", law=body.StribeckBristle, port="arm", family="friction", draw=lugre,
+            accept=(("arm", "presliding_hysteresis"), ("arm", "stribeck_friction")),
+            near=(("arm", "coulomb_friction"), *(("gearbox", name) for name in DRY_NAMES)),
+            ports=("arm", "gearbox"), sharp=True,
+        ),
+        Effect(
+            name="gear_bouc_wen", law=coupling.BoucWen, port=gear, family="gear", draw=loop,
+            accept=((gear, "hysteretic_spring"),), near=((gear, "nonlinear_stiffness"), (gear, "nonlinear_damping")),
+            ports=(gear,), sharp=True,
+        ),
     ]  # fmt: skip
 
 

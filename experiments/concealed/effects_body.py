@@ -77,6 +77,44 @@ def frictions(u: Usual) -> list[Effect]:
     ]  # fmt: skip
 
 
+def richer(u: Usual) -> list[Effect]:
+    """Laws richer than the library's: friction on an elastic seat, LuGre with a level that falls with speed, a stop that is hit."""
+    at = u.body
+
+    def seat(g: Generator, s: float, c: Surroundings) -> Switches:
+        level, reach = s * u.force * g.uniform(0.05, 0.1), u.bristle * g.uniform(0.7, 1.4)
+        return {"level": level, "stiffness": level / reach, "damping": 0.5 * level / u.speed}
+
+    def lugre(g: Generator, s: float, c: Surroundings) -> Switches:
+        level, reach = s * u.force * g.uniform(0.04, 0.08), u.bristle * g.uniform(0.7, 1.4)
+        return {
+            "level": level, "extra": level * g.uniform(0.6, 1.2), "v_s": u.speed * g.uniform(0.05, 0.15),
+            "c": 0.2 * level / u.speed, "stiffness": level / reach, "damping": 0.5 * level / u.speed,
+        }  # fmt: skip
+
+    def hit(g: Generator, s: float, c: Surroundings) -> Switches:
+        depth = min(s * g.uniform(0.05, 0.1), 0.5) * u.travel
+        return {"limit": float(c.position.max()) - depth, "side": 1.0, "restitution": g.uniform(0.3, 0.7)}
+
+    bristle, stribeck, plain = (
+        (at, name) for name in ("presliding_hysteresis", "stribeck_friction", "coulomb_friction")
+    )
+    return [
+        Effect(
+            name="seat", law=dry.DryPresliding, port=at, family="friction", draw=seat,
+            accept=(bristle,), near=(stribeck, plain), ports=(at,), sharp=True,
+        ),
+        Effect(
+            name="lugre", law=body.StribeckBristle, port=at, family="friction", draw=lugre,
+            accept=(bristle, stribeck), near=(plain,), ports=(at,), sharp=True,
+        ),
+        Effect(
+            name="hard_end_stop", law=dry.HardStop, port=at, family="position", draw=hit,
+            accept=((at, "end_stop"),), near=((at, "unknown"),), ports=(at,), sharp=True,
+        ),
+    ]  # fmt: skip
+
+
 def forces(u: Usual) -> list[Effect]:
     """Forces that depend on position or on nothing, and one more mass."""
     at = u.body

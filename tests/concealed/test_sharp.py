@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 from scipy.integrate import solve_ivp
 
 from experiments.concealed.laws import Law, body, coupling, dry
@@ -81,3 +82,59 @@ def test_nothing_is_transmitted_in_the_gap():
     _, states = simulate([free], np.full(50, 1.0))
     assert np.all(states[:, 3] == 0.0)
     assert states[-1, 2] > 1.0
+
+
+def cell(law: type, **switches: float):
+    """A law on one lane of a body of 1 kg on a rail, 1 ms; returns what advances the whole by one sample under a force."""
+    from experiments.concealed.plant_body import BodyPlant
+
+    one = law(np.arange(1), {name: np.full(1, float(value)) for name, value in switches.items()}, "carriage")
+    plant = BodyPlant(np.ones(1), np.zeros(1), np.zeros(1), [one], sample_time=1e-3, steps_per_sample=10)
+    return plant, lambda k, state, force: plant._advanced(k, state, np.tile(force, (k + 1, 1)).astype(float))
+
+
+def test_friction_on_an_elastic_seat_gives_then_slides_at_its_level() -> None:
+    plant, advance = cell(dry.DryPresliding, level=2.0, stiffness=2000.0, damping=20.0)
+    state = plant.initial_state(np.zeros(1), np.zeros(1))
+    for k in range(400):  # a force below the level: the seat gives by force / stiffness, and nothing slides
+        state = advance(k, state, 1.0)
+    assert state[0, 0] == pytest.approx(1.0 / 2000.0, rel=5e-3)
+    for k in range(400):
+        state = advance(k, state, 0.0)
+    assert state[0, 0] == pytest.approx(0.0, abs=1e-5)  # and comes back
+    state[1] = 0.5
+    for k in range(100):  # sliding: the level is taken off, whatever the speed
+        state = advance(k, state, 3.0)
+    assert state[1, 0] == pytest.approx(0.5 + 0.1 * (3.0 - 2.0) - 20.0 * 0.001, abs=5e-3)  # less what the winding damps
+
+
+def test_a_bristle_whose_level_falls_with_speed_slides_at_the_stribeck_curve() -> None:
+    plant, advance = cell(body.StribeckBristle, level=2.0, extra=1.5, v_s=0.3, c=0.4, stiffness=4000.0, damping=5.0)
+    for speed in (0.1, 1.0):
+        state = plant.initial_state(np.zeros(1), np.full(1, speed))
+        friction = 2.0 + 1.5 * np.exp(-((speed / 0.3) ** 2)) + 0.4 * speed
+        for k in range(80):
+            state[1] = speed  # held
+            state = advance(k, state, 0.0)
+        assert 1e3 * (speed - state[1, 0]) == pytest.approx(friction, rel=0.03)
+
+
+def test_a_stop_that_is_hit_turns_the_speed_round() -> None:
+    plant, advance = cell(dry.HardStop, limit=0.01, side=1.0, restitution=0.5)
+    state = plant.initial_state(np.zeros(1), np.full(1, 1.0))
+    seen = []
+    for k in range(30):
+        state = advance(k, state, 0.0)
+        seen.append((state[0, 0], state[1, 0]))
+    assert max(q for q, _ in seen) <= 0.01 + 1e-9
+    assert seen[-1][1] == pytest.approx(-0.5)
+
+
+def test_a_bouc_wen_loop_slips_at_its_torque_and_takes_energy() -> None:
+    law = make(coupling.BoucWen, "gear_spring", **{"stiffness": 10.0, "yield": 0.03, "share": 0.7, "power": 2.0})
+    torque = 4.0 * np.sin(2.0 * np.pi * 5.0 * np.arange(600) * SAMPLE_TIME)
+    _, states = simulate([law], torque)
+    z = states[:, 6]
+    assert 0.02 < np.abs(z).max() < 0.03 * 1.01
+    twist = states[:, 0]
+    assert np.sum(0.5 * 10.0 * (z[1:] + z[:-1]) * np.diff(twist)) > 0.0

@@ -163,6 +163,18 @@ class Bristle(Law):
         motion.push(self.port, self.lanes, -(self["stiffness"] * z + self["damping"] * slip))
 
 
+class StribeckBristle(Bristle):
+    """LuGre with a level that falls with speed, level + extra exp(-(v / v_s)^2), and viscous friction c v: as published (see `Bristle`)."""
+
+    def apply(self, motion: Instant) -> None:
+        v = motion.speed(self.port, self.lanes)
+        z = motion.state[self.first_row, self.lanes]
+        level = self["level"] + self["extra"] * np.exp(-((v / self["v_s"]) ** 2))
+        slip = v - self["stiffness"] * np.abs(v) * z / level
+        motion.rates[self.first_row, self.lanes] = slip
+        motion.push(self.port, self.lanes, -(self["stiffness"] * z + self["damping"] * slip + self["c"] * v))
+
+
 class AdditionalMode(Law):
     """One more mass on a spring and a damper: states deflection x = q_body - q_mass and the mass's speed."""
 

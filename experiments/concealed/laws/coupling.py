@@ -102,6 +102,23 @@ class HystereticSpring(Coupling):
         self.add_torque(motion, self["stiffness"] * z)
 
 
+class BoucWen(Coupling):
+    """dz/dt = r - (share |r| z + (1 - share) r |z|) |z|^(power - 1) / yield^power, torque stiffness z.
+
+    Y. K. Wen, "Method for random vibration of hysteretic systems", J. Eng. Mech. Div. 102, 1976: loops that open otherwise on the way
+    out than back (share below one) and yield softly (power one) or sharply (three).
+    """
+
+    memory: ClassVar[int] = 1
+
+    def apply(self, motion: Motion) -> None:
+        r, z = self.rate(motion), motion.state[self.first_row, self.lanes]
+        bent = self["share"] * np.abs(r) * z + (1.0 - self["share"]) * r * np.abs(z)
+        softer = bent * np.abs(z) ** (self["power"] - 1.0) / self["yield"] ** self["power"]
+        motion.rates[self.first_row, self.lanes] = r - softer
+        self.add_torque(motion, self["stiffness"] * z)
+
+
 class QuadraticDamping(Coupling):
     """+ c r |r|, r the rate of deflection."""
 

@@ -16,7 +16,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from experiments.concealed.laws.base import Array, Law
+from experiments.concealed.laws.base import Array, Instant, Law
 
 
 class DryFriction(Law):
@@ -53,3 +53,40 @@ class DryWarmup(DryFriction):
 
     def level(self, time: float, v: Array) -> Array:
         return self["change"] * np.exp(-max(time, 0.0) / self["T"])
+
+
+class DryPresliding(Law):
+    """Set-valued friction on an elastic seat: the seat gives by z, |z| <= level / stiffness, before the body slides.
+
+    force = - (stiffness z + damping dz/dt), dz/dt = v while the seat gives and zero while it slides: the Prandtl element (L. Prandtl,
+    ZAMM 8, 1928), the single cell of Maxwell-slip models, with its edge where the smooth bristle models have a bend.
+    """
+
+    places: ClassVar[tuple[str, ...]] = ("body", "dry")
+    memory: ClassVar[int] = 1
+
+    def apply(self, motion: Instant) -> None:
+        v, z = motion.speed(self.port, self.lanes), motion.state[self.first_row, self.lanes]
+        gives = (np.abs(z) < self["level"] / self["stiffness"]) | (z * v < 0.0)
+        motion.rates[self.first_row, self.lanes] = np.where(gives, v, 0.0)
+        motion.push(self.port, self.lanes, -(self["stiffness"] * z + np.where(gives, self["damping"] * v, 0.0)))
+
+    def hold(self, time: float, state: Array, width: float, inertia: Array) -> None:
+        most = self["level"] / self["stiffness"]
+        state[self.first_row, self.lanes] = np.clip(state[self.first_row, self.lanes], -most, most)
+
+
+class HardStop(Law):
+    """A stop that is hit: past `limit` on `side` the speed turns round, times `restitution` (Newton's law of impacts).
+
+    For machines whose state is one body's position and speed.
+    """
+
+    places: ClassVar[tuple[str, ...]] = ("dry",)
+
+    def hold(self, time: float, state: Array, width: float, inertia: Array) -> None:
+        row, side = self.speed_row - 1, self["side"]
+        q, v = state[row, self.lanes], state[self.speed_row, self.lanes]
+        hit = (side * q > self["limit"]) & (side * v > 0.0)
+        state[self.speed_row, self.lanes] = np.where(hit, -self["restitution"] * v, v)
+        state[row, self.lanes] = np.where(hit, side * self["limit"], q)

@@ -61,7 +61,7 @@ class OneBody(Machine):
     def draw_excitation(self, rng: Generator, plan: Sequence[str], noise: float) -> Shaking:
         """Moves to and fro, twice; shaking around rest; a slow sweep over the whole travel. As for the arm, with positions."""
         drawn = self._drawn(rng, noise)
-        while "end_stop" in plan and drawn.reference.max(axis=0).argmax() != 0:
+        while {"end_stop", "hard_end_stop"} & set(plan) and drawn.reference.max(axis=0).argmax() != 0:
             drawn = self._drawn(
                 rng, noise
             )  # where the estimation experiment never gets to the stop, nothing can be said of it

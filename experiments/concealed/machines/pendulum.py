@@ -29,6 +29,7 @@ def _catalogue() -> dict[str, Effect]:
     found = [
         *body_effects.frictions(u),
         *body_effects.forces(u),
+        *body_effects.richer(u),
         body_effects.ripple(u, 3.0, 20.0),
         *body_effects.drives(u),
         *body_effects.timings(SPEED, 0.03, right[:2], right[2:]),

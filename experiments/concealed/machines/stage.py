@@ -24,6 +24,7 @@ def _catalogue() -> dict[str, Effect]:
     found = [
         *body_effects.frictions(u),
         *body_effects.forces(u),
+        *body_effects.richer(u),
         body_effects.ripple(u, 2.0 * np.pi / 0.03, 2.0 * np.pi / 0.01),
         *body_effects.drives(u),
         *body_effects.timings("sensor", 0.015, (DELAY, DELAY), (LAG, LAG)),

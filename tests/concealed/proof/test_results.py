@@ -191,6 +191,7 @@ def test_standard_set_has_every_mechanism_at_three_strengths_and_what_the_wider_
     assert sum(p.machine in ENGINE for p in planned) >= 60
     assert sum("overwhelming" in p.words for p in planned) >= 40
     assert sum(p.quiet < 1.0 for p in planned if not p.plan) >= 20  # nothing is missing, and the sensors are good
+    assert sum(p.section == "richer laws" for p in planned) >= 8
     assert {p.machine for p in planned} == set(MACHINES)
     singles = [p for p in planned if p.section == "library" and p.machine not in ENGINE]
 
