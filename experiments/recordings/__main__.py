@@ -1,10 +1,10 @@
 """Real recordings with known physics concealed from the model: does the tool find it?
 
-    python -m experiments.recordings OUT [--only NAME,…] [--time-limit 300]
+    python -m experiments.recordings OUT [--only NAME,…] [--time-limit 300] [--workers 1]
 
-Runs `greybox diagnose` on every recording with the model that lacks something, and `greybox fit` with the full published model, as a user
-would. Writes OUT/results.json and OUT/results.md; what has been run is passed over, so that an interrupted run goes on where it was.
-Recordings that are not beside the checkout (../shared/recordings) are skipped, saying so.
+Runs `greybox diagnose` on every recording with the model that lacks something, and `greybox fit` with the full published model where there
+is one, as a user would. Writes OUT/results.json and OUT/results.md; what has been run is passed over, so that an interrupted run goes on
+where it was. Recordings that are not beside the checkout (../shared/recordings) are skipped, saying so.
 """
 
 from __future__ import annotations
@@ -13,38 +13,48 @@ import argparse
 import json
 import subprocess
 import sys
-import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from experiments.recordings.cases import CASES, HERE, Case
 from experiments.recordings.table import row, table
-from experiments.verdicts.running import ROOT, VERDICT, diagnose, has_verdict
+from experiments.verdicts.running import ROOT, VERDICT, Outcome, diagnose_all, has_verdict
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.files import json_text, write_text
 
 
-def run_case(case: Case, out: Path, time_limit: float) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The verdict on a recording and the fit of the published model, from files where they have been made before.
+def published_fit(case: Case, out: Path) -> dict[str, Any] | None:
+    """The fit of the full published model, from its file where it has been made before; None where there is no such model.
 
     Raises:
-        UserError: one of the two commands failed; the message is its own.
+        UserError: the fit failed; the message is the command's.
     """
-    folder = out / "".join(c if c.isalnum() else "_" for c in case.name.lower()).strip("_")
-    if not has_verdict(folder):
-        outcome = diagnose(HERE / case.card, folder, time_limit)
-        if outcome.failure:
-            raise UserError(f"greybox diagnose {case.card}: {outcome.failure}")
-    published = folder / "published"
-    if not (published / "fit.json").exists():
+    if not case.published_card:
+        return None
+    folder = out / f"{case.slug}_published"
+    if not (folder / "fit.json").exists():
         model = ["--model", str(HERE / case.published_model)] if case.published_model else []
-        arguments = ["fit", str(HERE / case.published_card), "--out", str(published), *model]
+        arguments = ["fit", str(HERE / case.published_card), "--out", str(folder), *model]
         command = [sys.executable, "-m", "greybox_torch", *arguments]
         done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
         if done.returncode != 0:
             raise UserError(f"greybox {' '.join(arguments)}: {done.stderr.strip()}")
-    return json.loads((folder / VERDICT).read_text()), json.loads((published / "fit.json").read_text())
+    return json.loads((folder / "fit.json").read_text())
+
+
+def verdicts(cases: Sequence[Case], out: Path, *, workers: int, time_limit: float) -> list[str]:
+    """Diagnose what has no verdict yet, into OUT/SLUG; the names of the recordings on which that failed."""
+    by_slug = {case.slug: case.name for case in cases}
+    left = {case.slug: HERE / case.card for case in cases if not has_verdict(out / case.slug)}
+    failed: list[str] = []
+
+    def tell(slug: str, outcome: Outcome) -> None:
+        failed.extend([by_slug[slug]] * bool(outcome.failure))
+        print(f"{by_slug[slug]} {outcome.seconds:.0f} s: {outcome.said}", file=sys.stderr, flush=True)
+
+    diagnose_all(left, out, workers=workers, time_limit=time_limit, tell=tell)
+    return failed
 
 
 def chosen(names: str) -> list[Case]:
@@ -68,24 +78,29 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except UserError as error:
         print(error, file=sys.stderr)
         return 2
-    rows, failed = [], 0
+    there = [case for case in cases if case.recordings.is_dir()]
     for case in cases:
-        if not case.recordings.is_dir():
+        if case not in there:
             print(f"{case.name}: skipped, ../shared/recordings/{case.folder} is not here", file=sys.stderr)
+    if not there:
+        return 0
+    failed = verdicts(there, out, workers=options.workers, time_limit=options.time_limit)
+    rows = []
+    for case in there:
+        if case.name in failed:
             continue
-        began = time.perf_counter()
         try:
-            rows.append(row(case, *run_case(case, out, options.time_limit)))
+            verdict = json.loads((out / case.slug / VERDICT).read_text(encoding="utf-8"))
+            rows.append(row(case, verdict, published_fit(case, out)))
         except UserError as error:
-            failed += 1
+            failed.append(case.name)
             print(f"{case.name}: {error}", file=sys.stderr)
             continue
-        print(f"{case.name}: {time.perf_counter() - began:.0f} s", file=sys.stderr, flush=True)
         write_text(out / "results.json", json_text({"time_limit": options.time_limit, "recordings": rows}))
         write_text(out / "results.md", table(rows))
     if rows:
         print(table(rows))
-    return int(failed > 0)
+    return int(bool(failed))
 
 
 def _parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
@@ -95,6 +110,7 @@ def _parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("out", type=Path, metavar="OUT", help="folder for verdicts, fits, results.json and results.md")
     parser.add_argument("--only", default="", help="names of recordings, separated by commas")
     parser.add_argument("--time-limit", type=float, default=300.0, help="seconds for the search on one recording")
+    parser.add_argument("--workers", type=int, default=1, help="recordings side by side, one thread each")
     return parser.parse_args(arguments)
 
 

@@ -7,9 +7,13 @@ accepted. What nature added to these machines besides is nobody's to say: furthe
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import json
+import math
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
+
+from experiments.verdicts.scoring import NOTHING_CONCEALED
 
 HERE = Path(__file__).parent
 SHARED = HERE.parents[2] / "shared" / "recordings"
@@ -52,20 +56,28 @@ class Concealed:
 class Case:
     """A recording: the card whose model lacks something, what that is, and the card of the full published model.
 
-    ``published_model`` is the full model's file and class, empty where ``published_card`` names it itself.
+    ``published_model`` is the full model's file and class, empty where ``published_card`` names it itself; without ``published_card``
+    there is no full model to fit. Nothing concealed means that the card's model leaves out nothing that is known, unless the answers lie
+    beside the recordings, in ``key.json`` (``answered``).
     """
 
     name: str
     folder: str
     card: str
-    published_card: str
-    published_model: str
-    concealed: tuple[Concealed, ...]
+    published_card: str = ""
+    published_model: str = ""
+    concealed: tuple[Concealed, ...] = ()
+    answered: bool = False
 
     @property
     def recordings(self) -> Path:
         """The folder that holds the recordings."""
         return SHARED / self.folder
+
+    @property
+    def slug(self) -> str:
+        """Its name for a folder."""
+        return "".join(c if c.isalnum() else "_" for c in self.name.lower()).strip("_")
 
 
 def _friction(port: str, level: float, unit: str, *, behind: str = "") -> Concealed:
@@ -135,29 +147,86 @@ def _other(name: str, folder: str, file: str, published: str, *concealed: Concea
     return Case(name, folder, f"{file}.toml", f"{file}.toml", f"{file}.py:{published}", concealed)
 
 
+def _alone(name: str, folder: str, file: str, what: str, concealed: Concealed) -> Case:
+    """One effect alone left out of the published model."""
+    return Case(
+        f"{name} without {concealed.name}",
+        folder,
+        f"{file}_without_{what}.toml",
+        f"{file}_complete.toml",
+        "",
+        (concealed,),
+    )
+
+
+def _complete(name: str, folder: str, card: str) -> Case:
+    return Case(f"{name}, published model", folder, card)
+
+
+def _elsewhere(name: str, folder: str) -> Case:
+    """Recordings that come with a card, a model and a key of their own."""
+    return Case(name, f"elsewhere/{folder}", str(SHARED / "elsewhere" / folder / "dataset.toml"), answered=True)
+
+
+def _joint(number: int) -> Case:
+    """The double pendulum, one joint's Coulomb friction left out: published as c atan(100 v), a level of c pi/2."""
+    level = (0.16, 0.12)[number - 1] * math.pi / 2
+    friction = replace(_friction(f"joint{number}", level, "N m"), parameter=f"cf{number}")
+    card = f"double_pendulum_without_coulomb_{number}.toml"
+    return Case(
+        f"double pendulum, joint {number} without Coulomb friction",
+        "elsewhere/double_pendulum",
+        card,
+        concealed=(friction,),
+    )
+
+
+_PENDULUM = {
+    "coulomb": _friction("pivot", 0.1839, "N m"),
+    "viscous": _viscous(0.0471, "N m s/rad"),
+    "offset": _offset("pivot", "offset", -0.0759, "N m", 1.0),
+}
+_STAGE = {"coulomb": _friction("carriage", 20.3935, "N"), "offset": _offset("carriage", "offset", -3.1648, "N", -1.0)}
+
 CASES = (
     _arm("coulomb", _friction("motor", 0.74302635727901, "N m", behind="gearbox")),
     _arm("coulomb_viscous_free", _friction("motor", 0.74302635727901, "N m", behind="gearbox"), " (all free)", "robot_arm_all_free.toml"),
     _arm("cubic_stiffness", _stiffness("gear_spring", "k_g3", 24.178, "N m/rad^3")),
     _arm("arm_damping", _coupling_damping()),
     _other(
-        "EMPS", "emps", "positioning_stage", "PublishedPositioningStage",
-        _friction("carriage", 20.3935, "N"), _offset("carriage", "offset", -3.1648, "N", -1.0),
+        "EMPS", "emps", "positioning_stage", "PublishedPositioningStage", *_STAGE.values(),
     ),
+    *(_alone("EMPS", "emps", "positioning_stage", what, concealed) for what, concealed in _STAGE.items()),
+    _complete("EMPS", "emps", "positioning_stage_complete.toml"),
     _other(
         "Silverbox", "silverbox", "silverbox", "PublishedSilverbox",
         _stiffness("spring", "k_3", None, "1/(s V)^2"),
     ),
+    _complete("Silverbox", "silverbox", "silverbox_complete.toml"),
     _other(
-        "pendulum", "simple_pendulum", "pendulum", "PublishedPendulum",
-        _friction("pivot", 0.1839, "N m"), _viscous(0.0471, "N m s/rad"), _offset("pivot", "offset", -0.0759, "N m", 1.0),
+        "pendulum", "simple_pendulum", "pendulum", "PublishedPendulum", *_PENDULUM.values(),
     ),
+    *(_alone("pendulum", "simple_pendulum", "pendulum", what, concealed) for what, concealed in _PENDULUM.items()),
+    _complete("pendulum", "simple_pendulum", "pendulum_complete.toml"),
+    _elsewhere("double pendulum", "double_pendulum"),
+    _joint(1),
+    _joint(2),
+    _complete("double pendulum", "elsewhere/double_pendulum", str(SHARED / "elsewhere" / "double_pendulum" / "complete.toml")),
+    _elsewhere("joint of a seven-axis arm", "arm_joint"),
+    _elsewhere("cogging motor", "cogging"),
+    _elsewhere("screw drive", "screw_drive"),
+    _complete("screw drive", "elsewhere/screw_drive", str(SHARED / "elsewhere" / "screw_drive" / "complete.toml")),
+    _elsewhere("two tanks", "tanks"),
 )  # fmt: skip
 """In the order of the table."""
 
 
 def key(case: Case) -> dict[str, Any]:
     """The answer key that :func:`experiments.verdicts.scoring.score` reads; the noise of real recordings is not known, so no floor."""
+    if case.answered:
+        return json.loads((case.recordings / "key.json").read_text(encoding="utf-8"))
+    if not case.concealed:
+        return dict(NOTHING_CONCEALED)
     return {
         "effects": [c.name for c in case.concealed],
         "accept": [[list(pair) for pair in c.accept] for c in case.concealed],

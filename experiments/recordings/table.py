@@ -9,12 +9,12 @@ from experiments.recordings.cases import Case, Concealed, key
 from experiments.verdicts.scoring import score
 
 
-def row(case: Case, verdict: Mapping[str, Any], fit: Mapping[str, Any]) -> dict[str, Any]:
+def row(case: Case, verdict: Mapping[str, Any], fit: Mapping[str, Any] | None) -> dict[str, Any]:
     """One recording scored, as it goes into results.json.
 
     Args:
         verdict: verdict.json of the model that lacks something.
-        fit: fit.json of the full published model.
+        fit: fit.json of the full published model, None where there is none to fit.
     """
     answers = key(case)
     scored = score(case.name, verdict, answers)
@@ -31,9 +31,12 @@ def row(case: Case, verdict: Mapping[str, Any], fit: Mapping[str, Any]) -> dict[
     ]
     return {
         "recording": case.name,
-        "concealed": [c.name for c in case.concealed],
+        "concealed": list(scored.effects),
         "detected": scored.detected,
         "named": scored.named,
+        "located": scored.located,
+        "worse": scored.worse,
+        "contradictions": scored.contradictions,
         "complete": verdict.get("complete", True),
         "seconds": verdict["seconds"],
         "found": [f for f in findings if f["right"] or f["near"]],
@@ -45,11 +48,13 @@ def row(case: Case, verdict: Mapping[str, Any], fit: Mapping[str, Any]) -> dict[
                 "output": concealed["output"],
                 "without": concealed["refit"]["fit"],
                 "found": concealed["augmented"]["fit"],
-                "published": published["refit"]["fit"],
+                "published": None if published is None else published["refit"]["fit"],
             }
-            for concealed, published in zip(verdict["fit"], fit["fit"], strict=True)
+            for concealed, published in zip(
+                verdict["fit"], fit["fit"] if fit else [None] * len(verdict["fit"]), strict=True
+            )
         ],
-        "estimates": [_estimate(c, verdict, fit) for c in case.concealed],
+        "estimates": [_estimate(c, verdict, fit) for c in case.concealed if fit],
     }
 
 
@@ -90,15 +95,16 @@ def table(rows: Sequence[Mapping[str, Any]]) -> str:
     ]
     for r in rows:
         fits = "; ".join(
-            f"{f['output']} {f['without']:.1f}, {f['found']:.1f}, {f['published']:.1f}"
+            f"{f['output']} {', '.join(_percent(f[stage]) for stage in ('without', 'found', 'published'))}"
             for f in r["fit"]
             if f["role"] == "validation"
         )
         shown = sum(e["shown"] for e in r["estimates"])
         named = f"{r['named']}/{len(r['concealed'])}" + ("" if shown == len(r["estimates"]) else f" ({shown} shown)")
+        named = named if r["concealed"] else "right" if r["detected"] else "false alarm"
         cells = (
             r["recording"],
-            ", ".join(r["concealed"]),
+            ", ".join(r["concealed"]) or "nothing",
             _list(r["found"]),
             _list(r["besides"]),
             named,
@@ -122,7 +128,32 @@ def table(rows: Sequence[Mapping[str, Any]]) -> str:
                 "" if found is None else found["mechanism"],
             )  # fmt: skip
             lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, "", *_totals(rows)]) + "\n"
+
+
+def _totals(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    """What a reader wants to know first."""
+    effects = sum(len(r["concealed"]) for r in rows)
+    complete = [r for r in rows if not r["concealed"]]
+    alarms, worse = (
+        [r["recording"] for r in complete if not r["detected"]],
+        [r["recording"] for r in rows if r["worse"]],
+    )
+    contradicted = [r["recording"] for r in rows if r["contradictions"]]
+    return [
+        f"- Effects left out: {effects}; named {sum(r['named'] for r in rows)}, rightly placed {sum(r['located'] for r in rows)}.",
+        f"- Nothing left out: {len(complete)} cases; {_names(alarms)} said to lack something.",
+        f"- Recommended model worse on validation than the re-estimated one: {_names(worse)}.",
+        f"- Verdicts that contradict themselves: {_names(contradicted)}.",
+    ]
+
+
+def _names(recordings: Sequence[str]) -> str:
+    return f"{len(recordings)}" + (f" ({'; '.join(recordings)})" if recordings else "")
+
+
+def _percent(fit: float | None) -> str:
+    return "–" if fit is None else f"{fit:.1f}"
 
 
 def _list(findings: Sequence[Mapping[str, Any]]) -> str:
