@@ -1,7 +1,13 @@
 """Grey-box models of machines: estimate them, find what physics they leave out, name it, and model it.
 
-The public names are loaded on first use, so that `import greybox_torch` (and `greybox --help`) does not wait for
-torch.
+    import greybox_torch as gt
+
+    data = gt.load_dataset("dataset.toml")
+    found = gt.diagnose(Motor(), data)
+    print(found)
+    found.save("results")
+
+The public names are loaded on first use, so that `import greybox_torch` (and `greybox --help`) does not wait for torch.
 """
 
 from __future__ import annotations
@@ -10,10 +16,19 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from greybox_torch.api.compare import ComparisonResult, compare
+    from greybox_torch.api.diagnose import diagnose
+    from greybox_torch.api.diagnosis_result import DiagnosisResult
+    from greybox_torch.api.fit import fit
+    from greybox_torch.api.fit_result import FitResult
+    from greybox_torch.api.inspect import InspectionResult, inspect
+    from greybox_torch.api.residuals import ResidualResult, residuals
+    from greybox_torch.api.simulate import SimulationResult, simulate
     from greybox_torch.checkpoint import Checkpoint, load_checkpoint
-    from greybox_torch.data import DataSet, load_dataset
+    from greybox_torch.data import DataSet, Recording, load_dataset
     from greybox_torch.data.readers import register_reader, unregister_reader
     from greybox_torch.data.readers.table import Table
+    from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
     from greybox_torch.errors import NumericalError, UserError
     from greybox_torch.evaluation import Evaluation, evaluate
     from greybox_torch.mechanisms.friction_net import FrictionNet
@@ -24,7 +39,7 @@ if TYPE_CHECKING:
     from greybox_torch.report.comparison import plot_comparison
     from greybox_torch.report.residuals import plot_residuals
     from greybox_torch.report.sections.order import register_section, unregister_section
-    from greybox_torch.restored import SavedModel, load_saved_model
+    from greybox_torch.restored import SavedModel, load, load_saved_model
     from greybox_torch.systems import load_model
     from greybox_torch.train import TrainingSettings, explain, fit_physics, train_hybrid
 
@@ -34,28 +49,42 @@ __all__ = [
     "Balance",
     "Body",
     "Checkpoint",
+    "ComparisonResult",
     "Coupling",
     "DataSet",
+    "DiagnosisResult",
+    "DiagnosisSettings",
     "Evaluation",
+    "FitResult",
     "FrictionNet",
     "GreyBoxModel",
     "Input",
+    "InspectionResult",
     "Mechanism",
     "NumericalError",
     "Output",
     "Parameter",
     "Probe",
+    "Recording",
     "ResidualNet",
+    "ResidualResult",
     "SavedModel",
+    "SearchBudget",
     "Signals",
+    "SimulationResult",
     "State",
     "Surroundings",
     "Table",
     "TrainingSettings",
     "UserError",
+    "compare",
+    "diagnose",
     "evaluate",
     "explain",
+    "fit",
     "fit_physics",
+    "inspect",
+    "load",
     "load_checkpoint",
     "load_dataset",
     "load_model",
@@ -65,6 +94,8 @@ __all__ = [
     "register",
     "register_reader",
     "register_section",
+    "residuals",
+    "simulate",
     "train_hybrid",
     "unregister",
     "unregister_reader",
@@ -75,28 +106,42 @@ _HOME_OF = {
     "Balance": "greybox_torch.model",
     "Body": "greybox_torch.model",
     "Checkpoint": "greybox_torch.checkpoint",
+    "ComparisonResult": "greybox_torch.api.compare",
     "Coupling": "greybox_torch.model",
     "DataSet": "greybox_torch.data",
+    "DiagnosisResult": "greybox_torch.api.diagnosis_result",
+    "DiagnosisSettings": "greybox_torch.diagnosis.settings",
     "Evaluation": "greybox_torch.evaluation",
+    "FitResult": "greybox_torch.api.fit_result",
     "FrictionNet": "greybox_torch.mechanisms.friction_net",
     "GreyBoxModel": "greybox_torch.model",
     "Input": "greybox_torch.model",
+    "InspectionResult": "greybox_torch.api.inspect",
     "Mechanism": "greybox_torch.mechanisms.mechanism",
     "NumericalError": "greybox_torch.errors",
     "Output": "greybox_torch.model",
     "Parameter": "greybox_torch.model",
     "Probe": "greybox_torch.mechanisms.mechanism",
+    "Recording": "greybox_torch.data",
     "ResidualNet": "greybox_torch.mechanisms.residual_net",
+    "ResidualResult": "greybox_torch.api.residuals",
     "SavedModel": "greybox_torch.restored",
+    "SearchBudget": "greybox_torch.diagnosis.settings",
     "Signals": "greybox_torch.model",
+    "SimulationResult": "greybox_torch.api.simulate",
     "State": "greybox_torch.model",
     "Surroundings": "greybox_torch.mechanisms.mechanism",
     "Table": "greybox_torch.data.readers.table",
     "TrainingSettings": "greybox_torch.train",
     "UserError": "greybox_torch.errors",
+    "compare": "greybox_torch.api.compare",
+    "diagnose": "greybox_torch.api.diagnose",
     "evaluate": "greybox_torch.evaluation",
     "explain": "greybox_torch.train",
+    "fit": "greybox_torch.api.fit",
     "fit_physics": "greybox_torch.train",
+    "inspect": "greybox_torch.api.inspect",
+    "load": "greybox_torch.restored",
     "load_checkpoint": "greybox_torch.checkpoint",
     "load_dataset": "greybox_torch.data",
     "load_model": "greybox_torch.systems",
@@ -106,6 +151,8 @@ _HOME_OF = {
     "register": "greybox_torch.mechanisms.library",
     "register_reader": "greybox_torch.data.readers",
     "register_section": "greybox_torch.report.sections.order",
+    "residuals": "greybox_torch.api.residuals",
+    "simulate": "greybox_torch.api.simulate",
     "train_hybrid": "greybox_torch.train",
     "unregister": "greybox_torch.mechanisms.library",
     "unregister_reader": "greybox_torch.data.readers",

@@ -1,4 +1,4 @@
-"""The command line: parses, calls the command's `run`, and turns errors into exit codes. Nothing else.
+"""The command line: parses, and calls the command's `run`. Nothing else.
 
 Modules that take long to import (torch, matplotlib, …) are imported by the commands when they run, so that `--help`
 answers at once.
@@ -7,34 +7,14 @@ answers at once.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
-from typer.core import TyperGroup
 
 from greybox_torch import __version__
+from greybox_torch.commands.exit_codes import Commands
+from greybox_torch.commands.option_types import DataSetFile, Device, Json, Model, Out, Precision, Seed
 from greybox_torch.commands.options import Options
-from greybox_torch.errors import NumericalError, UserError
-
-
-class Commands(TyperGroup):
-    """Exit codes, in one place: 2 the user's input is at fault, 3 the numbers failed, 130 interrupted."""
-
-    def invoke(self, ctx: Any) -> Any:
-        try:
-            return super().invoke(ctx)
-        except UserError as error:
-            raise _stop(f"error: {error}", 2) from None
-        except NumericalError as error:
-            raise _stop(f"the numbers failed: {error}", 3) from None
-        except KeyboardInterrupt:
-            raise _stop("interrupted", 130) from None
-
-
-def _stop(message: str, code: int) -> typer.Exit:
-    typer.echo(message, err=True)
-    return typer.Exit(code)
-
 
 app = typer.Typer(
     cls=Commands,
@@ -43,25 +23,6 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-
-DataSetFile = Annotated[Path, typer.Argument(metavar="DATASET.toml", help="The data card beside the recordings.")]
-Model = Annotated[
-    str | None,
-    typer.Option(metavar="NAME", help='A built-in system, or "my_motor.py:Motor"; wins over the model in the card.'),
-]
-Out = Annotated[
-    Path | None,
-    typer.Option(metavar="DIR", help="Where to write results.", show_default="results/<folder of the card>"),
-]
-Seed = Annotated[int, typer.Option(min=0, max=2**32 - 1, help="Start of everything that is drawn at random.")]
-Device = Annotated[str, typer.Option(help='Where to compute: "cpu", "cuda", "cuda:1".')]
-Precision = Annotated[
-    str,
-    typer.Option(metavar="single|double", help="Numbers of 32 or 64 bits; double unless you know that single does."),
-]
-Json = Annotated[
-    bool, typer.Option("--json", help="The result as JSON on standard output, all else on standard error.")
-]
 
 
 def _print_version(wanted: bool) -> None:

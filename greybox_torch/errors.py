@@ -13,6 +13,40 @@ class UserError(GreyboxError):
     """The user's input is at fault: a file, a field, an option or an argument. The command line exits with 2."""
 
 
+class Kind(str):
+    """Words for a thing that a message does not show itself, such as "an object of type list"."""
+
+    @staticmethod
+    def of(value: object) -> Kind:
+        """What kind of thing it is."""
+        return Kind("None" if value is None else f"an object of type {type(value).__name__}")
+
+
+class ArgumentError(UserError):
+    """An argument of a public function is at fault. Python speaks of the argument, the command line of the option of the same name.
+
+    Args:
+        argument: its name.
+        found: what was given.
+        problem: what is expected, or why that cannot be.
+
+    Example:
+        >>> str(ArgumentError("time_limit", -1, "expected a number above 0"))
+        'time_limit: found -1, expected a number above 0'
+        >>> ArgumentError("time_limit", -1, "expected a number above 0").for_option()
+        '--time-limit -1: expected a number above 0'
+    """
+
+    def __init__(self, argument: str, found: object, problem: str) -> None:
+        shown = str(found) if isinstance(found, Kind) else repr(found)
+        super().__init__(f"{argument}: found {shown}, {problem}")
+        self.argument, self.found, self.problem = argument, found, problem
+
+    def for_option(self) -> str:
+        """The message with the option's name in place of the argument's."""
+        return f"--{self.argument.replace('_', '-')} {self.found}: {self.problem}"
+
+
 class NumericalError(GreyboxError):
     """The numbers failed: overflow, NaN, rank deficiency. The command line exits with 3."""
 

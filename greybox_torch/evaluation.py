@@ -1,7 +1,4 @@
-"""A model judged on a data set: its free runs, what they miss, and the static laws that it contains.
-
-This is `greybox compare` and `greybox residuals` from Python, and what those commands compute.
-"""
+"""A model judged on a data set: its free runs, what they miss, and the static laws that it contains."""
 
 from __future__ import annotations
 
@@ -21,10 +18,10 @@ from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.residuals import Residuals, residuals_of
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.rates import rates_at
-from greybox_torch.restored import restored
+from greybox_torch.restored import load_beside
 from greybox_torch.simulation.stepper import make_stepper
 from greybox_torch.simulation.substeps import choose_substeps
-from greybox_torch.systems import load_model
+from greybox_torch.systems import load_model, model_reference
 
 
 @dataclass(frozen=True)
@@ -48,6 +45,15 @@ class Evaluation:
         return dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
 
     @property
+    def initial(self) -> dict[str, dict[str, float]]:
+        """The start states by experiment and state, in the states' units."""
+        names = [state.name for state in self.problem.model.states]
+        return {
+            experiment: dict(zip(names, map(float, row), strict=True))
+            for experiment, row in zip(self.comparison.experiments, self.comparison.initial, strict=True)
+        }
+
+    @property
     def scores(self) -> tuple[Score, ...]:
         """Fit in % and root mean square error of every output in every experiment."""
         return self.comparison.scores
@@ -55,7 +61,7 @@ class Evaluation:
     @property
     def simulated(self) -> dict[str, np.ndarray]:
         """The simulated outputs (N, n_y), by experiment."""
-        return dict(zip(self.problem.records.names, self.comparison.simulated, strict=True))
+        return self.comparison.by_experiment
 
     @cached_property
     def residuals(self) -> tuple[Residuals, ...]:
@@ -85,33 +91,24 @@ def evaluate(
 
     Args:
         checkpoint: what `greybox fit`, `train` or `diagnose` have written: either of its two files, or what their names have in common.
-        model: wins over the model that the card names.
+        model: wins over the model that the card names; either stands in for a checkpoint's whose class is not where it was.
 
     Raises:
         UserError: neither card nor caller names a model, or the checkpoint is damaged or of another model.
     """
     if model is None and data.model is None:
         raise UserError(f"{data.place('[model] name')} is missing and no model is given; expected one of them")
-    name = data.model if model is None or data.model is None else ""
     given = load_model(str(data.model)) if model is None else model
-    return evaluated(data, given, name or given.title, checkpoint, device=device, precision=precision)
+    if checkpoint is None:
+        return evaluated(data, given, device=device, precision=precision)
+    loaded, data = load_beside(checkpoint, given, data)
+    return evaluated(data, loaded, device=device, precision=precision)
 
 
-def evaluated(
-    data: DataSet,
-    model: GreyBoxModel,
-    model_name: str,
-    checkpoint: str | PathLike[str] | None = None,
-    *,
-    device: str = "cpu",
-    precision: str = "double",
-) -> Evaluation:
-    """:func:`evaluate` for a model that is loaded already."""
+def evaluated(data: DataSet, model: GreyBoxModel, *, device: str = "cpu", precision: str = "double") -> Evaluation:
+    """Simulate all experiments of ``data`` with the values that ``model`` holds, the card's where it holds none of its own."""
     problem = make_problem(data, model, data.recordings)
-    if checkpoint is not None:
-        found = restored(data, checkpoint, model, model_name)
-        data, model_name, problem = found.data, found.model_name, found.problem
-    stepper = make_stepper(problem.model, (), device=device, precision=precision)
+    stepper = make_stepper(model, (), device=device, precision=precision)
     substeps = choose_substeps(problem.driving_records, stepper, problem.values, problem.initial) or 1
     comparison = compare(problem, data.recordings, stepper, substeps=substeps)
     found, overflow = first_overflow(problem, comparison.simulated), None
@@ -122,4 +119,4 @@ def evaluated(
             f"{avoidance(remedies(problem, stepper, substeps))}; "
             "try parameters and start states nearer to the truth, tighter bounds, or a smaller sample time"
         )
-    return Evaluation(data, model_name, problem, comparison, substeps, overflow)
+    return Evaluation(data, model_reference(model), problem, comparison, substeps, overflow)

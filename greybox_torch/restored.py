@@ -1,4 +1,4 @@
-"""A checkpoint's model on a data set: the way back from the two files to something that simulates."""
+"""The way back from a checkpoint's two files to a model that simulates, effects included. Needs nothing of the diagnosis."""
 
 from __future__ import annotations
 
@@ -9,20 +9,22 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import torch
 
 from greybox_torch.checkpoint import Checkpoint, check_same_parameters, check_same_units, load_checkpoint
 from greybox_torch.data import DataSet
 from greybox_torch.errors import UserError
-from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
+from greybox_torch.estimate.problem import with_card
 from greybox_torch.mechanisms.stored import restored_model
-from greybox_torch.model import GreyBoxModel
+from greybox_torch.model import GreyBoxModel, Parameter
+from greybox_torch.model.copies import copy_holding
 from greybox_torch.rates import rates_at
-from greybox_torch.systems import BUILT_IN, load_model
+from greybox_torch.systems import BUILT_IN, defined_here, load_model
 
 
 @dataclass(frozen=True)
 class SavedModel:
-    """A checkpoint's ``model``, effects included, without any recordings; ``base`` is the same without the effects."""
+    """A checkpoint's ``model``, effects included, holding its values, without any recordings; ``base`` is the same without the effects."""
 
     checkpoint: Checkpoint
     base: GreyBoxModel
@@ -33,102 +35,111 @@ class SavedModel:
         return rates_at(self.model, self.checkpoint.values, states, inputs)
 
 
-def load_saved_model(path: str | PathLike[str], model: GreyBoxModel | str | None = None) -> SavedModel:
-    """The model of the checkpoint at ``path``, with its effects.
+def load(path: str | PathLike[str], model: GreyBoxModel | str | None = None) -> GreyBoxModel:
+    """The model that a fit, a training or a diagnosis has saved: with its effects, holding its values, to be used like any other.
 
     Args:
-        model: the plain model, or how to load it ("my_motor.py:Motor"). Not needed where it is a built-in system. A model file that only
-            the checkpoint names is never run: a checkpoint may come from anywhere.
+        path: either of the checkpoint's two files, or what their names have in common.
+        model: the plain model, or how to load it ("my_motor.py:Motor"). Not needed where it is a built-in system, or of a class that this
+            session has already defined. A model file that only the checkpoint names is never run: a checkpoint may come from anywhere.
 
     Raises:
-        UserError: the checkpoint is damaged, is of a model file and ``model`` is not given, or is not one of ``model``.
+        UserError: the checkpoint is damaged, is of a model that is not at hand, or is not one of ``model``.
+
+    Example:
+        ``greybox_torch.simulate(greybox_torch.load("results/model"), data)``
+    """
+    return load_saved_model(path, model).model
+
+
+def load_saved_model(path: str | PathLike[str], model: GreyBoxModel | str | None = None) -> SavedModel:
+    """What :func:`load` loads, with the checkpoint's card and the model without effects. Arguments and errors are the same."""
+    path = Path(path)
+    checkpoint = load_checkpoint(path)
+    return _saved(path, checkpoint, _with_effects(path, _plain_model(path, checkpoint, model), checkpoint))
+
+
+def load_beside(path: str | PathLike[str], own: GreyBoxModel, data: DataSet) -> tuple[GreyBoxModel, DataSet]:
+    """The checkpoint at ``path`` for simulating ``data``, whose card is meant for the model ``own``.
+
+    A built-in system is loaded; any other model of a checkpoint is taken to be ``own``, wherever its file lies now.
+
+    Returns:
+        The model, and the data set without what its card says of another model.
+
+    Raises:
+        UserError: the checkpoint is damaged, is not one of ``own``, or holds values outside the bounds of card and model.
     """
     path = Path(path)
     checkpoint = load_checkpoint(path)
-    base = _plain_model(path, checkpoint, model)
-    augmented = _with_effects(path, base, checkpoint.effects) if checkpoint.effects else base
-    check_same_parameters(path, checkpoint, base.title, [p.name for p in augmented.declared_parameters])
-    check_same_units(path, checkpoint, base.title, {p.name: p.unit for p in base.declared_parameters})
-    return SavedModel(checkpoint, base, augmented)
+    if checkpoint.model not in BUILT_IN and checkpoint.title != own.title:
+        raise UserError(
+            f"checkpoint {path}: is of the model {checkpoint.title} in {checkpoint.model}, not of {own.title}; a model file is run only "
+            "where you name it yourself: on the card, as --model, or as the argument model"
+        )
+    plain = own.plain if checkpoint.title == own.title else load_model(checkpoint.model)
+    data = card_of(data, own, plain)
+    model = _with_effects(path, plain, checkpoint)
+    _check_bounds(path, checkpoint, model, with_card(data, model))
+    return _saved(path, checkpoint, model).model, data
 
 
-@dataclass(frozen=True)
-class Restored:
-    """``problem`` is that of the checkpoint's model, effects included, on all recordings of ``data``, with the checkpoint's values.
-
-    ``data`` is without what its card says of a model other than the checkpoint's; ``model_name`` is how to load the model.
-    """
-
-    data: DataSet
-    model_name: str
-    problem: Problem
-
-
-def restored(data: DataSet, path: str | PathLike[str], model: GreyBoxModel, model_name: str) -> Restored:
-    """The checkpoint at ``path`` on ``data``; ``model`` is what data and user ask for, and stands in where the checkpoint's has moved.
-
-    Raises UserError where the checkpoint is damaged, or is not one of the model it names.
-    """
-    data, base, model_name = _own_model(data, Path(path), load_checkpoint(path), model, model_name)
-    saved = load_saved_model(path, base)
-    problem = make_problem(data, saved.model, data.recordings)
-    problem = problem.with_values(np.array([saved.checkpoint.values[name] for name in problem.names]))
-    _check_admissible(Path(path), problem)
-    if saved.checkpoint.free_starts:
-        problem = all_starts_free(data, problem)
-    return Restored(data, model_name, problem)
+def card_of(data: DataSet, own: GreyBoxModel, model: GreyBoxModel) -> DataSet:
+    """``data`` for simulating ``model``: without what its card says of parameters and start states if that is of ``own``, another model."""
+    return data if model.title == own.title else replace(data, parameters={}, initial={})
 
 
 def _plain_model(path: Path, checkpoint: Checkpoint, model: GreyBoxModel | str | None) -> GreyBoxModel:
     """The model without effects: the user's, or a built-in system. Code that a checkpoint names is not run on its word."""
-    if model is None and checkpoint.model not in BUILT_IN:
+    if isinstance(model, GreyBoxModel):
+        return model.plain
+    if model is not None or checkpoint.model in BUILT_IN:
+        return load_model(model or checkpoint.model)
+    defined = defined_here(checkpoint.model)
+    if defined is None:
         raise UserError(
             f"checkpoint {path}: is of the model {checkpoint.title} in {checkpoint.model}; a model file is run only where you name it "
             "yourself: give the model as the argument model"
         )
-    return (
-        load_model(checkpoint.model if model is None else model) if model is None or isinstance(model, str) else model
-    )
+    return defined()
 
 
-def _own_model(
-    data: DataSet, path: Path, checkpoint: Checkpoint, model: GreyBoxModel, model_name: str
-) -> tuple[DataSet, GreyBoxModel, str]:
-    """The model of a checkpoint is the one at hand, wherever its file lies now, or a built-in system."""
-    if checkpoint.model == model_name:
-        return data, model, model_name
-    same = checkpoint.title == model.title
-    if checkpoint.model in BUILT_IN:
-        data = data if same else replace(data, parameters={}, initial={})  # the card speaks of another model
-        return data, load_model(checkpoint.model), checkpoint.model
-    if not same:
-        raise UserError(
-            f"checkpoint {path}: is of the model {checkpoint.title} in {checkpoint.model}, not of {model.title}; a model file is run only "
-            "where you name it yourself: on the card, as --model, or as the argument model"
-        )
-    return data, model, model_name
+def _saved(path: Path, checkpoint: Checkpoint, model: GreyBoxModel) -> SavedModel:
+    check_same_parameters(path, checkpoint, model.title, [p.name for p in model.declared_parameters])
+    check_same_units(path, checkpoint, model.title, {p.name: p.unit for p in model.plain.declared_parameters})
+    held = copy_holding(model, checkpoint.values, starts_free=checkpoint.free_starts)
+    _check_admissible(path, held)
+    return SavedModel(checkpoint, held.plain, held)
 
 
-def _with_effects(path: Path, base: GreyBoxModel, effects: Sequence[Mapping[str, Any]]) -> GreyBoxModel:
+def _check_bounds(path: Path, checkpoint: Checkpoint, model: GreyBoxModel, carded: Sequence[Parameter]) -> None:
+    """Values within the card's bounds, or within the model's own where the card narrows them."""
+    for on_card, declared in zip(carded, model.declared_parameters, strict=True):
+        lower = min(on_card.bounds[0], declared.bounds[0])
+        upper = max(on_card.bounds[1], declared.bounds[1])
+        value = checkpoint.values.get(declared.name, lower)
+        if not lower <= value <= upper:
+            raise UserError(
+                f"checkpoint {path}: {declared.name} is {value:g}, outside its bounds [{lower:g}, {upper:g}] in model {model.title}"
+            )
+
+
+def _with_effects(path: Path, base: GreyBoxModel, checkpoint: Checkpoint) -> GreyBoxModel:
+    if not checkpoint.effects:
+        return base
     try:
-        return restored_model(base, effects)
+        return restored_model(base, checkpoint.effects)
     except UserError as error:
         raise UserError(f"checkpoint {path}: {error}") from None
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise UserError(f'checkpoint {path}: "effects" are damaged: {type(error).__name__}: {error}') from None
 
 
-def _check_admissible(path: Path, problem: Problem) -> None:
-    """Values within the card's bounds, or within the model's own where the card narrows them, and within the model's constraints."""
-    title = problem.model.title
-    for k, parameter in enumerate(problem.model.declared_parameters):
-        lower = min(problem.lower[k], parameter.bounds[0])
-        upper = max(problem.upper[k], parameter.bounds[1])
-        if not lower <= problem.values[k] <= upper:
-            raise UserError(
-                f"checkpoint {path}: {parameter.name} is {problem.values[k]:g}, outside its bounds [{lower:g}, {upper:g}] in model {title}"
-            )
-    if not problem.admissible(problem.values):
+def _check_admissible(path: Path, model: GreyBoxModel) -> None:
+    with torch.no_grad():
+        broken = [name for name, value in model.admissible(model.physical()).items() if not float(value) > 0]
+    if broken:
         raise UserError(
-            f"checkpoint {path}: its values break a constraint of model {title}; expected values that it allows"
+            f"checkpoint {path}: its values break a constraint of model {model.title} ({', '.join(broken)} must be positive); "
+            "expected values that it allows"
         )

@@ -26,7 +26,7 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.stored import attachment_json
 from greybox_torch.model import Signals
-from greybox_torch.restored import load_saved_model, restored
+from greybox_torch.restored import load_beside, load_saved_model
 from greybox_torch.systems import load_model
 from greybox_torch.train.hybrid import attach_network, make_network
 
@@ -111,7 +111,7 @@ def test_values_that_break_a_constraint(motor_folder: Make) -> None:
         folder / "arm", Checkpoint("robot_arm", "robot_arm", {**model.values(), "a_m": 0.5, "a_g": 0.5}, units)
     )
     with pytest.raises(UserError, match=r"checkpoint .*arm: its values break a constraint of model robot_arm"):
-        restored(load_dataset(DATASET), folder / "arm", model, "robot_arm")
+        load_beside(folder / "arm", model, load_dataset(DATASET))
 
 
 @given(
@@ -144,7 +144,8 @@ def test_networks_come_back_as_they_were(
         free_starts=True,
     )
     save_checkpoint(data.path.parent / "hybrid", checkpoint)
-    found = restored(data, data.path.parent / "hybrid", base.model, str(data.model)).problem
+    loaded, data = load_beside(data.path.parent / "hybrid", base.model, data)
+    found = make_problem(data, loaded, data.recordings)
     assert found.names == problem.names
     assert np.array_equal(found.values, values)
     x, u = torch.linspace(-6, 6, 25, dtype=torch.float64)[None], torch.zeros(1, 25, dtype=torch.float64)

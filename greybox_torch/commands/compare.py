@@ -5,39 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.text import Text
-
+from greybox_torch.api.compare import compare
+from greybox_torch.api.simulate import START
 from greybox_torch.checkpoint import checkpoint_name
-from greybox_torch.commands.free_runs import (
-    START,
-    free_run,
-    print_overflows,
-    print_scores,
-    print_substeps,
-    result_json,
-    write_figures,
-)
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.task import load_task
 
 
 def run(dataset: Path, checkpoints: Sequence[Path], options: Options) -> None:
-    """Prints fit and error of every model on every experiment, and writes a figure of each experiment.
-
-    A model whose simulation overflows is reported so, beside the others. Raises UserError where the input is at fault.
-    """
+    """Compares the model with its start values and every checkpoint; writes a figure of each experiment."""
     task = load_task(dataset, options)
-    runs = [free_run(task)]
-    runs += [free_run(task, path, name) for path, name in zip(checkpoints, _names(checkpoints), strict=True)]
-    figures = write_figures(task, runs, "comparison")
-    console = options.console()
-    console.print(Text(task.data.name, style="bold"))
-    print_scores(console, task.data, {run.name: run.comparison.scores for run in runs})
-    print_overflows(console, runs)
-    for run in runs:
-        print_substeps(console, run.substeps, run.name)
-    console.print(Text(f"Written to {task.folder}: {', '.join(path.name for path in figures)}"), soft_wrap=True)
-    options.print_json({**result_json(task.data, runs), "figures": [str(path) for path in figures]})
+    models = {START: task.model, **dict(zip(_names(checkpoints), checkpoints, strict=True))}
+    options.finish(compare(task.data, models, device=task.device, precision=task.precision), task.folder)
 
 
 def _names(checkpoints: Sequence[Path]) -> list[str]:

@@ -1,16 +1,16 @@
-"""The options that all commands take, and where their output goes."""
+"""The options that all commands take, and how every command ends: its result saved, printed, and told as JSON."""
 
 from __future__ import annotations
 
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-from greybox_torch.files import json_text
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rich.console import Console
+
+    from greybox_torch.api.result import Result
 
 
 @dataclass(frozen=True)
@@ -28,13 +28,27 @@ class Options:
         """Where to write results: --out, or results/<name of the folder that holds the data card>."""
         return self.out if self.out is not None else Path("results") / dataset.resolve().parent.name
 
+    def finish(self, result: Result, folder: Path) -> None:
+        """Saves the result, all of it or nothing, and prints it."""
+        written = result.save(folder)
+        console = self.console()
+        result.show(console)
+        self.print_written(console, folder, [path.name for path in written])
+        self.print_json(result.to_json(folder))
+
     def console(self) -> Console:
         """What people read is printed here: standard output, or standard error where --json has taken the former."""
         from rich.console import Console
 
         return Console(stderr=self.json, highlight=False)
 
-    def print_json(self, result: dict[str, Any]) -> None:
+    def print_written(self, console: Console, folder: Path, names: list[str]) -> None:
+        """Says where the files are."""
+        from rich.text import Text
+
+        console.print(Text(f"Written to {folder}: {', '.join(names)}"), soft_wrap=True)
+
+    def print_json(self, text: str) -> None:
         """Prints the machine-readable result on standard output where --json asks for it."""
         if self.json:
-            sys.stdout.write(json_text(result))
+            sys.stdout.write(text)

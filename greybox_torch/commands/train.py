@@ -12,21 +12,24 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 
+from greybox_torch.api.arguments import check_estimation
+from greybox_torch.api.scores import Scores
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.progress import training
-from greybox_torch.commands.task import Task, check_estimation, load_task
+from greybox_torch.commands.task import Task, load_task
 from greybox_torch.commands.train_figure import figure_file
-from greybox_torch.commands.train_json import Scores, result_json
-from greybox_torch.commands.train_summary import print_summary
+from greybox_torch.commands.train_json import result_json
+from greybox_torch.commands.train_summary import print_summary, written_files
 from greybox_torch.estimate.comparison import Score, compare
 from greybox_torch.estimate.fit import FitResult
-from greybox_torch.estimate.problem import Problem, all_starts_free, problem_for
+from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.files import json_text, write_all
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.stored import attachment_json
 from greybox_torch.simulation.stepper import make_stepper
 from greybox_torch.simulation.substeps import choose_substeps
+from greybox_torch.systems import model_reference
 from greybox_torch.train import (
     Explanation,
     Hybrid,
@@ -66,7 +69,7 @@ def run(dataset: Path, options: Options, choices: Choices) -> None:
     Raises UserError where the input is at fault, NumericalError where even short stretches of the simulation overflow.
     """
     task = load_task(dataset, options)
-    check_estimation(dataset, task.data)
+    check_estimation(task.data)
     settings = TrainingSettings(seed=options.seed, **choices.training)
     with ExitStack() as together:
         together.enter_context(_interruptible(task.folder / SNAPSHOT))
@@ -102,8 +105,10 @@ def run(dataset: Path, options: Options, choices: Choices) -> None:
                 **_named_files(task, found, explained, result["fit"]),
             }
         )
-    print_summary(options.console(), task, found, scores, explained)
-    options.print_json(result)
+    console = options.console()
+    print_summary(console, task, found, scores, explained)
+    options.print_written(console, task.folder, written_files(explained))
+    options.print_json(json_text(result))
 
 
 def _explained(
@@ -136,7 +141,7 @@ def _scores(task: Task, found: Trained, explained: Explanation | None) -> Scores
     """Start values, physics, hybrid and the law that replaces its network, if one does, on all experiments; start states from the first
     tenth of each.
     """
-    start = task.problem()
+    start = make_problem(task.data, task.model, task.data.recordings)
     plain = make_stepper(task.model, (), device=task.device)
     substeps = choose_substeps(start.driving_records, plain, start.values, start.initial) or 1
     free = all_starts_free(task.data, start)
@@ -183,7 +188,7 @@ def _checkpoint_of(
 ) -> Checkpoint:
     problem = result.problem
     return Checkpoint(
-        model=task.model_name,
+        model=model_reference(task.model),
         title=task.model.title,
         values=dict(zip(problem.names, np.asarray(problem.values, dtype=float).tolist(), strict=True)),
         units={p.name: p.unit for p in problem.model.declared_parameters},

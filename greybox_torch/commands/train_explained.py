@@ -7,9 +7,9 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.commands.fit_json import parameters_json
-from greybox_torch.commands.tables import print_table
+from greybox_torch.api.fit_json import parameters_json
 from greybox_torch.mechanisms.matching import LEAST_MATCH
+from greybox_torch.report.tables import print_table
 from greybox_torch.train import Explanation, Trained
 from greybox_torch.train.learned_force import SignalCurve
 from greybox_torch.train.named_term import NamedTerm

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from greybox_torch.commands.fit_json import Scores, initial_json, parameters_json, status
-from greybox_torch.commands.free_runs import scores_json
+from greybox_torch.api.fit_json import initial_json, parameters_json, status
+from greybox_torch.api.scores import Scores, scores_side_by_side
 from greybox_torch.commands.task import Task
 from greybox_torch.commands.train_explained import explanation_json
+from greybox_torch.systems import model_reference
 from greybox_torch.train import Explanation, Trained
 from greybox_torch.train.polish import Choice
 
@@ -25,7 +26,7 @@ def result_json(task: Task, found: Trained, scores: Scores, explained: Explanati
         "seconds": found.seconds,
         "parameters": parameters_json(found.result),
         "initial": {name: initial_json(found.result, e) for e, name in enumerate(problem.records.names)},
-        "fit": _fit_json(scores),
+        "fit": scores_side_by_side({name: scores[name] for name in (*MODELS, "named") if name in scores}),
         "statistics": {
             "mse": found.result.mse,
             "mse_physics": found.physics.mse,
@@ -41,20 +42,10 @@ def result_json(task: Task, found: Trained, scores: Scores, explained: Explanati
         "settings": found.settings.as_json(),
         "history": [asdict(epoch) for epoch in found.history],
         "dataset": task.data.name,
-        "model": task.model_name,
+        "model": model_reference(task.model),
         "held_out_by_default": task.data.held_out_by_default,
         "checkpoint": str(task.folder / "model"),
     }
-
-
-def _fit_json(scores: Scores) -> list[dict[str, Any]]:
-    rows = []
-    models = [name for name in (*MODELS, "named") if name in scores]
-    for together in zip(*(scores_json(scores[name]) for name in models), strict=True):
-        place = {k: v for k, v in together[0].items() if k not in ("fit", "rmse")}
-        numbers = [{"fit": row["fit"], "rmse": row["rmse"]} for row in together]
-        rows.append(place | dict(zip(models, numbers, strict=True)))
-    return rows
 
 
 def _choice_json(choice: Choice) -> dict[str, Any]:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.commands.fit_json import Scores
-from greybox_torch.commands.free_runs import print_scores, print_substeps
-from greybox_torch.commands.tables import print_table
+from greybox_torch.api.scores import Scores, print_scores, print_substeps
 from greybox_torch.commands.task import Task
 from greybox_torch.commands.train_explained import print_explanation
+from greybox_torch.report.tables import print_table
 from greybox_torch.train import Explanation, Trained
 
 
@@ -26,12 +25,12 @@ def print_summary(console: Console, task: Task, found: Trained, scores: Scores, 
         print_explanation(console, explained)
     print_substeps(console, found.result.substeps)
     console.print()
-    print_scores(console, task.data, dict(scores))
+    print_scores(console, task.data, scores)
     console.print(Text(f"{found.seconds:.1f} s, {len(found.history)} epochs, seed {found.settings.seed}"))
-    console.print(Text(f"Written to {task.folder}: {', '.join(_files(explained))}"), soft_wrap=True)
 
 
-def _files(explained: Explanation | None) -> list[str]:
+def written_files(explained: Explanation | None) -> list[str]:
+    """The names of the files that a training leaves."""
     files = ["train.json", "model.safetensors", "model.json", "training.safetensors"]
     if explained is not None:
         files += ["learned.png"] * bool(explained.curves)

@@ -28,10 +28,29 @@ class Score:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Scores, and the simulated outputs (N_e, n_y) of every experiment."""
+    """Scores, and of every experiment its name, the simulated outputs (N_e, n_y) and the start states (n_x,) that they began with."""
 
     scores: tuple[Score, ...]
+    experiments: tuple[str, ...]
     simulated: tuple[np.ndarray, ...]
+    initial: tuple[np.ndarray, ...]
+
+    @property
+    def by_experiment(self) -> dict[str, np.ndarray]:
+        """The simulated outputs (N_e, n_y)."""
+        return dict(zip(self.experiments, self.simulated, strict=True))
+
+    def with_experiments_of(self, other: Comparison) -> Comparison:
+        """The experiments that ``other`` has as they are there, the rest as here."""
+        scores = {(s.experiment, s.output): s for s in other.scores}
+        places = {name: e for e, name in enumerate(other.experiments)}
+        pick = [(other, places[name]) if name in places else (self, e) for e, name in enumerate(self.experiments)]
+        return Comparison(
+            tuple(scores.get((s.experiment, s.output), s) for s in self.scores),
+            self.experiments,
+            tuple(of.simulated[e] for of, e in pick),
+            tuple(of.initial[e] for of, e in pick),
+        )
 
 
 def compare(
@@ -65,4 +84,4 @@ def compare(
                     root_mean_square(measured, values),
                 )
             )
-    return Comparison(tuple(scores), tuple(simulated))
+    return Comparison(tuple(scores), problem.records.names, tuple(simulated), tuple(problem.initial))

@@ -88,7 +88,8 @@ def make_problem(
     """The problem that a card states: start values, bounds and what is fixed from the model, overridden by the card.
 
     A parameter begins at the value that the model object holds, if one was set (:meth:`GreyBoxModel.held_values`), else at the card's
-    start value, else at the declared one. Bounds and what is fixed are the card's wherever it speaks of them.
+    start value, else at the declared one. Bounds and what is fixed are the card's wherever it speaks of them; bounds that a held
+    value does not keep are moved to it.
 
     Args:
         values: parameter values that replace all of these (for example those of an earlier fit).
@@ -98,18 +99,18 @@ def make_problem(
             do not match.
     """
     records = make_records(dataset, model.plain, recordings)  # effects measure nothing of their own
-    parameters = [_from_card(p, dataset) for p in model.declared_parameters]
+    parameters = with_card(dataset, model)
     _check_names(dataset, "parameters", dataset.parameters, [p.name for p in parameters], model)
     _check_names(dataset, "initial", dataset.initial, [s.name for s in model.states], model)
-    begun = {p.name: p.value for p in parameters} | _held_within_bounds(model, parameters)
+    begun = {p.name: p.value for p in parameters} | model.held_values()
     numbers = begun | dict(values or {})
     problem = Problem(
         model=model,
         records=records,
         names=tuple(p.name for p in parameters),
         values=np.array([numbers[p.name] for p in parameters], dtype=float),
-        lower=np.array([p.bounds[0] for p in parameters]),
-        upper=np.array([p.bounds[1] for p in parameters]),
+        lower=np.array([min(p.bounds[0], begun[p.name]) for p in parameters]),
+        upper=np.array([max(p.bounds[1], begun[p.name]) for p in parameters]),
         free=np.array([not p.fixed for p in parameters], dtype=bool),
         initial=_start_states(dataset, model, records),
         initial_free=np.array([not _initial_fixed(s, dataset) for s in model.states], dtype=bool),
@@ -174,17 +175,13 @@ def _tensors(problem: Problem) -> Signals:
     return Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in pairs})
 
 
-def _held_within_bounds(model: GreyBoxModel, parameters: Sequence[Parameter]) -> dict[str, float]:
-    """The values that the model object holds, if they are within the bounds that hold for them."""
-    held = model.held_values()
-    for parameter in parameters:
-        low, high = parameter.bounds
-        value = held.get(parameter.name, low)
-        if not low <= value <= high:
-            raise UserError(
-                f"model: its parameter {parameter.name} was set to {value:g}, outside of its bounds [{low:g}, {high:g}]"
-            )
-    return held
+def with_card(dataset: DataSet, model: GreyBoxModel) -> list[Parameter]:
+    """The model's parameters with the start values, bounds and what is fixed that the data set's card gives.
+
+    Raises:
+        UserError: a start value outside its bounds.
+    """
+    return [_from_card(p, dataset) for p in model.declared_parameters]
 
 
 def _from_card(parameter: Parameter, dataset: DataSet) -> Parameter:

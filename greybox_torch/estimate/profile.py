@@ -15,7 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from greybox_torch.errors import UserError, did_you_mean
+from greybox_torch.errors import ArgumentError, did_you_mean
 from greybox_torch.estimate.fit import FitResult
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimise
@@ -92,16 +92,15 @@ class Profile:
 
 
 def check_profiled(names: Iterable[str], free: Iterable[str], declared: Iterable[str], title: str) -> None:
-    """Raises UserError where one of ``names`` is not a ``free`` parameter of the model ``title``."""
+    """Raises ArgumentError where one of ``names`` is not a ``free`` parameter of the model ``title``."""
     free, declared = list(free), list(declared)
     expected = f"expected one of the free parameters: {', '.join(free) or 'there are none'}"
     for name in names:
         if name not in declared:
-            raise UserError(
-                f"--profile {name}: model {title} has no parameter of that name{did_you_mean(name, declared)}; {expected}"
-            )
+            problem = f"model {title} has no parameter of that name{did_you_mean(name, declared)}; {expected}"
+            raise ArgumentError("profile", name, problem)
         if name not in free:
-            raise UserError(f"--profile {name}: this parameter is fixed; {expected}")
+            raise ArgumentError("profile", name, f"this parameter is fixed; {expected}")
 
 
 def profile(found: FitResult, stepper: Stepper, name: str, *, settings: Settings = SETTINGS) -> Profile:

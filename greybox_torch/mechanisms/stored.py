@@ -37,6 +37,13 @@ def attachment_json(attachment: Attachment, around: Surroundings) -> dict[str, A
     }
 
 
+def stored_effects(model: GreyBoxModel) -> list[dict[str, Any]]:
+    """What is attached to ``model``, in the form that a checkpoint keeps; empty for a plain model."""
+    if not isinstance(model, AugmentedModel):
+        return []
+    return [*stored_effects(model.base), *(attachment_json(a, model.surroundings[a.port]) for a in model.attachments)]
+
+
 def restored_model(base: GreyBoxModel, attachments: Sequence[Mapping[str, Any]]) -> AugmentedModel:
     """``base`` with the effects of a checkpoint attached.
 

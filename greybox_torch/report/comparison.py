@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 
 from greybox_torch.data import Channel, Recording
 from greybox_torch.report.style import STYLE, dots_within, with_unit
+
+Panel = tuple[Recording, Mapping[str, np.ndarray], Mapping[str, str]]
+"""A recording, the outputs (N, n_y) by the model's name, and what to say of each model."""
 
 _DETAIL = 0.05
 """Share of the record that the detail shows."""
@@ -23,28 +26,40 @@ def plot_comparison(
 
     ``simulated`` holds the outputs (N, n_y) by the model's name, ``legend`` what to say of each model.
     """
+    return plot_comparisons([(recording, simulated, legend)], outputs)
+
+
+def plot_comparisons(panels: Sequence[Panel], outputs: list[Channel]) -> Figure:
+    """One experiment below the other, each as :func:`plot_comparison` draws it."""
     with mpl.rc_context(STYLE):
-        height = 0.6 + 4.4 * len(outputs)
+        height = (0.6 + 4.4 * len(outputs)) * len(panels)
         figure = Figure(figsize=(11, height), dpi=dots_within(height), layout="constrained")
-        figure.suptitle(f"{recording.name} ({recording.role})", fontweight="bold")
-        grid = figure.add_gridspec(2 * len(outputs), 2, width_ratios=(1.6, 1), height_ratios=(1.4, 1) * len(outputs))
-        for k, output in enumerate(outputs):
-            measured = recording.signals[output.name]
-            runs = {legend[name]: values[:, k] for name, values in simulated.items()}
-            worst = _worst(measured, list(runs.values())[-1])
-            for column, part in enumerate((slice(None), worst)):
-                above = figure.add_subplot(grid[2 * k, column])
-                below = figure.add_subplot(grid[2 * k + 1, column], sharex=above)
-                pieces = {label: values[part] for label, values in runs.items()}
-                _plot_signals(above, recording.time[part], measured[part], pieces)
-                _plot_errors(below, recording.time[part], measured[part], pieces)
-                if column == 0:
-                    above.set_ylabel(with_unit(output.name, output.unit))
-                    below.set_ylabel(with_unit("error", output.unit))
-                else:
-                    above.set_title("where the error is largest", fontsize=9)
-        figure.legend(*above.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+        parts = figure.subfigures(len(panels), 1, squeeze=False)[:, 0]
+        for part, panel in zip(parts, panels, strict=True):
+            _plot_panel(part, panel, outputs)
     return figure
+
+
+def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> None:
+    recording, simulated, legend = panel
+    figure.suptitle(f"{recording.name} ({recording.role})", fontweight="bold")
+    grid = figure.add_gridspec(2 * len(outputs), 2, width_ratios=(1.6, 1), height_ratios=(1.4, 1) * len(outputs))
+    for k, output in enumerate(outputs):
+        measured = recording.signals[output.name]
+        runs = {legend[name]: values[:, k] for name, values in simulated.items()}
+        worst = _worst(measured, list(runs.values())[-1])
+        for column, part in enumerate((slice(None), worst)):
+            above = figure.add_subplot(grid[2 * k, column])
+            below = figure.add_subplot(grid[2 * k + 1, column], sharex=above)
+            pieces = {label: values[part] for label, values in runs.items()}
+            _plot_signals(above, recording.time[part], measured[part], pieces)
+            _plot_errors(below, recording.time[part], measured[part], pieces)
+            if column == 0:
+                above.set_ylabel(with_unit(output.name, output.unit))
+                below.set_ylabel(with_unit("error", output.unit))
+            else:
+                above.set_title("where the error is largest", fontsize=9)
+    figure.legend(*above.get_legend_handles_labels(), loc="outside lower center", ncols=3)
 
 
 def _plot_signals(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mapping[str, np.ndarray]) -> None:

@@ -25,7 +25,7 @@ def load_model(name: str) -> GreyBoxModel:
             class raise.
     """
     if name in BUILT_IN:
-        return BUILT_IN[name]()
+        return _named(BUILT_IN[name](), name)
     file, separator, class_name = name.rpartition(":")
     if not separator or not file.endswith(".py"):
         known = ", ".join(BUILT_IN)
@@ -50,9 +50,14 @@ def load_model(name: str) -> GreyBoxModel:
             model = found()
         with users_code(path, place, "trying its equations"):
             check_equations(model)
-        return model
+        return _named(model, f"{path.resolve()}:{class_name}")
     except UserError as error:
         raise UserError(str(error) if str(error).startswith(place) else f"{place}: {error}") from None
+
+
+def _named(model: GreyBoxModel, name: str) -> GreyBoxModel:
+    model.loaded_as = name
+    return model
 
 
 def _run(file: Path) -> ModuleType:

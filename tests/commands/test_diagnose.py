@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,13 +15,15 @@ from typer.testing import CliRunner, Result
 
 from greybox_torch.checkpoint import load_checkpoint
 from greybox_torch.cli import app
-from greybox_torch.commands import diagnose as command
 from greybox_torch.data import DataSet
+from greybox_torch.diagnosis import pipeline
+from greybox_torch.diagnosis.stopping import Deadline
 from greybox_torch.diagnosis.verdict import Alternative, Curve, Effect, Trace, Verdict
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.files import json_text
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.report import page
 
 Make = Callable[..., Path]
 Edit = Callable[[Path, str, str], None]
@@ -68,11 +71,11 @@ def finding(monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, Any]]:
         called: dict[str, Any] = {}
 
         def diagnose(data: DataSet, model: GreyBoxModel, *, progress: Callable[[str], None], **options: Any) -> Any:
-            called.update(options)
+            called.update({name: value for name, value in options.items() if name not in ("settings", "budget")})
             progress("screening [every] port")
             return made_up(data, model, options["seed"], effects)
 
-        monkeypatch.setattr(command, "diagnose", diagnose)
+        monkeypatch.setattr(pipeline, "diagnose", diagnose)
         return called
 
     return find
@@ -128,7 +131,7 @@ def test_what_is_written(motor_folder: Make, finding: Callable[..., dict[str, An
     assert contract <= set(verdict)
     assert (verdict["schema"], verdict["seed"], verdict["mismatch"]) == ("greybox-verdict/2", 5, True)
     (effect,) = verdict["effects"]
-    fields = {"port", "mechanism", "probability", "signals", "where", "parameters", "explained", "alternatives"}
+    fields = {"port", "mechanism", "probability", "signals", "where", "parameters", "explained", "alternatives", "size"}
     assert set(effect) == fields
     assert effect["parameters"]["slope"] == {"value": 1.0, "std": None, "unit": ""}
     assert verdict["fit"][2] == {
@@ -151,7 +154,7 @@ def test_a_failing_page_leaves_nothing_behind(
 ) -> None:
     finding(DEADZONE)
     folder = motor_folder()
-    monkeypatch.setattr(command, "render_page", lambda *_: 1 / 0)
+    monkeypatch.setattr(page, "render_page", lambda *_: 1 / 0)
     assert isinstance(diagnose(folder).exception, ZeroDivisionError)
     assert written(folder) == []
 
@@ -172,7 +175,7 @@ def test_numbers_that_fail(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) 
     def fail(*_: Any, **__: Any) -> None:
         raise NumericalError("the simulation overflows; try tighter bounds")
 
-    monkeypatch.setattr(command, "diagnose", fail)
+    monkeypatch.setattr(pipeline, "diagnose", fail)
     folder = motor_folder()
     result = diagnose(folder)
     assert result.exit_code == 3
@@ -224,7 +227,7 @@ def test_seeds_change_no_verdict(motor_folder: Make) -> None:
 
 def test_stopped(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     """On a clock by which the time is up at once: how far a real one lets the search get depends on the machine."""
-    monkeypatch.setattr("greybox_torch.diagnosis.pipeline._Clock.seconds", property(lambda self: 10.0))
+    monkeypatch.setattr(Deadline, "after", lambda seconds: Deadline(time.perf_counter() + 0.01))
     folder = motor_folder(dead_zone=0.4)
     verdict = json.loads(diagnose(folder, "--json", "--time-limit", "1").stdout)
     assert verdict["complete"] is False and verdict["effects"] == []
@@ -233,7 +236,7 @@ def test_stopped(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_stopped_where_nothing_is_missing(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("greybox_torch.diagnosis.pipeline._Clock.seconds", property(lambda self: 10.0))
+    monkeypatch.setattr(Deadline, "after", lambda seconds: Deadline(time.perf_counter() + 0.01))
     verdict = json.loads(diagnose(motor_folder(), "--json", "--time-limit", "1").stdout)
     assert verdict["mismatch"] is False
 

@@ -261,14 +261,14 @@ REFUSED = {
     "no model": ([('[model]\nname = "my_motor.py:Motor"\n', "")], [], ["[model] name is missing", "--model"]),
     "another model": ([], ["--model", "robot_arm"], ["[channels] has no 'torque'"]),
     "missing class": ([("py:Motor", "py:Engine")], [], ["my_motor.py", "class 'Engine' is not defined", "Motor"]),
-    "unknown device": ([], ["--device", "tpu"], ["--device tpu: unknown", '"cpu", "cuda"']),
+    "unknown device": ([], ["--device", "tpu"], ["--device tpu: expected", '"cpu", "cuda"']),
     "device that is not there": ([], ["--device", "cuda:99"], ["--device cuda:99: this machine has"]),
     "unknown precision": (
         [],
         ["--precision", "doubel"],
-        ['--precision doubel: unknown (did you mean "double"?)', '"single"'],
+        ["--precision doubel: expected", '"single" (did you mean "double"?)'],
     ),
-    "device without float64": ([], ["--device", "mps"], ["--device mps: unknown"]),
+    "device without float64": ([], ["--device", "mps"], ["--device mps: expected"]),
 }
 
 

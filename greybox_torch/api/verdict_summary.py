@@ -1,4 +1,4 @@
-"""What `greybox diagnose` prints."""
+"""A verdict in words and tables."""
 
 from __future__ import annotations
 
@@ -8,32 +8,45 @@ from collections.abc import Iterator
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.commands.free_runs import print_scores
-from greybox_torch.commands.tables import print_table
-from greybox_torch.commands.task import Task
+from greybox_torch.api.scores import print_scores
+from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.verdict import Effect, Verdict
+from greybox_torch.estimate.comparison import Score
+from greybox_torch.report.tables import print_table
 
 UNKNOWN = "unknown"
 _COLUMNS = ["port", "mechanism", "probability", "explains [%]", "parameter", "value", "std", "unit"]
 
 
-def print_verdict(console: Console, task: Task, verdict: Verdict) -> None:
-    """The verdict in one sentence, the effects with their parameters, fit and error before and after, and where the results are."""
-    console.print(Text(f"{task.data.name}: {task.model.title}", style="bold"))
+def print_verdict(console: Console, data: DataSet, title: str, verdict: Verdict) -> None:
+    """The verdict in one sentence, the effects with their parameters, fit and error before and after."""
+    console.print(Text(f"{data.name}: {title}", style="bold"))
     console.print(Text(f"\n{verdict.sentence}", style="bold"), soft_wrap=True)
     if verdict.effects:
-        print_table(console, _COLUMNS, [row for effect in verdict.effects for row in _rows(effect)])
-        for effect in verdict.effects:
-            _print_notes(console, effect)
-    else:
-        for sentence in verdict.evidence:
-            console.print(Text(f"- {sentence}"), soft_wrap=True)
+        print_table(console, *effect_table(verdict))
+    for line in notes(verdict):
+        console.print(Text(line if verdict.effects else f"- {line}"), soft_wrap=True)
     console.print()
-    models = ("start", "refit", "augmented") if verdict.effects else ("start", "refit")
-    print_scores(console, task.data, {name: verdict.scores[name] for name in models})
+    print_scores(console, data, verdict_scores(verdict))
     console.print(Text(f"{verdict.seconds:.1f} s, seed {verdict.seed}"))
-    files = "report.html, verdict.json, model.safetensors, model.json"
-    console.print(Text(f"Written to {task.folder}: {files}"), soft_wrap=True)
+
+
+def effect_table(verdict: Verdict) -> tuple[list[str], list[list[str | float]]]:
+    """Headings and rows of the effects and their parameters."""
+    return _COLUMNS, [row for effect in verdict.effects for row in _rows(effect)]
+
+
+def notes(verdict: Verdict) -> list[str]:
+    """Where each effect acts and what else it could be; where there is none, the evidence for that."""
+    if not verdict.effects:
+        return list(verdict.evidence)
+    return [line for effect in verdict.effects for line in _notes(effect)]
+
+
+def verdict_scores(verdict: Verdict) -> dict[str, tuple[Score, ...]]:
+    """Of the models that differ: without effects there is no augmented one."""
+    models = ("start", "refit", "augmented") if verdict.effects else ("start", "refit")
+    return {name: verdict.scores[name] for name in models}
 
 
 def _rows(effect: Effect) -> Iterator[list[str | float]]:
@@ -53,12 +66,11 @@ def _deviation(value: float | None) -> str | float:
     return value if math.isfinite(value) else "undetermined"
 
 
-def _print_notes(console: Console, effect: Effect) -> None:
+def _notes(effect: Effect) -> list[str]:
     head = f"{effect.mechanism} at {effect.port}"
     lines = [f"{head}: {effect.where}"] if effect.where else []
     if effect.alternatives:
         rivals = ", ".join(f"{a.mechanism} at {a.port} ({a.probability:.2f})" for a in effect.alternatives)
         advice = f"; to tell them apart: {effect.separating_experiment}" if effect.separating_experiment else ""
         lines.append(f"{head}: it could also be {rivals}{advice}")
-    for line in lines:
-        console.print(Text(line), soft_wrap=True)
+    return lines

@@ -20,14 +20,15 @@ def print_table(
     numbers_and_texts: Sequence[Sequence[str | float]],
     *,
     prose: Sequence[str] = (),
+    digits: int = 5,
 ) -> None:
-    """Prints rows under the headings ``columns``; numbers go to the right, with five digits.
+    """Prints rows under the headings ``columns``; numbers go to the right, with so many digits.
 
     On a terminal that is too narrow the columns named in ``prose`` are folded, as far as that goes; elsewhere nothing is, so that lines
     can be searched.
     """
     table = Table(box=SIMPLE_HEAD, pad_edge=False, collapse_padding=True)
-    rows = [[cell if isinstance(cell, str) else number(cell) for cell in row] for row in numbers_and_texts]
+    rows = [[cell if isinstance(cell, str) else number(cell, digits) for cell in row] for row in numbers_and_texts]
     for k, heading in enumerate(columns):
         numeric, folds = any(not isinstance(row[k], str) for row in numbers_and_texts), heading in prose
         widest = max(len(line) for cell in (heading, *(row[k] for row in rows)) for line in cell.split("\n"))
@@ -44,6 +45,6 @@ def print_table(
     Console(file=console.file, width=width, highlight=False).print(table)
 
 
-def number(value: float) -> str:
-    """Five digits."""
-    return f"{value:.5g}"
+def number(value: float, digits: int = 5) -> str:
+    """So many significant digits."""
+    return f"{value:.{digits}g}"

@@ -1,37 +1,28 @@
-"""What `greybox fit` writes to fit.json and prints with --json."""
+"""An estimate as JSON."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
-from greybox_torch.commands.free_runs import scores_json
-from greybox_torch.estimate.comparison import Score
-from greybox_torch.estimate.fit import FitResult
+from greybox_torch.api.estimated import estimated_parameters, estimated_starts
+from greybox_torch.api.scores import Scores, scores_side_by_side
+from greybox_torch.estimate.fit import FitResult as Estimation
 from greybox_torch.estimate.identifiability import Unidentifiable
 from greybox_torch.estimate.profile import LEVEL, THRESHOLD, Profile
 from greybox_torch.estimate.termination import Termination
 
-Scores = dict[str, tuple[Score, ...]]
-"""Rows by model ("start", "refit", and "augmented" where there is one), in the order of the data set's experiments."""
 
-
-def result_json(found: FitResult, scores: Scores, seconds: float) -> dict[str, Any]:
-    """The result as `fit --json` prints it."""
+def estimation_json(found: Estimation, scores: Scores, seconds: float) -> dict[str, Any]:
+    """What the estimation itself came to."""
     problem = found.problem
     return {
         "schema": "greybox-fit/1",
         "seconds": seconds,
         "parameters": parameters_json(found),
         "initial": {name: initial_json(found, e) for e, name in enumerate(problem.records.names)},
-        "fit": [
-            {
-                **{k: v for k, v in start.items() if k not in ("fit", "rmse")},
-                "start": _numbers(start),
-                "refit": _numbers(refit),
-            }
-            for start, refit in zip(scores_json(scores["start"]), scores_json(scores["refit"]), strict=True)
-        ],
+        "fit": scores_side_by_side(scores),
         "statistics": {
             "mse": found.mse,
             "fpe": found.fpe,
@@ -89,47 +80,18 @@ def profile_json(found: Profile) -> dict[str, Any]:
     }
 
 
-def _correlation_json(found: FitResult) -> dict[str, Any]:
+def _correlation_json(found: Estimation) -> dict[str, Any]:
     correlation = found.correlation
     if correlation is None:
         return {"names": [], "matrix": []}
     return {"names": list(correlation.names), "matrix": correlation.matrix.tolist()}
 
 
-def parameters_json(found: FitResult) -> dict[str, Any]:
+def parameters_json(found: Estimation) -> dict[str, Any]:
     """Every parameter with its value, deviations, bounds, and whether it was estimated."""
-    problem = found.problem
-    plain, sandwich = found.parameter_deviations(), found.parameter_deviations("sandwich")
-    result = {}
-    for k, declared in enumerate(problem.model.declared_parameters):
-        result[declared.name] = {
-            "value": float(problem.values[k]),
-            "std": plain.get(declared.name, 0.0),
-            "std_sandwich": sandwich.get(declared.name, 0.0),
-            "unit": declared.unit,
-            "fixed": not bool(problem.free[k]),
-            "lower": float(problem.lower[k]),
-            "upper": float(problem.upper[k]),
-            "description": declared.description,
-        }
-    return result
+    return {name: asdict(entry) for name, entry in estimated_parameters(found).items()}
 
 
-def initial_json(found: FitResult, experiment: int) -> dict[str, Any]:
+def initial_json(found: Estimation, experiment: int) -> dict[str, Any]:
     """Every start state of one experiment."""
-    problem = found.problem
-    plain, sandwich = found.initial_deviations(), found.initial_deviations("sandwich")
-    return {
-        state.name: {
-            "value": float(problem.initial[experiment, i]),
-            "std": float(plain[experiment, i]),
-            "std_sandwich": float(sandwich[experiment, i]),
-            "unit": state.unit,
-            "fixed": not bool(problem.initial_free[i]),
-        }
-        for i, state in enumerate(problem.model.states)
-    }
-
-
-def _numbers(row: dict[str, Any]) -> dict[str, float]:
-    return {"fit": row["fit"], "rmse": row["rmse"]}
+    return {name: asdict(entry) for name, entry in estimated_starts(found, experiment).items()}

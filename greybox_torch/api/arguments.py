@@ -1,0 +1,104 @@
+"""Arguments of the public functions, checked before anything is computed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any, TypeVar
+
+import torch
+
+from greybox_torch.data import DataSet
+from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
+from greybox_torch.estimate.precision import PRECISIONS
+from greybox_torch.model import GreyBoxModel
+
+Settings = TypeVar("Settings")
+
+
+def check_model(model: Any) -> GreyBoxModel:
+    """The model that was given itself, or as the result of a fit or a diagnosis.
+
+    Raises:
+        ArgumentError: neither of them.
+    """
+    held = model if isinstance(model, GreyBoxModel) else getattr(model, "model", None)
+    if isinstance(held, GreyBoxModel):
+        return held
+    if isinstance(model, type) and issubclass(model, GreyBoxModel):
+        name = model.__name__
+        raise ArgumentError("model", Kind(f"the class {name}"), f"expected an object of it: {name}()")
+    raise ArgumentError("model", Kind.of(model), "expected a model, or the result of fit or diagnose")
+
+
+def check_data(data: Any) -> DataSet:
+    """Raises ArgumentError where ``data`` is not a data set."""
+    if not isinstance(data, DataSet):
+        raise ArgumentError("data", Kind.of(data), "expected a DataSet, as load_dataset() or DataSet([…]) make it")
+    return data
+
+
+def check_estimation(data: DataSet) -> None:
+    """Raises UserError where no experiment of the data set is there to estimate from."""
+    if not data.estimation():
+        raise UserError(
+            f'{data.place("[[experiment]] role:")} no experiment has the role "estimation"; expected at least one'
+        )
+
+
+def check_device(device: str) -> str:
+    """The device as torch names it. Raises ArgumentError where torch does not know it or this machine does not have it."""
+    try:
+        known = torch.device(device)
+    except (RuntimeError, TypeError):
+        known = None
+    if known is None or known.type not in ("cpu", "cuda"):
+        raise ArgumentError("device", device, 'expected "cpu", "cuda" or "cuda:N"')
+    if known.type == "cpu":
+        return "cpu"
+    count = torch.cuda.device_count() if torch.cuda.is_available() else 0
+    if (known.index or 0) >= count:
+        have = f"{count} CUDA device{'s' * (count != 1)}" if count else "no CUDA device that torch can use"
+        raise ArgumentError("device", device, f"this machine has {have}")
+    return str(known)
+
+
+def check_precision(precision: str) -> str:
+    """Raises ArgumentError where ``precision`` is not one."""
+    if precision not in PRECISIONS:
+        expected = " or ".join(f'"{known}"' for known in PRECISIONS)
+        raise ArgumentError("precision", precision, f"expected {expected}{did_you_mean(str(precision), PRECISIONS)}")
+    return precision
+
+
+def check_whole(argument: str, value: Any, low: int, high: int) -> int:
+    """Raises ArgumentError where ``value`` is not a whole number from ``low`` to ``high``."""
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+        raise ArgumentError(argument, value, f"expected a whole number from {low} to {high}")
+    return value
+
+
+def check_seconds(argument: str, value: Any) -> float:
+    """Raises ArgumentError where ``value`` is not a finite number above zero."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < math.inf:
+        raise ArgumentError(argument, value, "expected a number above 0")
+    return float(value)
+
+
+def check_seed(seed: Any) -> int:
+    """Raises ArgumentError where ``seed`` cannot be one."""
+    return check_whole("seed", seed, 0, 2**32 - 1)
+
+
+def check_names(argument: str, names: Iterable[str]) -> tuple[str, ...]:
+    """The names, each once. Raises ArgumentError for a text, which would be taken letter by letter."""
+    if isinstance(names, str):
+        raise ArgumentError(argument, names, f'expected a list of names, such as ["{names}"]')
+    return tuple(dict.fromkeys(names))
+
+
+def check_kind(argument: str, value: Settings, kind: type[Settings]) -> Settings:
+    """Raises ArgumentError where ``value`` is not of the class ``kind``."""
+    if not isinstance(value, kind):
+        raise ArgumentError(argument, Kind.of(value), f"expected {kind.__name__}(…)")
+    return value

@@ -1,0 +1,72 @@
+"""Finding the physics that a model leaves out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from greybox_torch.api.arguments import (
+    check_data,
+    check_device,
+    check_estimation,
+    check_kind,
+    check_model,
+    check_seconds,
+    check_seed,
+)
+from greybox_torch.api.diagnosis_result import DiagnosisResult
+from greybox_torch.data import DataSet
+from greybox_torch.diagnosis import pipeline
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
+from greybox_torch.estimate.problem import make_problem
+from greybox_torch.model import GreyBoxModel
+
+
+def diagnose(
+    model: GreyBoxModel | Any,
+    data: DataSet,
+    *,
+    time_limit: float | None = None,
+    settings: DiagnosisSettings = DiagnosisSettings(),
+    budget: SearchBudget = SearchBudget(),
+    seed: int = 0,
+    device: str = "cpu",
+    progress: Callable[[str], None] = lambda text: None,
+) -> DiagnosisResult:
+    """Find what physics the model leaves out: whether, where it acts, what it is, how sure that is, and the model with it.
+
+    Choosing uses the experiments of role "estimation"; those of role "validation" can only take a finding back, or show that more is
+    needed to choose with.
+
+    Args:
+        model: searched from the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else the
+            declared ones. It stays as it is; the result's ``model`` is a copy with the effects that were found.
+        time_limit: seconds after which the search stops and the best answer so far is given.
+        settings: the thresholds that it decides by.
+        budget: how much it may compute.
+        seed: kept in the verdict; the search itself draws no random numbers.
+        device: "cpu", "cuda" or "cuda:N".
+        progress: is told what is being done.
+
+    Raises:
+        UserError: model and data do not fit, there is no experiment to choose with, or an argument is at fault.
+        NumericalError: even short stretches of the simulation overflow.
+
+    Example:
+        ``print(diagnose(Motor(), data, time_limit=60).sentence)``
+    """
+    given, device = check_model(model), check_device(device)
+    limit = None if time_limit is None else check_seconds("time_limit", time_limit)
+    check_estimation(check_data(data))
+    make_problem(data, given, data.recordings)  # all of them fit the model, whatever the search takes first
+    found = pipeline.diagnose(
+        data,
+        given,
+        seed=check_seed(seed),
+        device=device,
+        time_limit=limit,
+        settings=check_kind("settings", settings, DiagnosisSettings),
+        budget=check_kind("budget", budget, SearchBudget),
+        progress=progress,
+    )
+    return DiagnosisResult(data, given, found, device)

@@ -1,0 +1,185 @@
+"""What a diagnosis comes to."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from rich.console import Console
+
+from greybox_torch import __version__
+from greybox_torch.api.free_runs import plot_simulated
+from greybox_torch.api.result import Result
+from greybox_torch.api.scores import score_rows, score_table
+from greybox_torch.api.verdict_summary import effect_table, notes, print_verdict, verdict_scores
+from greybox_torch.checkpoint import Checkpoint, checkpoint_files
+from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.pipeline import Diagnosis
+from greybox_torch.diagnosis.verdict import Effect, Verdict
+from greybox_torch.estimate.problem import with_card
+from greybox_torch.files import json_text
+from greybox_torch.mechanisms.stored import stored_effects
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.copies import copy_holding
+from greybox_torch.report import notebook
+from greybox_torch.report.about import About
+from greybox_torch.systems import model_reference
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+VERDICT, REPORT, MODEL = "verdict.json", "report.html", "model"
+
+
+@dataclass(frozen=True)
+class FoundParameter:
+    """A parameter of the model that a diagnosis recommends, in ``unit``. ``std`` is None where the search did not compute it: for
+    parameters that are no effect's.
+    """
+
+    value: float
+    std: float | None
+    unit: str
+    fixed: bool
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DiagnosisResult(Result):
+    """What is missing from a model, and the model with it. ``found`` is the verdict with its attachments as the search gave them."""
+
+    data: DataSet
+    given: GreyBoxModel
+    found: Diagnosis
+    device: str = "cpu"
+
+    @property
+    def verdict(self) -> Verdict:
+        """All that was found: effects, scores, evidence, traces."""
+        return self.found.verdict
+
+    @property
+    def sentence(self) -> str:
+        """The verdict in one sentence."""
+        return self.verdict.sentence
+
+    @property
+    def mismatch(self) -> bool:
+        """Whether something is missing."""
+        return self.verdict.mismatch
+
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """What is missing, each with its port, mechanism, probability and parameters; empty where nothing was found."""
+        return self.verdict.effects
+
+    @cached_property
+    def model(self) -> GreyBoxModel:
+        """The model with the effects attached, holding the values that were found; the re-estimated one where nothing is missing."""
+        made = self.found.model
+        return copy_holding(made, self.found.values, declared=with_card(self.data, made.plain), starts_free=True)
+
+    @cached_property
+    def parameters(self) -> dict[str, FoundParameter]:
+        """Of the model with its effects, by name: value, standard deviation, unit, and whether it was fixed."""
+        deviations: dict[str, Any] = {}
+        for effect in self.effects:
+            prefix = f"{effect.port}.{effect.mechanism}."
+            deviations |= {f"{prefix}{name}": entry.get("std") for name, entry in effect.parameters.items()}
+        return {
+            p.name: FoundParameter(self.found.values[p.name], deviations.get(p.name), p.unit, p.fixed)
+            for p in self.model.declared_parameters
+        }
+
+    @property
+    def initial(self) -> Mapping[str, Mapping[str, float]]:
+        """Start states by experiment and state, of the experiments that were chosen with."""
+        return self.found.initial
+
+    @property
+    def scores(self) -> list[dict[str, Any]]:
+        """A row for every output of every experiment, for the models "start", "refit" and, where effects were found, "augmented"."""
+        return score_rows(self.data, verdict_scores(self.verdict))
+
+    @property
+    def effect_rows(self) -> list[dict[str, Any]]:
+        """A row for every parameter of every effect."""
+        return [
+            {"port": e.port, "mechanism": e.mechanism, "probability": e.probability, "parameter": name, **entry}
+            for e in self.effects
+            for name, entry in e.parameters.items()
+        ]
+
+    def __repr__(self) -> str:
+        return f"<diagnosis of {self.data.name}: {self.sentence}>"
+
+    def content(self, folder: Path) -> dict[str, Any]:
+        return {**self.verdict.as_json(), "held_out_by_default": self.data.held_out_by_default}
+
+    def show(self, console: Console) -> None:
+        print_verdict(console, self.data, self.given.title, self.verdict)
+
+    def files(self, folder: Path) -> dict[Path, str | bytes]:
+        """The report, the verdict, and the model with its effects as a checkpoint."""
+        from greybox_torch.report.page import render_page
+
+        return {
+            folder / REPORT: render_page(self.verdict, self._about(folder)),
+            folder / VERDICT: json_text(self.content(folder)),
+            **checkpoint_files(folder / MODEL, self._checkpoint()),
+        }
+
+    def plot(self, experiment: str | None = None) -> Figure:
+        """Simulated by each model against measured, of all experiments or of one."""
+        scores, names = verdict_scores(self.verdict), [recording.name for recording in self.data.recordings]
+        traces = {name: [t for t in self.verdict.traces if t.experiment == name] for name in names}
+        simulated = {
+            model: {name: np.column_stack([getattr(t, model) for t in traces[name]]) for name in names}
+            for model in scores
+        }
+        return plot_simulated(self.data, simulated, scores, experiment)
+
+    def _repr_html_(self) -> str:
+        effects = [notebook.table(*effect_table(self.verdict))] if self.effects else []
+        return notebook.page(
+            f"{self.data.name}: {self.given.title}",
+            notebook.sentence(self.sentence, "found"),
+            *effects,
+            *(notebook.sentence(line) for line in notes(self.verdict)),
+            notebook.table(*score_table(self.data, verdict_scores(self.verdict))),
+            notebook.picture(self.plot(), "outputs over time, measured and simulated by each model"),
+        )
+
+    @property
+    def _units(self) -> dict[str, str]:
+        return {p.name: p.unit for p in self.found.model.declared_parameters}
+
+    def _checkpoint(self) -> Checkpoint:
+        return Checkpoint(
+            model=model_reference(self.given),
+            title=self.given.title,
+            values=self.found.values,
+            units=self._units,
+            effects=[*stored_effects(self.given), *self.found.attachments],
+            free_starts=True,
+            dataset=self.data.sha256,
+            figures=self.content(Path())["fit"],
+        )
+
+    def _about(self, folder: Path) -> About:
+        model = ["--model", model_reference(self.given)] if self.data.model is None else []
+        command = ["greybox", "compare", str(self.data.path), str(folder / MODEL), *model]
+        return About(
+            version=__version__,
+            created=datetime.now().astimezone(),
+            device=self.device,
+            held_out_by_default=self.data.held_out_by_default,
+            values=self.found.values,
+            units=self._units,
+            command="" if self.data.path is None else shlex.join(command),
+        )

@@ -1,0 +1,115 @@
+"""Estimating the free parameters and start states of a model."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from greybox_torch.api.arguments import (
+    check_data,
+    check_device,
+    check_estimation,
+    check_model,
+    check_names,
+    check_precision,
+    check_seed,
+    check_whole,
+)
+from greybox_torch.api.fit_result import FitResult
+from greybox_torch.data import DataSet
+from greybox_torch.estimate.comparison import Comparison, compare
+from greybox_torch.estimate.fit import FitResult as Estimation
+from greybox_torch.estimate.fit import fit as estimate
+from greybox_torch.estimate.free_run import FreeRun
+from greybox_torch.estimate.identifiability import Unidentifiable, identifiability
+from greybox_torch.estimate.levenberg_marquardt import DEFAULT
+from greybox_torch.estimate.precision import settings_for
+from greybox_torch.estimate.problem import Problem, make_problem
+from greybox_torch.estimate.profile import SETTINGS, check_profiled, profile
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulation.stepper import Stepper, make_stepper
+from greybox_torch.simulation.substeps import choose_substeps
+
+MOST_STARTS = 4096
+
+
+def fit(
+    model: GreyBoxModel | Any,
+    data: DataSet,
+    *,
+    starts: int | None = None,
+    seed: int = 0,
+    profiles: Iterable[str] = (),
+    device: str = "cpu",
+    precision: str = "double",
+    progress: Callable[[str], None] = lambda text: None,
+) -> FitResult:
+    """Estimate the free parameters and start states on the experiments of role "estimation"; judge on all.
+
+    Args:
+        model: estimated from the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else
+            the declared ones. It stays as it is; the result's ``model`` is a copy with the estimates.
+        starts: how many start values to try, drawn around those given; by default those given, and many where these turn out poor.
+        seed: of the start values drawn.
+        profiles: names of free parameters whose profile likelihood (95 % interval) is wanted too.
+        device: "cpu", "cuda" or "cuda:N".
+        precision: "double" or "single".
+        progress: is told what is being done.
+
+    Raises:
+        UserError: model and data do not fit, there is no experiment to estimate from, or an argument is at fault.
+        NumericalError: even short stretches of the simulation overflow.
+
+    Example:
+        ``fit(Motor(), data).parameters["J"].value``
+    """
+    began = time.perf_counter()
+    given, device, precision = check_model(model), check_device(device), check_precision(precision)
+    starts = None if starts is None else check_whole("starts", starts, 1, MOST_STARTS)
+    check_estimation(check_data(data))
+    problem = make_problem(data, given, data.estimation())
+    names = check_names("profile", profiles)
+    check_profiled(names, problem.free_names, problem.names, given.title)
+    stepper = make_stepper(given, problem.free_names, device=device, precision=precision)
+    weaknesses = _at_start(problem, stepper, precision)
+    for weakness in weaknesses:
+        progress(f"At the start values: {weakness.sentence}.")
+    found = estimate(
+        problem,
+        stepper=stepper,
+        settings=settings_for(precision, DEFAULT),
+        device=device,
+        precision=precision,
+        progress=lambda stage, k, error: progress(f"{stage}, iteration {k}: mean squared error {error:.6g}"),
+        starts=starts,
+        seed=check_seed(seed),
+    )
+    drawn = {}
+    for name in names:
+        drawn[name] = profile(found, stepper, name, settings=settings_for(precision, SETTINGS))
+        progress(f"profile of {name}: {len(drawn[name].values)} points")
+    comparisons = _compared(data, given, found, stepper)
+    return FitResult(data, found, comparisons, drawn, weaknesses, precision, time.perf_counter() - began)
+
+
+def _at_start(problem: Problem, stepper: Stepper, precision: str) -> tuple[Unidentifiable, ...]:
+    """What the data do not determine, as far as the start values tell."""
+    substeps = choose_substeps(problem.driving_records, stepper, problem.values, problem.initial) or 1
+    start = FreeRun(problem, stepper, substeps)
+    return identifiability(start, start.start, precision=precision)
+
+
+def _compared(data: DataSet, model: GreyBoxModel, found: Estimation, stepper: Stepper) -> dict[str, Comparison]:
+    """Start and refitted values on all experiments.
+
+    Start states come from the first tenth of each, but for the refit on the experiments it was estimated on: there they are its own.
+    """
+    recordings = data.recordings
+    start = make_problem(data, model, recordings)
+    substeps = choose_substeps(start.driving_records, stepper, start.values, start.initial) or 1
+    before = compare(start, recordings, stepper, substeps=substeps)
+    refit = start.with_values(found.problem.values)
+    everywhere = compare(refit, recordings, stepper, substeps=found.substeps)
+    own = compare(found.problem, data.estimation(), stepper, substeps=found.substeps, estimate_starts=False)
+    return {"start": before, "refit": everywhere.with_experiments_of(own)}

@@ -1,0 +1,157 @@
+"""What an estimation comes to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.text import Text
+
+from greybox_torch.api.estimated import EstimatedParameter, EstimatedStart, estimated_parameters, estimated_starts
+from greybox_torch.api.fit_json import estimation_json, identifiability_json, profile_json, status
+from greybox_torch.api.fit_summary import parameter_table, print_estimate, warnings
+from greybox_torch.api.free_runs import plot_simulated
+from greybox_torch.api.result import Result
+from greybox_torch.api.scores import print_scores, score_rows, score_table, scores_side_by_side
+from greybox_torch.checkpoint import Checkpoint, checkpoint_files
+from greybox_torch.data import DataSet
+from greybox_torch.estimate.comparison import Comparison
+from greybox_torch.estimate.fit import FitResult as Estimation
+from greybox_torch.estimate.identifiability import Unidentifiable
+from greybox_torch.estimate.problem import with_card
+from greybox_torch.estimate.profile import Profile
+from greybox_torch.files import json_text
+from greybox_torch.mechanisms.stored import stored_effects
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.copies import copy_holding
+from greybox_torch.report import notebook
+from greybox_torch.systems import model_reference
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+RESULT, MODEL = "fit.json", "model"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FitResult(Result):
+    """An estimate of the free parameters and start states of a model.
+
+    ``estimation`` says how it was come by; ``comparisons`` are the free runs on all experiments with the values before ("start") and after
+    ("refit"); ``profiles`` the profile likelihoods that were asked for, ``undetermined`` what the data leave open as far as the start
+    values told; ``seconds`` how long it took.
+    """
+
+    data: DataSet
+    estimation: Estimation
+    comparisons: Mapping[str, Comparison]
+    profiles: Mapping[str, Profile]
+    undetermined: tuple[Unidentifiable, ...]
+    precision: str
+    seconds: float
+
+    @cached_property
+    def model(self) -> GreyBoxModel:
+        """A copy of the model that holds the estimates, within the bounds that they were looked for in."""
+        values = {name: entry.value for name, entry in self.parameters.items()}
+        given = self.estimation.problem.model
+        return copy_holding(given, values, declared=with_card(self.data, given))
+
+    @cached_property
+    def parameters(self) -> dict[str, EstimatedParameter]:
+        """By name: value, standard deviation, unit, bounds, and whether it was fixed."""
+        return estimated_parameters(self.estimation)
+
+    @cached_property
+    def initial(self) -> dict[str, dict[str, EstimatedStart]]:
+        """Start states by experiment and state, of the experiments that were estimated on."""
+        names = self.estimation.problem.records.names
+        return {name: estimated_starts(self.estimation, e) for e, name in enumerate(names)}
+
+    @property
+    def parameter_rows(self) -> list[dict[str, Any]]:
+        """A row for every parameter, with its name."""
+        return [{"name": name, **asdict(entry)} for name, entry in self.parameters.items()]
+
+    @property
+    def scores(self) -> list[dict[str, Any]]:
+        """A row for every output of every experiment, before and after: fit in %, root mean square error in the output's unit."""
+        return score_rows(self.data, self._scores)
+
+    @property
+    def status(self) -> str:
+        """One word on how it ended: "converged", or what kept it from that."""
+        return status(self.estimation.termination)
+
+    def __repr__(self) -> str:
+        return f"<fit of {self._title}: {self.status}>"
+
+    def content(self, folder: Path) -> dict[str, Any]:
+        return estimation_json(self.estimation, self._scores, self.seconds) | {
+            "identifiability": identifiability_json(self.undetermined, self.estimation.identifiability),
+            "profiles": {name: profile_json(one) for name, one in self.profiles.items()},
+            "precision": self.precision,
+            "dataset": self.data.name,
+            "model": model_reference(self.estimation.problem.model),
+            "held_out_by_default": self.data.held_out_by_default,
+            "checkpoint": str(folder / MODEL),
+        }
+
+    def show(self, console: Console) -> None:
+        console.print(Text(f"{self.data.name}: {self.estimation.problem.model.title}", style="bold"))
+        print_estimate(console, self.estimation, self.profiles)
+        console.print()
+        print_scores(console, self.data, self._scores)
+
+    def files(self, folder: Path) -> dict[Path, str | bytes]:
+        """The result as JSON, the model as a checkpoint, and a figure of every profile."""
+        return {
+            folder / RESULT: json_text(self.content(folder)),
+            **checkpoint_files(folder / MODEL, self._checkpoint()),
+            **{folder / f"profile_{name}.png": self._profile_picture(name) for name in self.profiles},
+        }
+
+    def plot(self, experiment: str | None = None) -> Figure:
+        """Simulated before and after against measured, of all experiments or of one."""
+        simulated = {name: own.by_experiment for name, own in self.comparisons.items()}
+        return plot_simulated(self.data, simulated, self._scores, experiment)
+
+    def _repr_html_(self) -> str:
+        return notebook.page(
+            self._title,
+            notebook.sentence(f"{self.estimation.termination.value}; mean squared error {self.estimation.mse:.5g}"),
+            *(notebook.sentence(line) for line in warnings(self.estimation)),
+            notebook.table(*parameter_table(self.estimation)),
+            notebook.table(*score_table(self.data, self._scores)),
+            notebook.picture(self.plot(), "outputs over time, measured, and simulated before and after"),
+        )
+
+    @property
+    def _title(self) -> str:
+        return f"{self.data.name}: {self.estimation.problem.model.title}"
+
+    @property
+    def _scores(self) -> dict[str, Any]:
+        return {name: own.scores for name, own in self.comparisons.items()}
+
+    def _checkpoint(self) -> Checkpoint:
+        given = self.estimation.problem.model
+        return Checkpoint(
+            model=model_reference(given),
+            title=given.title,
+            values={name: entry.value for name, entry in self.parameters.items()},
+            units={p.name: p.unit for p in given.declared_parameters},
+            effects=stored_effects(given),
+            free_starts=given.starts_free,
+            dataset=self.data.sha256,
+            figures=scores_side_by_side(self._scores),
+        )
+
+    def _profile_picture(self, name: str) -> bytes:
+        from greybox_torch.report.profile import plot_profile  # matplotlib takes half a second
+
+        return notebook.png(plot_profile(self.profiles[name], f"{self.data.name}: profile of {name}"))

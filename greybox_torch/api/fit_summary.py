@@ -1,0 +1,103 @@
+"""An estimate in words and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rich.console import Console
+from rich.text import Text
+
+from greybox_torch.api.estimated import EstimatedStart, estimated_parameters, estimated_starts
+from greybox_torch.api.scores import print_substeps
+from greybox_torch.estimate.fit import FitResult as Estimation
+from greybox_torch.estimate.profile import LEVEL, Profile
+from greybox_torch.estimate.termination import Termination
+from greybox_torch.report.tables import number, print_table
+
+
+def print_estimate(console: Console, found: Estimation, profiles: Mapping[str, Profile]) -> None:
+    """Parameters, start states, how the estimation ended, and profiles."""
+    console.print(Text("\nParameters", style="bold"))
+    print_table(console, *parameter_table(found), prose=["description"])
+    for e, name in enumerate(found.problem.records.names):
+        console.print(Text(f"Initial states of {name}", style="bold"))
+        print_table(console, *_initial_table(found, e), prose=["description"])
+    for name, value in statistics(found).items():
+        console.print(Text(f"{name + ':':24}{value}"), soft_wrap=True)
+    print_substeps(console, found.substeps)
+    _print_correlations(console, found)
+    for line in warnings(found):
+        console.print(Text(line, style="yellow"), soft_wrap=True)
+    _print_profiles(console, profiles)
+
+
+def statistics(found: Estimation) -> dict[str, str]:
+    """How the estimation ended, in words."""
+    return {
+        "termination": found.termination.value,
+        "iterations": str(found.iterations),
+        "evaluations": str(found.evaluations),
+        "mean squared error": f"{found.mse:.6g}",
+        "final prediction error": f"{found.fpe:.6g}",
+        "samples": str(found.samples),
+    }
+
+
+def parameter_table(found: Estimation) -> tuple[list[str], list[list[str | float]]]:
+    """Headings and rows of the parameters."""
+    known = found.uncertainty is not None
+    rows: list[list[str | float]] = []
+    for name, entry in estimated_parameters(found).items():
+        bounds = f"[{number(entry.lower)}, {number(entry.upper)}]"
+        rows.append([name, entry.description, entry.unit, *_numbers(entry, known), bounds, _kept(entry)])
+    return ["name", "description", "unit", "value", "std", "std\n(coloured)", "bounds", ""], rows
+
+
+def _initial_table(found: Estimation, experiment: int) -> tuple[list[str], list[list[str | float]]]:
+    rows: list[list[str | float]] = []
+    states = {state.name: state for state in found.problem.model.states}
+    for name, entry in estimated_starts(found, experiment).items():
+        rows.append([name, states[name].description, entry.unit, *_numbers(entry, True), _kept(entry)])
+    return ["name", "description", "unit", "value", "std", "std\n(coloured)", ""], rows
+
+
+def _numbers(entry: EstimatedStart, known: bool) -> list[str | float]:
+    """Value and deviations; none where the number is fixed."""
+    deviations: list[str | float] = ["", ""]
+    if known and not entry.fixed:
+        deviations = [d if d < float("inf") else "undetermined" for d in (entry.std, entry.std_sandwich)]
+    return [entry.value, *deviations]
+
+
+def _kept(entry: EstimatedStart) -> str:
+    return "fixed" if entry.fixed else "estimated"
+
+
+def _print_correlations(console: Console, found: Estimation) -> None:
+    pairs = found.correlation.strong_pairs() if found.correlation else []
+    if pairs:
+        told = ", ".join(f"{a} and {b} {value:+.3f}" for a, b, value in pairs)
+        console.print(Text(f"Estimates that move together (correlation): {told}"), soft_wrap=True)
+
+
+def warnings(found: Estimation) -> list[str]:
+    """What is doubtful about the estimate, in sentences."""
+    lost = [name for name, deviation in found.parameter_deviations().items() if deviation == float("inf")]
+    lines = []
+    if lost:
+        lines.append(
+            f"The data do not determine {', '.join(lost)}, alone or together: fix one of them, or excite the machine more."
+        )
+    lines += [f"{weakness.sentence}." for weakness in found.identifiability]
+    for note in found.notes:
+        if note.kind is Termination.at_bound:
+            lines.append(f"At a bound: {note.detail}; the standard deviations there mean little.")
+    return lines
+
+
+def _print_profiles(console: Console, profiles: Mapping[str, Profile]) -> None:
+    if not profiles:
+        return
+    console.print(Text(f"Profile likelihood, {100 * LEVEL:g} % intervals", style="bold"))
+    for one in profiles.values():
+        console.print(Text(f"{one.sentence} (allowing for coloured residuals by {one.colour:.3g})"), soft_wrap=True)

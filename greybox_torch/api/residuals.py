@@ -1,0 +1,133 @@
+"""Prediction errors of a model: whether they are white, and whether the inputs still explain part of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.text import Text
+
+from greybox_torch.api.result import Result
+from greybox_torch.api.simulate import START, simulate
+from greybox_torch.data import DataSet
+from greybox_torch.estimate.residuals import Correlation, Residuals
+from greybox_torch.evaluation import Evaluation
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.report import notebook
+from greybox_torch.report.tables import print_table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FIGURE = "residuals.png"
+
+_EXPLANATION = (
+    "whiteness: largest autocorrelation at lags 1 to 25; correlation with an input: largest at lags 0 to 25.",
+    "Above the bound, something repeatable is left in the residual. What correlates with the input a better model can remove.",
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ResidualResult(Result):
+    """What a model's free runs leave of every output in every experiment; ``tests`` hold the errors and their correlations."""
+
+    run: Evaluation
+    name: str = START
+
+    @property
+    def tests(self) -> tuple[Residuals, ...]:
+        """Errors (N,) of every output in every experiment, their whiteness, and their correlation with each input."""
+        return self.run.residuals
+
+    @property
+    def scores(self) -> list[dict[str, Any]]:
+        """A row for every output of every experiment: root mean square error, and every correlation with its 99 % bound."""
+        rows = []
+        for test, score in zip(self.tests, self.run.scores, strict=True):
+            row = {"experiment": score.experiment, "role": score.role, "output": score.output, "rmse": score.rmse}
+            row |= {"unit": test.output.unit, "whiteness": test.whiteness.largest, "bound": test.whiteness.bound}
+            for name, found in test.inputs.items():
+                row |= {f"correlation with {name}": found.largest, f"bound with {name}": found.bound}
+            rows.append(row)
+        return rows
+
+    def __repr__(self) -> str:
+        return f"<{self._title}>"
+
+    def content(self, folder: Path) -> dict[str, Any]:
+        return {
+            "schema": "greybox-residuals/1",
+            "dataset": self.run.data.name,
+            "model": {"name": self.name, "model": self.run.model_name},
+            "residuals": [_row_json(test, s.rmse) for test, s in zip(self.tests, self.run.scores, strict=True)],
+            "figure": str(folder / FIGURE),
+        }
+
+    def show(self, console: Console) -> None:
+        console.print(Text(self._title, style="bold"))
+        print_table(console, *self._table(), prose=["experiment"])
+        for line in _EXPLANATION:
+            console.print(line, soft_wrap=True)
+
+    def files(self, folder: Path) -> dict[Path, str | bytes]:
+        return {folder / FIGURE: notebook.png(self.plot())}
+
+    def plot(self) -> Figure:
+        """Errors over time, their autocorrelation, and their correlation with the inputs."""
+        from greybox_torch.report.residuals import plot_residuals  # matplotlib takes half a second
+
+        return plot_residuals(self.tests, self._title)
+
+    def _repr_html_(self) -> str:
+        notes = (notebook.sentence(line) for line in _EXPLANATION)
+        shown = notebook.picture(self.plot(), "errors over time, their autocorrelation and correlation with the inputs")
+        return notebook.page(self._title, notebook.table(*self._table()), *notes, shown)
+
+    @property
+    def _title(self) -> str:
+        return f"{self.run.data.name}: residuals of {self.run.problem.model.title}, {self.name}"
+
+    def _table(self) -> tuple[list[str], list[list[str | float]]]:
+        columns = ["experiment", "role", "output", "rmse", "unit", "whiteness", "99 %\nbound"]
+        columns += [
+            heading for name in self.tests[0].inputs for heading in (f"correlation\nwith {name}", "99 %\nbound")
+        ]
+        return columns, [list(row.values()) for row in self.scores]
+
+
+def residuals(
+    model: GreyBoxModel | Any, data: DataSet, *, name: str = START, device: str = "cpu", precision: str = "double"
+) -> ResidualResult:
+    """Test the errors of a model's free runs. Arguments and errors are those of :func:`greybox_torch.simulate`.
+
+    Args:
+        name: what the model is called in the result.
+    """
+    return ResidualResult(simulate(model, data, device=device, precision=precision).run, name)
+
+
+def _row_json(test: Residuals, rmse: float) -> dict[str, Any]:
+    result = {
+        "experiment": test.recording.name,
+        "role": test.recording.role,
+        "output": test.output.name,
+        "rmse": rmse,
+        "whiteness": _correlation_json(test.whiteness),
+        "input_correlation": None,
+    }
+    if test.inputs:
+        worst = max(test.inputs, key=lambda name: test.inputs[name].largest / test.inputs[name].bound)
+        by_input = {name: _correlation_json(correlation) for name, correlation in test.inputs.items()}
+        result["input_correlation"] = {"input": worst, **by_input[worst], "inputs": by_input}
+    return result
+
+
+def _correlation_json(correlation: Correlation) -> dict[str, Any]:
+    return {
+        "value": correlation.largest,
+        "bound": correlation.bound,
+        "lags_outside": correlation.outside,
+        "lags": correlation.tested,
+    }

@@ -1,0 +1,148 @@
+"""Simulating a model on a data set."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from rich.console import Console
+from rich.text import Text
+
+from greybox_torch.api.arguments import check_data, check_device, check_model, check_precision
+from greybox_torch.api.free_runs import figure_files, file_stems, free_runs_json, plot_free_runs
+from greybox_torch.api.result import Result
+from greybox_torch.api.scores import print_scores, print_substeps, score_rows, score_table
+from greybox_torch.data import DataSet
+from greybox_torch.errors import NumericalError
+from greybox_torch.evaluation import Evaluation, evaluated
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.copies import copy_holding
+from greybox_torch.report import notebook
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+START = "start"
+"""The name of the model with its start values."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SimulationResult(Result):
+    """Free runs of a model on all experiments: ``result["sweep"]["speed"]`` is a simulated output (N,), in its unit.
+
+    ``run`` holds what else is known of them: start states, residuals, static laws.
+    """
+
+    run: Evaluation
+    name: str = START
+
+    @property
+    def data(self) -> DataSet:
+        """What was simulated."""
+        return self.run.data
+
+    @cached_property
+    def model(self) -> GreyBoxModel:
+        """A copy of the model, holding the values that it was simulated with."""
+        return copy_holding(self.run.problem.model, self.run.values)
+
+    @property
+    def scores(self) -> list[dict[str, Any]]:
+        """A row for every output of every experiment: fit in %, root mean square error in the output's unit."""
+        return score_rows(self.data, {self.name: self.run.scores})
+
+    @property
+    def initial(self) -> dict[str, dict[str, float]]:
+        """The start states by experiment and state, in the states' units."""
+        return self.run.initial
+
+    def __getitem__(self, experiment: str) -> dict[str, np.ndarray]:
+        if experiment not in self.run.simulated:
+            raise KeyError(f"no experiment {experiment!r}; there are: {', '.join(self)}")
+        values = self.run.simulated[experiment]
+        return {output.name: values[:, k] for k, output in enumerate(self.run.problem.model.outputs)}
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.run.simulated)
+
+    def __len__(self) -> int:
+        return len(self.run.simulated)
+
+    def __repr__(self) -> str:
+        return f"<simulation of {self.run.problem.model.title} on {self.data.name}: {', '.join(self)}>"
+
+    def content(self, folder: Path) -> dict[str, Any]:
+        stems = file_stems(self.data, "simulated")
+        paths = {
+            "tables": [str(folder / f"{stem}.csv") for stem in stems],
+            "figures": [str(folder / f"{stem}.png") for stem in stems],
+        }
+        return {**free_runs_json(self.data, {self.name: self.run}), **paths}
+
+    def show(self, console: Console) -> None:
+        console.print(Text(f"{self._title} with its start values", style="bold"))
+        print_scores(console, self.data, {self.name: self.run.scores})
+        print_substeps(console, self.run.substeps)
+
+    def files(self, folder: Path) -> dict[Path, str | bytes]:
+        """A CSV file of an experiment: time, and every output measured and simulated; and a figure of each."""
+        tables = {folder / f"{stem}.csv": self._table(e) for e, stem in enumerate(file_stems(self.data, "simulated"))}
+        return {**tables, **figure_files(folder, self.data, {self.name: self.run}, "simulated")}
+
+    def plot(self, experiment: str | None = None) -> Figure:
+        """Simulated against measured, of all experiments or of one."""
+        return plot_free_runs(self.data, {self.name: self.run}, experiment)
+
+    def _repr_html_(self) -> str:
+        scores = {self.name: self.run.scores}
+        shown = notebook.picture(self.plot(), "simulated and measured outputs over time")
+        return notebook.page(self._title, notebook.table(*score_table(self.data, scores)), shown)
+
+    @property
+    def _title(self) -> str:
+        return f"{self.data.name}: {self.run.problem.model.title}"
+
+    def _table(self, experiment: int) -> bytes:
+        recording, names = self.data.recordings[experiment], [o.name for o in self.run.problem.model.outputs]
+        columns = [recording.time]
+        for k, name in enumerate(names):
+            columns += [recording.signals[name], self.run.comparison.simulated[experiment][:, k]]
+        header = ",".join(["time", *[f"{name}_{what}" for name in names for what in ("measured", "simulated")]])
+        buffer = BytesIO()
+        np.savetxt(buffer, np.column_stack(columns), fmt="%.10g", delimiter=",", header=header, comments="")
+        return buffer.getvalue()
+
+
+def simulate(
+    model: GreyBoxModel | Any, data: DataSet, *, device: str = "cpu", precision: str = "double"
+) -> SimulationResult:
+    """Simulate every experiment in free run, from start states estimated on its first tenth.
+
+    Args:
+        model: used with the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else the
+            declared ones. The result of a fit or a diagnosis stands for its model.
+        device: "cpu", "cuda" or "cuda:N".
+        precision: "double" or "single".
+
+    Raises:
+        UserError: model and data do not fit, or an argument is at fault.
+        NumericalError: the simulation overflows.
+
+    Example:
+        ``simulate(Motor(), data)["sweep"]["speed"]``
+    """
+    given = check_model(model)
+    run = evaluated(check_data(data), given, device=check_device(device), precision=check_precision(precision))
+    refuse_overflow(run)
+    return SimulationResult(run)
+
+
+def refuse_overflow(run: Evaluation) -> None:
+    """Raises NumericalError, saying where, if a free run is not finite."""
+    if run.overflow is not None:
+        raise NumericalError(f"simulating {run.problem.model.title}: {run.overflow}")
