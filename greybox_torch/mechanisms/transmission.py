@@ -118,30 +118,41 @@ class HystereticSpring(Mechanism):
 
 
 class NonlinearDamping(Mechanism):
-    """d_2 δ' |δ'| + d_0 tanh(δ' / r_0)."""
+    """d_a |δ'| + d_2 δ' |δ'| + d_0 tanh(δ' / r_0): a damper that differs by direction, one that grows with the rate, and a dry one.
+
+    Beside the damper d δ' of the model, d + d_a acts while the deflection grows and d − d_a while it shrinks.
+    """
 
     name = "nonlinear_damping"
     kinds = ("coupling",)
     needs = ("rate",)
-    explanation = "The coupling's damping is not proportional to the rate of deflection."
-    source = "R. Dhaouadi, F. H. Ghorbel, P. S. Gandhi, IEEE Trans. Industrial Electronics 50(6), 2003"
+    explanation = (
+        "The coupling's damping is not proportional to the rate of deflection, or differs between the two directions."
+    )
+    source = (
+        "R. Dhaouadi, F. H. Ghorbel, P. S. Gandhi, IEEE Trans. Industrial Electronics 50(6), 2003; "
+        "J. C. Dixon, The Shock Absorber Handbook, 2nd ed., 2007 (compression and rebound)"
+    )
     experiment = "vibration at several amplitudes"
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         reach = around.ranges["rate"].reach
         unit = around.units.get("rate", "")
         return [
+            Parameter("d_a", 0.0, around.per("rate"), description="half the difference between the directions"),
             Parameter("d_2", 0.0, around.per("rate", 2), description="coefficient of r|r|"),
             Parameter("d_0", 0.0, around.force_unit, description="level of the dry part"),
             Parameter("r_0", 0.1 * reach, unit, lower=0.01 * reach, upper=reach, description="width of the dry part"),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return p.d_2 * s.rate * torch.abs(s.rate) + p.d_0 * torch.tanh(s.rate / p.r_0)
+        dry = p.d_0 * torch.tanh(s.rate / p.r_0)
+        return p.d_a * torch.abs(s.rate) + p.d_2 * s.rate * torch.abs(s.rate) + dry
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         reach = around.ranges["rate"].reach
         return [
+            Probe(("d_a",), {"r_0": 0.1 * reach}),
             Probe(("d_2",), {"r_0": 0.1 * reach}),
             *(Probe(("d_2", "d_0"), {"r_0": f * reach}) for f in (0.03, 0.15)),
         ]

@@ -79,3 +79,14 @@ def test_hysteretic_spring_dissipates_over_a_closed_cycle_and_saturates(law, rat
     travel = 4 * 0.4 / (2 * np.pi)
     assert 0.5 * 1.5 * travel < work < 1.5 * travel
     assert 1.4 < max(forces) < 1.5
+
+
+def test_a_damper_that_differs_by_direction(law) -> None:
+    """Beside a damper d of the model, d + d_a acts in one direction and d − d_a in the other."""
+    rate = np.linspace(-2.0, 2.5, 10)
+    force = 5.0 * rate + law(NonlinearDamping(), {"d_a": 2.0}, rate=rate)
+    np.testing.assert_allclose(force, np.where(rate > 0, 7.0, 3.0) * rate, rtol=1e-14)
+
+
+def test_the_screen_looks_for_the_difference_alone(around) -> None:
+    assert ("d_a",) in [probe.directions for probe in NonlinearDamping().probes(around)]
