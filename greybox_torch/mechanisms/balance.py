@@ -8,24 +8,45 @@ from typing import Any
 import torch
 
 from greybox_torch.mechanisms.degenerate import beyond
-from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
 
 
-class LinearLeak(LinearLaw):
-    """−c level."""
+class LinearLeak(Mechanism):
+    """−c (level − reference): towards zero, or towards the level of a room or of a second vessel."""
 
     name = "linear_leak"
     kinds = ("balance",)
     needs = ("level",)
-    explanation = "Something leaks in proportion to the level (heat loss, seepage)."
+    generalises = ("constant_bias",)
+    natural = ("reference",)
+    explanation = (
+        "Something leaks in proportion to how far the level is from a reference (heat loss to a room, seepage)."
+    )
     source = "N. R. Kristensen, H. Madsen, S. B. Jørgensen, Automatica 40(2), 2004"
     experiment = "rest at several levels"
-    parameter, measured_in, lower, description = "c", Per("level"), 0.0, "leak per level"
 
-    def law(self, s: Signals, size: Any) -> Any:
-        return -size * s.level
+    def parameters(self, around: Surroundings) -> list[Parameter]:
+        level = around.ranges["level"]
+        return [
+            Parameter("c", 0.0, around.per("level"), lower=0.0, description="leak per level above the reference"),
+            Parameter(
+                "reference",
+                0.0,
+                around.units.get("level", ""),
+                lower=min(0.0, level.low) - level.span,
+                upper=max(0.0, level.low + level.span) + level.span,
+                description="level at which nothing leaks",
+            ),
+        ]
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return -p.c * (s.level - p.reference)
+
+    def probes(self, around: Surroundings) -> Sequence[Probe]:
+        level = around.ranges["level"]
+        references = dict.fromkeys((0.0, level.low, level.low + 0.5 * level.span))
+        return [Probe(("c",), {"reference": reference}) for reference in references]
 
 
 class ThresholdFlow(Mechanism):

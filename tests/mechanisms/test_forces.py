@@ -8,6 +8,7 @@ import pytest
 from greybox_torch.mechanisms.balance import LinearLeak, ThresholdFlow
 from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndStop, TorqueRipple
 from greybox_torch.mechanisms.gravity import Gravity
+from greybox_torch.mechanisms.surroundings import Range, Surroundings
 
 ANGLES = np.linspace(-4.0, 4.0, 201)
 
@@ -88,3 +89,19 @@ def test_a_damped_end_stop_takes_energy_and_never_pulls(law, side) -> None:
     assert (side * force <= 0).all() and (force[side * ANGLES <= 0.2] == 0).all()
     assert ((force - bare) * speed <= 1e-12).all()
     assert np.abs(force - bare).max() > 1.0
+
+
+def test_a_leak_to_a_room_vanishes_at_its_level(law) -> None:
+    level = np.array([1.0, 2.0, 3.0])
+    np.testing.assert_allclose(law(LinearLeak(), {"c": 0.5, "reference": 2.0}, level=level), [0.5, 0.0, -0.5])
+    np.testing.assert_allclose(law(LinearLeak(), {"c": 0.5}, level=level), -0.5 * level)
+
+
+def test_the_reference_may_lie_at_zero_or_about_the_travelled_levels() -> None:
+    """An oven between 80 and 200 degC leaks to a room at 20 degC; levels below zero have a reference too."""
+    for low, high, inside in ((80.0, 200.0, (0.0, 20.0, 80.0, 200.0)), (-30.0, -10.0, (-30.0, -20.0, 0.0))):
+        around = Surroundings({"level": Range(low, high, 1.0)}, {"level": "degC"}, "degC/s", 1.0)
+        reference = next(p for p in LinearLeak().parameters(around) if p.name == "reference")
+        assert all(reference.bounds[0] <= place <= reference.bounds[1] for place in inside)
+        looked_at = [probe.values["reference"] for probe in LinearLeak().probes(around)]
+        assert looked_at == [0.0, low, 0.5 * (low + high)]
