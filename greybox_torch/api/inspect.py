@@ -51,7 +51,12 @@ class InspectionResult(Result):
             "dataset": self.data.name,
             "held_out_by_default": self.data.held_out_by_default,
             "experiments": [
-                {"name": recording.name, "role": recording.role, "channels": self._channels(recording)}
+                {
+                    "name": recording.name,
+                    "role": recording.role,
+                    "notes": list(recording.notes),
+                    "channels": self._channels(recording),
+                }
                 for recording in self.data.recordings
             ],
             "model": self.model,
@@ -106,7 +111,8 @@ class InspectionResult(Result):
         return rows
 
     def _notes(self) -> list[str]:
-        notes = [HELD_OUT] if self.data.held_out_by_default else []
+        notes = [f"{recording.name}: {note}." for recording in self.data.recordings for note in recording.notes]
+        notes += [HELD_OUT] if self.data.held_out_by_default else []
         if self.model is not None:
             notes.append(f"Channels, parameters and start states fit the model {self.model}.")
         return notes

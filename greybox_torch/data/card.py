@@ -5,50 +5,18 @@ The format is fixed by the project's contract; see the README for an example.
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import Field, ValidationError, field_validator, model_validator
 
+from greybox_torch.data.card_channels import ChannelEntry, Entry, ExperimentEntry, Finite, Text, TimeEntry
 from greybox_torch.data.card_errors import describe
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.reading import read_toml
 
 TIME = "time"  # in an experiment's `columns`, the key that renames the column of time stamps
-
-Text = Annotated[str, Field(min_length=1)]
-Finite = Annotated[float, Field(allow_inf_nan=False)]
-
-
-class Entry(BaseModel):
-    """A table of the card: typed strictly, and closed, so that a misspelt key cannot pass unseen."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
-
-
-class ChannelEntry(Entry):
-    """Where a channel stands in the files: file value × scale = value in `unit`."""
-
-    column: Text
-    unit: str = ""
-    scale: Finite = 1.0
-
-    @field_validator("scale")
-    @classmethod
-    def _not_zero(cls, scale: float) -> float:
-        if scale == 0.0:
-            raise ValueError("a scale of zero would erase the channel; expected a number other than zero")
-        return scale
-
-
-class ExperimentEntry(Entry):
-    """One recording: its file, its role, and optionally a slice of rows and columns of its own."""
-
-    name: Text
-    file: Text
-    role: Literal["estimation", "validation"] = "estimation"
-    rows: Annotated[list[int], Field(min_length=2, max_length=2)] | None = None
-    columns: dict[str, Text] = {}
 
 
 class ParameterEntry(Entry):
@@ -93,17 +61,27 @@ class ModelEntry(Entry):
 
 
 class Card(Entry):
-    """The whole of `dataset.toml`. Either `sample_time` (s) is given or `time`, a column of time stamps (s)."""
+    """The whole of `dataset.toml`. Either `sample_time` (s) is given or `time`, a column of time stamps.
+
+    `resample` makes the time stamps even, that many seconds apart; `decimate` keeps one sample of so many, behind a low pass.
+    """
 
     name: Text | None = None
     sample_time: Finite | None = None
-    time: Text | None = None
+    time: TimeEntry | None = None
+    resample: Finite | None = None
+    decimate: Annotated[int, Field(ge=2, le=10_000)] | None = None
     hold: Literal["zoh", "foh"] = "zoh"
     channels: Annotated[dict[str, ChannelEntry], Field(min_length=1)]
     experiment: Annotated[list[ExperimentEntry], Field(min_length=1)]
     model: ModelEntry = ModelEntry()
 
-    @field_validator("sample_time")
+    @field_validator("time", mode="before")
+    @classmethod
+    def _of_seconds(cls, time: Any) -> Any:
+        return {"column": time} if isinstance(time, str | int) and not isinstance(time, bool) else time
+
+    @field_validator("sample_time", "resample")
     @classmethod
     def _positive(cls, sample_time: float | None) -> float | None:
         if sample_time is not None and sample_time <= 0.0:
@@ -127,14 +105,17 @@ class Card(Entry):
             )
         if self.sample_time is not None and self.time is not None:
             raise ValueError('both "sample_time" and "time" are given; expected one of them')
+        if self.sample_time is not None and self.resample is not None:
+            raise ValueError(
+                '"resample" is of time stamps; expected time = "<column of time stamps>" in the place of sample_time'
+            )
         return self
 
     @model_validator(mode="after")
     def _names_of_experiments_differ(self) -> Self:
-        names = [experiment.name for experiment in self.experiment]
-        for name in names:
-            if names.count(name) > 1:
-                raise ValueError(f'{names.count(name)} experiments are named "{name}"; expected different names')
+        name, count = Counter(experiment.name for experiment in self.experiment).most_common(1)[0]
+        if count > 1:
+            raise ValueError(f'{count} experiments are named "{name}"; expected different names')
         return self
 
     @model_validator(mode="after")

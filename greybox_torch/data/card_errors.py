@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import NoneType
 from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -24,6 +25,8 @@ _EXPECTED = {
     "dict_type": "a table",
     "model_type": "a table, like {{ key = value }}",
     "list_type": "a list",
+    "greater_than_equal": "at least {ge}",
+    "less_than_equal": "at most {le}",
     "too_short": "at least {min_length} entries",
     "too_long": "at most {max_length} entries",
     "literal_error": "{expected}",
@@ -34,6 +37,9 @@ _EXPECTED_AT = {
     ("channels",): "a table [channels] with an entry for every input and output",
     ("experiment",): "one table [[experiment]], in double brackets, for every recording",
     ("rows",): "two whole numbers, [start, stop]",
+    ("file",): "the name of a file, or a list of names",
+    ("time",): 'the column of time stamps, or { column = "t", unit = "ms" }',
+    ("column",): "the name of a column, or its position from 1 on",
 }
 
 
@@ -89,8 +95,14 @@ def _allowed_keys(card: type[BaseModel], location: Sequence[str | int]) -> list[
     table: Any = card
     for step in location:
         inner = get_args(table)  # of dict[str, Entry] or list[Entry]; an Entry itself has none
-        table = inner[-1] if inner else table.model_fields[str(step)].annotation
+        table = inner[-1] if inner else _without_none(table.model_fields[str(step)].annotation)
     return list(table.model_fields)
+
+
+def _without_none(kind: Any) -> Any:
+    """Entry for Entry | None."""
+    kinds = get_args(kind)
+    return next(k for k in kinds if k is not NoneType) if NoneType in kinds else kind
 
 
 def _quoted(value: Any) -> str:

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from greybox_torch.errors import UserError
 
 FEWEST_SAMPLES = 10
+LARGEST = 1e100
+"""Largest sample: squares and sums of squares of larger ones are no numbers any more."""
 
 KINDS = {"U": "text", "S": "text", "T": "text", "c": "complex numbers", "O": "cells or objects", "V": "a structure"}
 """What an array holds, by the kind of its dtype, in words for messages."""
@@ -20,11 +22,13 @@ Place = Callable[[int], str]
 
 
 def check_finite(values: NDArray[np.float64], place: Place) -> None:
-    """Raises UserError where one of the values (N,) is infinite. NaN is a missing sample."""
-    infinite = np.flatnonzero(np.isinf(values))
-    if infinite.size:
+    """Raises UserError where one of the values (N,) is infinite, or so large that its square is no number. NaN is a missing sample."""
+    wrong = np.flatnonzero(np.abs(values) > LARGEST)
+    if wrong.size:
+        found = values[wrong[0]]
+        expected = "a finite number" if np.isinf(found) else f"a number of at most {LARGEST:g}, in another unit perhaps"
         raise UserError(
-            f"{place(int(infinite[0]))}: found {values[infinite[0]]:g}, expected a finite number (NaN where the sample is missing)"
+            f"{place(int(wrong[0]))}: found {found:g}, expected {expected} (NaN where the sample is missing)"
         )
 
 

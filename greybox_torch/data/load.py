@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 from os import PathLike
 from pathlib import Path
@@ -10,12 +9,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from greybox_torch.data.card import TIME, Card, ExperimentEntry, read_card
+from greybox_torch.data.card import TIME, Card, read_card
+from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry
 from greybox_torch.data.checks import check_finite, check_length, check_time
 from greybox_torch.data.dataset import DataSet
+from greybox_torch.data.expression import Expression
+from greybox_torch.data.processing import EVEN, at_times, decimated, derivative, even_grid, unevenness
 from greybox_torch.data.readers import read_table
-from greybox_torch.data.readers.table import Table
 from greybox_torch.data.recording import Channel, Recording
+from greybox_torch.data.source import Read, Source, source_of
+from greybox_torch.data.units import conversion, slip
 from greybox_torch.errors import UserError
 
 
@@ -41,61 +44,138 @@ def load_dataset(path: str | PathLike[str]) -> DataSet:
     )
 
 
-def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: Callable[..., Table]) -> Recording:
-    file = path.parent / experiment.file
-    columns = {name: experiment.columns.get(name, entry.column) for name, entry in card.channels.items()}
-    if card.time is not None:
-        columns[TIME] = experiment.columns.get(TIME, card.time)
-    table = read(file, tuple(dict.fromkeys(columns.values())))
+def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: Read) -> Recording:
     place = f'{path}, [[experiment]] "{experiment.name}"'
-    start, stop = _rows(place, table, experiment.rows)
+    files = [path.parent / file for file in experiment.file]
+    clock = None if card.time is None else experiment.columns.get(TIME, card.time.column)
+    formulas = {name: entry.expression(experiment.columns.get(name)) for name, entry in card.channels.items()}
+    needed = [column for formula in formulas.values() for column in formula.columns]
+    source = source_of(files, experiment.join, list(dict.fromkeys([*needed, *([clock] if clock else [])])), clock, read)
+    start, stop = _rows(place, source, experiment.rows)
     check_length(stop - start, place)
-    if card.sample_time is None:
-        time = _time_stamps(table, columns.pop(TIME), start, stop)
-        sample_time = float(np.median(np.diff(time)))
-    else:
-        time = np.arange(start, stop, dtype=np.float64) * card.sample_time
-        sample_time = card.sample_time
+    time, sample_time = _time(path, card, source, clock, start, stop)
+    signals = {
+        name: _signal(f'{place}, channel "{name}"', card.channels[name], formula, source, start, stop)
+        for name, formula in formulas.items()
+    }
+    done = _processed(place, card, time, sample_time, signals)
+    check_length(len(done.time), place)
     return Recording(
         name=experiment.name,
         role=experiment.role,
-        time=time,
-        sample_time=sample_time,
-        signals={
-            name: _signal(table, column, start, stop) * card.channels[name].scale for name, column in columns.items()
-        },
-        source=file,
-        rows=(start, stop),
+        time=done.time,
+        sample_time=done.sample_time,
+        signals=done.signals,
+        source=files[0],
+        rows=(start, stop) if len(done.time) == stop - start else (0, len(done.time)),
         units={name: entry.unit for name, entry in card.channels.items()},
+        notes=(*source.notes, *done.notes),
     )
 
 
-def _rows(place: str, table: Table, rows: list[int] | None) -> tuple[int, int]:
+def _rows(place: str, source: Source, rows: list[int] | None) -> tuple[int, int]:
     """The slice of the file's samples that an experiment stands for."""
-    lengths = {column: len(values) for column, values in table.columns.items()}
-    if len(set(lengths.values())) > 1:
-        found = ", ".join(f'"{column}" has {length}' for column, length in lengths.items())
-        raise UserError(f"{table.path}: columns differ in length: {found}; expected as many samples in each")
-    (length,) = set(lengths.values())
+    length = len(next(iter(source.columns.values())))
     start, stop = rows or (0, length)
     if rows and not 0 <= start < stop <= length:
         raise UserError(
             f"{place}, rows: found [{start}, {stop}], expected 0 <= start < stop <= {length}, "
-            f"the number of samples in {table.path}"
+            f"the number of samples in {source.tables[0].path}"
         )
     return start, stop
 
 
-def _time_stamps(table: Table, column: str, start: int, stop: int) -> NDArray[np.float64]:
-    time = table.columns[column][start:stop]
-    check_time(time, lambda sample: table.place(column, start + sample))
-    return time
+def _time(
+    path: Path, card: Card, source: Source, clock: str | None, start: int, stop: int
+) -> tuple[NDArray[np.float64], float]:
+    """Time stamps (N,) and the median step, in seconds."""
+    if card.time is None or clock is None:
+        step = card.sample_time or 1.0
+        time = np.arange(start, stop, dtype=np.float64) * step
+        if not np.isfinite(time[-1]) or time[-1] <= time[0]:
+            raise UserError(
+                f"{path}: sample_time: {step:g} s makes times that are no numbers; expected seconds between samples"
+            )
+        return time, step
+    time = source.columns[clock][start:stop]
+    time = time if card.time.unit == "s" else time * card.time.seconds
+    check_time(time, lambda sample: source.place(clock, start + sample))
+    return time, float(np.median(np.diff(time)))
 
 
-def _signal(table: Table, column: str, start: int, stop: int) -> NDArray[np.float64]:
-    values = table.columns[column][start:stop]
-    check_finite(values, lambda sample: table.place(column, start + sample))
+def _signal(
+    place: str, entry: ChannelEntry, formula: Expression, source: Source, start: int, stop: int
+) -> NDArray[np.float64]:
+    """A channel's samples in its unit."""
+    columns = {column: source.columns[column][start:stop] for column in formula.columns}
+    for column, values in columns.items():
+        check_finite(values, lambda sample, column=column: source.place(column, start + sample))
+    values = formula.of(columns)
+    lost = np.isnan(values) & ~np.any([np.isnan(column) for column in columns.values()], axis=0)
+    if lost.any():
+        raise UserError(f'{place}: "{formula.text}" is no number at sample {int(np.argmax(lost))} (the first is 0)')
+    with np.errstate(over="ignore"):
+        values = _in_unit(place, entry, formula, source, values)
+    check_finite(values, lambda sample: f"{place}, sample {sample} (the first is 0), once scaled")
     return values
+
+
+def _in_unit(
+    place: str, entry: ChannelEntry, formula: Expression, source: Source, values: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    if entry.file_unit is not None:
+        rate = "" if entry.derivative is None else " / s"
+        factor, offset = conversion(entry.file_unit + rate, entry.unit, f"{place}, file_unit")
+        return values * factor + offset
+    found = source.unit(formula.text)
+    if found and entry.unit and entry.derivative is None and "scale" not in entry.model_fields_set:
+        factor = slip(found, entry.unit)
+        if factor is not None:
+            raise UserError(
+                f'{place}: {source.tables[0].path} has column "{formula.text}" in "{found}", the card says "{entry.unit}"; '
+                f'expected file_unit = "{found}" to convert it ({factor:.6g}), or the scale'
+            )
+    return values * entry.scale
+
+
+class _Processed:
+    """The samples of an experiment, and what was done to them."""
+
+    def __init__(self, time: NDArray[np.float64], sample_time: float, signals: dict[str, NDArray[np.float64]]) -> None:
+        self.time, self.sample_time, self.signals = time, sample_time, signals
+        self.notes: list[str] = []
+
+
+def _processed(
+    place: str, card: Card, time: NDArray[np.float64], sample_time: float, signals: dict[str, NDArray[np.float64]]
+) -> _Processed:
+    """Resampled, differentiated and decimated, as far as the card asks for it."""
+    done = _Processed(time, sample_time, signals)
+    jitter = 0.0 if card.time is None else unevenness(time)
+    if jitter > EVEN:
+        steps = np.diff(time)
+        done.notes.append(
+            f"time stamps are uneven: steps between {steps.min():.6g} and {steps.max():.6g} s, median {sample_time:.6g} s"
+        )
+    if card.resample is not None:
+        done.time, done.sample_time = even_grid(time, card.resample, place), card.resample
+        done.signals = {name: at_times(done.time, time, values) for name, values in signals.items()}
+        done.notes.append(f"resampled to steps of {card.resample:g} s, on straight lines between samples")
+    rates = {name: entry.derivative for name, entry in card.channels.items() if entry.derivative is not None}
+    if (rates or card.decimate) and card.resample is None and jitter > EVEN:
+        raise UserError(
+            f"{place}: derivative and decimate need even time stamps; expected resample = <seconds> as well"
+        )
+    for name, cutoff in rates.items():
+        done.signals[name] = derivative(
+            done.signals[name], done.sample_time, cutoff, f'{place}, channel "{name}", derivative'
+        )
+        done.notes.append(f"{name} is the rate of change of the recorded samples behind a low pass at {cutoff:g} Hz")
+    if card.decimate is not None:
+        done.signals = {name: decimated(values, card.decimate) for name, values in done.signals.items()}
+        done.time, done.sample_time = done.time[:: card.decimate], done.sample_time * card.decimate
+        done.notes.append(f"one of {card.decimate} samples kept, behind a low pass against aliasing")
+    return done
 
 
 def _absolute_model(name: str | None, path: Path) -> str | None:

@@ -1,0 +1,130 @@
+"""What a card says of its files: channels, experiments, time stamps."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+
+from greybox_torch.data.expression import Expression, parse_expression
+
+Text = Annotated[str, Field(min_length=1)]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class Entry(BaseModel):
+    """A table of the card: typed strictly, and closed, so that a misspelt key cannot pass unseen."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+def _column(value: Any) -> Any:
+    """A column by its position, from 1 on, is called "#2" in readers."""
+    if isinstance(value, int) and not isinstance(value, bool):
+        if value < 1:
+            raise ValueError(f"{value} is not a column; expected a name, or a position from 1 on")
+        return f"#{value}"
+    return value
+
+
+class ChannelEntry(Entry):
+    """Where a channel stands in the files: file value × scale = value in `unit`, or converted from `file_unit`.
+
+    `expr` computes it from several columns. `derivative` is the cut-off in Hz where the channel is the rate of change of what the file
+    holds.
+    """
+
+    column: Text | None = None
+    expr: Text | None = None
+    unit: str = ""
+    scale: Finite = 1.0
+    file_unit: Text | None = None
+    derivative: Finite | None = None
+
+    _position = field_validator("column", mode="before")(_column)
+
+    @field_validator("scale")
+    @classmethod
+    def _not_zero(cls, scale: float) -> float:
+        if scale == 0.0:
+            raise ValueError("a scale of zero would erase the channel; expected a number other than zero")
+        return scale
+
+    @field_validator("expr")
+    @classmethod
+    def _an_expression(cls, text: str | None) -> str | None:
+        if text is not None:
+            parse_expression(text)
+        return text
+
+    @field_validator("derivative")
+    @classmethod
+    def _a_frequency(cls, cutoff: float | None) -> float | None:
+        if cutoff is not None and cutoff <= 0.0:
+            raise ValueError(f"{cutoff:g} is not a cut-off; expected a frequency above zero, in Hz")
+        return cutoff
+
+    @model_validator(mode="after")
+    def _one_source(self) -> Self:
+        if self.column is None and self.expr is None:
+            raise ValueError('"column" is missing; expected column = "…", or expr = "…" of several columns')
+        if self.column is not None and self.expr is not None:
+            raise ValueError('both "column" and "expr" are given; expected one of them')
+        if self.file_unit is not None and "scale" in self.model_fields_set:
+            raise ValueError('both "scale" and "file_unit" are given; expected one of them')
+        if self.file_unit is not None and not self.unit:
+            raise ValueError('"file_unit" is given without "unit"; expected both, to convert from one to the other')
+        return self
+
+    def expression(self, column: str | None) -> Expression:
+        """How the channel comes from columns; `column` stands in where an experiment names another."""
+        if column is None and self.expr is not None:
+            return parse_expression(self.expr)
+        return Expression.of_column(str(column or self.column))
+
+
+class TimeEntry(Entry):
+    """The column of time stamps, and its unit."""
+
+    column: Text
+    unit: Literal["s", "ms", "us", "µs", "ns", "min", "h"] = "s"
+
+    _position = field_validator("column", mode="before")(_column)
+
+    @property
+    def seconds(self) -> float:
+        """One unit, in seconds."""
+        return {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}[self.unit]
+
+
+class ExperimentEntry(Entry):
+    """One recording: its file or files, its role, and optionally a slice of rows and columns of its own.
+
+    `join` says how several files belong together: "concatenate", one after the other, or "time", columns matched by their time stamps.
+    """
+
+    name: Text
+    file: Annotated[list[Text], Field(min_length=1, max_length=1000)]
+    join: Literal["concatenate", "time"] | None = None
+    role: Literal["estimation", "validation"] = "estimation"
+    rows: Annotated[list[int], Field(min_length=2, max_length=2)] | None = None
+    columns: dict[str, Text] = {}
+
+    @field_validator("file", mode="before")
+    @classmethod
+    def _one_or_more(cls, file: Any) -> Any:
+        return [file] if isinstance(file, str) else file
+
+    @field_validator("columns", mode="before")
+    @classmethod
+    def _positions(cls, columns: Any) -> Any:
+        return {name: _column(value) for name, value in columns.items()} if isinstance(columns, dict) else columns
+
+    @model_validator(mode="after")
+    def _joined(self) -> Self:
+        if len(self.file) > 1 and self.join is None:
+            raise ValueError(
+                'several files are given without "join"; expected join = "concatenate" (one after the other) '
+                'or "time" (columns matched by their time stamps)'
+            )
+        return self

@@ -1,0 +1,107 @@
+"""The columns of one experiment, from one file or from several that belong together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greybox_torch.data.checks import check_finite, check_time
+from greybox_torch.data.processing import at_times
+from greybox_torch.data.readers.table import NoSuchColumn, Table
+from greybox_torch.errors import UserError
+
+Read = Callable[..., Table]
+
+
+@dataclass(frozen=True, eq=False)
+class Source:
+    """Columns (N,) as they stand in the tables, which follow each other; `notes` say what was done to join them."""
+
+    tables: tuple[Table, ...]
+    columns: dict[str, NDArray[np.float64]]
+    notes: tuple[str, ...] = ()
+
+    def place(self, column: str, sample: int) -> str:
+        """Where a sample stands, to begin a message with."""
+        for table in self.tables[:-1]:
+            length = len(next(iter(table.columns.values())))
+            if sample < length:
+                return table.place(column, sample)
+            sample -= length
+        return self.tables[-1].place(column, sample)
+
+    def unit(self, column: str) -> str:
+        """The unit that a file says for a column; empty where none does."""
+        return next((table.units[column] for table in self.tables if column in table.units), "")
+
+
+def source_of(files: Sequence[Path], join: str | None, columns: Sequence[str], time: str | None, read: Read) -> Source:
+    """The columns from the files.
+
+    Args:
+        join: "concatenate" or "time" where there are several.
+        time: the column of time stamps; None where samples are even.
+
+    Raises:
+        UserError: as the readers do; columns of different length; files to be joined in time where there are no time stamps.
+    """
+    if len(files) == 1:
+        table = read(files[0], tuple(columns))
+        return Source((table,), _same_length(table))
+    if join == "concatenate":
+        tables = tuple(read(file, tuple(columns)) for file in files)
+        held = [_same_length(table) for table in tables]
+        return Source(tables, {column: np.concatenate([one[column] for one in held]) for column in columns})
+    if time is None:
+        raise UserError(
+            f'{files[0]}: join = "time" needs time stamps; expected time = "<column>" at the top of the card'
+        )
+    return _joined_in_time(files, columns, time, read)
+
+
+def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, read: Read) -> Source:
+    """Every column from the first file that has it, at the time stamps of the first file."""
+    lacking, tables, held, notes = [c for c in columns if c != time], [], {}, []
+    for file in files:
+        table = _what_there_is(file, lacking, time, read)
+        own = _same_length(table)
+        check_time(own[time], lambda sample, table=table: table.place(time, sample))
+        if not tables:
+            held = own
+        else:
+            for column in own:
+                if column != time:
+                    check_finite(own[column], lambda sample, table=table, column=column: table.place(column, sample))
+                    held[column] = at_times(held[time], own[time], own[column])
+                    notes.append(
+                        f'column "{column}" is from {file.name}, joined in time on straight lines between its samples'
+                    )
+        tables.append(table)
+        lacking = [column for column in lacking if column not in own]
+    if lacking:
+        names = ", ".join(file.name for file in files)
+        raise UserError(f'{files[0]}: no column "{lacking[0]}"; it is in none of {names}')
+    return Source((tables[0],), held, tuple(notes))
+
+
+def _what_there_is(file: Path, columns: Sequence[str], time: str, read: Read) -> Table:
+    wanted = [*columns, time]
+    while True:
+        try:
+            return read(file, tuple(wanted))
+        except NoSuchColumn as error:
+            if error.column == time or error.column not in wanted:
+                raise
+            wanted.remove(error.column)
+
+
+def _same_length(table: Table) -> dict[str, NDArray[np.float64]]:
+    lengths = {column: len(values) for column, values in table.columns.items()}
+    if len(set(lengths.values())) > 1:
+        found = ", ".join(f'"{column}" has {length}' for column, length in lengths.items())
+        raise UserError(f"{table.path}: columns differ in length: {found}; expected as many samples in each")
+    return dict(table.columns)

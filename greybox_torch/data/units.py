@@ -1,0 +1,67 @@
+"""Conversion between units, by pint, which is imported where a card asks for it."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import Any
+
+from greybox_torch.errors import UserError
+
+_PLAIN = re.compile(r"[A-Za-zµμΩ°%/·*^().²³0-9 \-]{1,40}")
+_LONG_NUMBER = re.compile(r"\d{3,}|\*\*|\^\s*-?\s*\d{2,}")
+_WRITTEN = {"°C": "degC", "°F": "degF", "°": "deg", "·": "*", "²": "^2", "³": "^3", "μ": "µ"}
+
+
+def conversion(source: str, target: str, place: str) -> tuple[float, float]:
+    """Factor and offset: value in `target` = factor × value in `source` + offset.
+
+    Raises UserError, beginning with `place`, where a unit is unknown or they are not of one quantity.
+    """
+    import pint
+
+    registry = _registry()
+    try:
+        units = [registry.Unit(_written(unit)) for unit in (source, target)]
+        if {"hertz" in str(unit) for unit in units} == {True, False} and any("radian" in str(unit) for unit in units):
+            raise UserError(f'{place}: "{source}" and "{target}" differ by a turn; give the factor as scale')
+        zero, one = (registry.Quantity(value, units[0]).to(units[1]).magnitude for value in (0.0, 1.0))
+    except pint.DimensionalityError:
+        raise UserError(
+            f'{place}: "{source}" cannot be converted to "{target}"; expected units of one quantity'
+        ) from None
+    except UserError:
+        raise
+    except Exception as error:  # pint's parser raises what its tokenizer does
+        raise UserError(
+            f'{place}: cannot convert "{source:.40}" to "{target:.40}": {" ".join(str(error).split()):.100}; '
+            'expected units such as "deg/s", "rpm" or "N cm", or a scale'
+        ) from None
+    return float(one - zero), float(zero)
+
+
+def slip(found: str, given: str) -> float | None:
+    """The factor from the unit that a file says to the one that a card says, where both are known and the factor is not 1."""
+    try:
+        factor, offset = conversion(found, given, "")
+    except UserError:
+        return None
+    return None if abs(factor - 1.0) < 1e-9 and offset == 0.0 else factor
+
+
+def _written(unit: str) -> str:
+    if not _PLAIN.fullmatch(unit) or _LONG_NUMBER.search(unit):
+        raise ValueError("not a unit")
+    for sign, word in _WRITTEN.items():
+        unit = unit.replace(sign, word)
+    return unit
+
+
+@cache
+def _registry() -> Any:
+    import pint
+
+    registry = pint.UnitRegistry()
+    registry.define("rev = turn")
+    registry.define("Nm = newton * meter")
+    return registry

@@ -1,0 +1,89 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from greybox_torch.data.expression import parse_expression
+
+COLUMNS = {
+    "a": np.array([1.0, 2.0, np.nan]),
+    "b": np.array([3.0, -4.0, 5.0]),
+    "log.motor.u": np.ones(3),
+    "v x": np.full(3, 2.0),
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("0.5 * (a - b)", [-1.0, 3.0, np.nan]),
+        ("-a ** 2 + 1", [0.0, -3.0, np.nan]),
+        ("log.motor.u + 0 * b", [1.0, 1.0, 1.0]),
+        ('hypot(col("v x"), 0 * b) * pi / pi', [2.0, 2.0, 2.0]),
+        ("maximum(b, 0)", [3.0, 0.0, 5.0]),
+        ("radians(b) / radians(1)", [3.0, -4.0, 5.0]),
+        (" abs(b)", [3.0, 4.0, 5.0]),
+    ],
+)
+def test_values(text: str, expected: list[float]) -> None:
+    np.testing.assert_allclose(parse_expression(text).of(COLUMNS), expected)
+
+
+def test_columns_that_it_needs() -> None:
+    assert parse_expression('a * col("Y[:, 1]") + a * log.motor.u - pi').columns == ("a", "Y[:, 1]", "log.motor.u")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "1 + 2",
+        "a +",
+        "__import__('os').system('true')",
+        "a.__class__.__mro__[0]",
+        "open('x')",
+        "[a for a in b]",
+        "lambda: a",
+        "a if a else b",
+        "a == b",
+        "a @ b",
+        "a // b",
+        "a << 3",
+        "'a'",
+        "True * a",
+        "1j * a",
+        "f'{a}'",
+        "sin(a, b)",
+        "sin(x=a)",
+        "hypot(a)",
+        "col(a)",
+        "col('a', 'b')",
+        "a[0]",
+        "(a := b)",
+        "a, b",
+        "eval('a')",
+        "a\0",
+        "(" * 250 + "a" + ")" * 250,
+        "9" * 490 + "* a",
+        "a" * 501,
+        "9**9**9 if a else 1",
+    ],
+)
+def test_what_is_not_understood(text: str) -> None:
+    with pytest.raises(ValueError, match=r"\w"):
+        parse_expression(text)
+
+
+def test_a_tower_of_powers_is_no_work() -> None:
+    assert np.isinf(parse_expression("0 * b + 9**9**9**9**9").of(COLUMNS)).all()
+
+
+@given(st.text(alphabet="ab().+-*/ 0123456789,'\"[]=:_sincol\n\\\0", max_size=40))
+def test_any_text_is_an_expression_or_a_value_error(text: str) -> None:
+    try:
+        found = parse_expression(text)
+    except ValueError:
+        return
+    assert found.of({column: np.ones(3) for column in found.columns}).shape == (3,)
