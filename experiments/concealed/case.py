@@ -10,7 +10,8 @@ import numpy as np
 from numpy.random import Generator, SeedSequence
 from numpy.typing import NDArray
 
-from experiments.concealed.effects import CATALOGUE, STRENGTHS, Effect, Surroundings
+from experiments.concealed.catalogue.arm import CATALOGUE
+from experiments.concealed.effects import STRENGTHS, Effect, Surroundings
 from experiments.concealed.excitation import EXPERIMENTS, PRE_ROLL, Excitation, draw_excitation
 from experiments.concealed.laws import Law
 from experiments.concealed.plant_arm import (

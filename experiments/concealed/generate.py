@@ -26,7 +26,8 @@ import numpy as np
 from numpy.random import Generator, SeedSequence
 
 from experiments.concealed.case import Case, draw_case, simulate_cases
-from experiments.concealed.effects import CATALOGUE, LIBRARY, OUTSIDE, STRENGTHS
+from experiments.concealed.catalogue.arm import CATALOGUE, LIBRARY, OUTSIDE
+from experiments.concealed.effects import STRENGTHS
 from experiments.concealed.files import write_case
 from experiments.concealed.proof.errors import ProofError
 

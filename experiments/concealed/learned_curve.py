@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from experiments.concealed.effects import CATALOGUE
+from experiments.concealed.catalogue.arm import CATALOGUE
 from greybox_torch.data import load_dataset
 from greybox_torch.systems import load_model
 from greybox_torch.train import Trained, TrainingSettings, train_hybrid

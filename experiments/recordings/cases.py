@@ -1,8 +1,8 @@
 """Which recordings, what is concealed from their models, and which answers are right.
 
 An answer is a pair (port, mechanism). ``accept``, ``near`` and ``ports`` mean what they mean in the keys of the simulated cases
-(:mod:`experiments.concealed.effects`). Where a law contains the one that is concealed (Stribeck friction contains Coulomb friction) it is
-accepted. What nature added to these machines besides is nobody's to say: further findings are listed, and are neither hits nor misses.
+(:mod:`experiments.concealed.catalogue.arm`). Where a law contains the one that is concealed (Stribeck friction contains Coulomb friction)
+it is accepted. What nature added to these machines besides is nobody's to say: further findings are listed, neither hits nor misses.
 """
 
 from __future__ import annotations

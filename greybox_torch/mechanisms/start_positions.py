@@ -26,7 +26,7 @@ def position_trials(local: LocalSignals, values: Mapping[str, float]) -> list[di
         return [{s: float(share) * span for s in states} for share in OFFSETS]
     orders = [abs(float(values.get(f"{a.prefix}.order", 1.0))) for a in placed]
     period = 2 * np.pi / max(min(orders), 1e-9)
-    return [{s: k * period / START_POSITIONS for s in states} for k in range(START_POSITIONS)]
+    return [dict.fromkeys(states, k * period / START_POSITIONS) for k in range(START_POSITIONS)]
 
 
 def _periodic(mechanism: Mechanism) -> bool:

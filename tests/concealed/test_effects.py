@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from experiments.concealed.case import Case, assemble, draw_case
-from experiments.concealed.effects import CATALOGUE, LIBRARY, OUTSIDE
+from experiments.concealed.catalogue.arm import CATALOGUE, LIBRARY, OUTSIDE
 from experiments.concealed.excitation import EXPERIMENTS, SENSOR_NOISE
 from experiments.concealed.files import key
 from experiments.concealed.plant_arm import Drive

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from experiments.concealed import generate as generator
-from experiments.concealed.effects import LIBRARY, OUTSIDE
+from experiments.concealed.catalogue.arm import LIBRARY, OUTSIDE
 from experiments.concealed.excitation import EXPERIMENTS
 from experiments.concealed.make_demo import make_demo
 from experiments.concealed.plant_arm import PARAMETERS

@@ -17,7 +17,8 @@ from experiments.concealed.case import (
     draw_truth,
     stays_within_estimation,
 )
-from experiments.concealed.effects import CATALOGUE, Surroundings, Switches
+from experiments.concealed.catalogue.arm import CATALOGUE
+from experiments.concealed.effects import Surroundings, Switches
 from experiments.concealed.excitation import PRE_ROLL, Excitation, draw_excitation
 from experiments.concealed.machines.base import LANES, Array, Channel, Machine, Run, Trial
 from experiments.concealed.nuisances import Nuisances, draw_nuisances, nuisance_laws

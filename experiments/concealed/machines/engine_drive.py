@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.random import Generator
 
-from experiments.concealed import effects_engine as known
+from experiments.concealed.catalogue import engine as known
 from experiments.concealed.engine.describe import Changes, document, inertial, joint, motors, spring
 from experiments.concealed.machines.base import Array, Channel
 from experiments.concealed.machines.engine import EngineMachine

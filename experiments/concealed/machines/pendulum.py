@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 from numpy.random import Generator
 
-from experiments.concealed import effects_body as body_effects
+from experiments.concealed.catalogue import one_body, one_body_friction, one_body_outside
 from experiments.concealed.effects import Effect, Surroundings, Switches
 from experiments.concealed.laws import body, drive
 from experiments.concealed.machines.base import Array, Channel
 from experiments.concealed.machines.one_body import OneBody
 
-USUAL = body_effects.Usual("pivot", force=2.0, speed=6.0, travel=1.5, bristle=0.02)
+USUAL = one_body_friction.Usual("pivot", force=2.0, speed=6.0, travel=1.5, bristle=0.02)
 SPEED = "sensor.speed"
 
 
@@ -27,15 +27,15 @@ def _catalogue() -> dict[str, Effect]:
         ((SPEED, "sensor_lag"),),
     )
     found = [
-        *body_effects.frictions(u),
-        *body_effects.forces(u),
-        *body_effects.richer(u),
-        body_effects.ripple(u, 3.0, 20.0),
-        *body_effects.drives(u),
-        *body_effects.timings(SPEED, 0.03, right[:2], right[2:]),
-        *body_effects.gains(SPEED, ((("actuator", "input_gain"),), ((SPEED, "sensor_gain"),))),
+        *one_body_friction.frictions(u),
+        *one_body.forces(u),
+        *one_body_friction.richer(u),
+        one_body.ripple(u, 3.0, 20.0),
+        *one_body.drives(u),
+        *one_body.timings(SPEED, 0.03, right[:2], right[2:]),
+        *one_body.gains(SPEED, ((("actuator", "input_gain"),), ((SPEED, "sensor_gain"),))),
         *_of_the_pendulum(),
-        *body_effects.outside(u),
+        *one_body_outside.outside(u),
     ]
     return {effect.name: effect for effect in found}
 
@@ -53,12 +53,36 @@ def _of_the_pendulum() -> list[Effect]:
         return {"bias": min(s * g.uniform(0.1, 0.3), 1.0) * float(g.choice([-1.0, 1.0]))}
 
     return [
-        Effect("load_friction", body.LoadDependentFriction, "pivot", "friction", load, (("pivot", "load_dependent_friction"),),
-               (("pivot", "coulomb_friction"), ("pivot", "stribeck_friction")), ("pivot",)),
-        Effect("gravity", body.Gravity, "pivot", "position", gravity, (("pivot", "gravity"),),
-               (("sensor.angle", "sensor_bias"),), ("pivot",)),
-        Effect("sensor_bias", drive.SensorBias, SPEED, "bias", bias, ((SPEED, "sensor_bias"),), (), (SPEED,)),
-    ]  # fmt: skip
+        Effect(
+            name="load_friction",
+            law=body.LoadDependentFriction,
+            port="pivot",
+            family="friction",
+            draw=load,
+            accept=(("pivot", "load_dependent_friction"),),
+            near=(("pivot", "coulomb_friction"), ("pivot", "stribeck_friction")),
+            ports=("pivot",),
+        ),
+        Effect(
+            name="gravity",
+            law=body.Gravity,
+            port="pivot",
+            family="position",
+            draw=gravity,
+            accept=(("pivot", "gravity"),),
+            near=(("sensor.angle", "sensor_bias"),),
+            ports=("pivot",),
+        ),
+        Effect(
+            name="sensor_bias",
+            law=drive.SensorBias,
+            port=SPEED,
+            family="bias",
+            draw=bias,
+            accept=((SPEED, "sensor_bias"),),
+            ports=(SPEED,),
+        ),
+    ]
 
 
 class Pendulum(OneBody):

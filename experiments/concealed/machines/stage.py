@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 from numpy.random import Generator
 
-from experiments.concealed import effects_body as body_effects
+from experiments.concealed.catalogue import one_body, one_body_friction, one_body_outside
 from experiments.concealed.effects import Effect
 from experiments.concealed.machines.base import Array, Channel
 from experiments.concealed.machines.one_body import OneBody
 
-USUAL = body_effects.Usual("carriage", force=40.0, speed=0.4, travel=0.12, bristle=2e-4)
+USUAL = one_body_friction.Usual("carriage", force=40.0, speed=0.4, travel=0.12, bristle=2e-4)
 DELAY = (("actuator", "input_delay"), ("sensor", "output_delay"))
 LAG = (("actuator", "input_lag"), ("sensor", "sensor_lag"))
 GAIN = (("actuator", "input_gain"), ("sensor", "sensor_gain"))
@@ -22,14 +22,14 @@ GAIN = (("actuator", "input_gain"), ("sensor", "sensor_gain"))
 def _catalogue() -> dict[str, Effect]:
     u = USUAL
     found = [
-        *body_effects.frictions(u),
-        *body_effects.forces(u),
-        *body_effects.richer(u),
-        body_effects.ripple(u, 2.0 * np.pi / 0.03, 2.0 * np.pi / 0.01),
-        *body_effects.drives(u),
-        *body_effects.timings("sensor", 0.015, (DELAY, DELAY), (LAG, LAG)),
-        *body_effects.gains("sensor", (GAIN, GAIN)),
-        *body_effects.outside(u),
+        *one_body_friction.frictions(u),
+        *one_body.forces(u),
+        *one_body_friction.richer(u),
+        one_body.ripple(u, 2.0 * np.pi / 0.03, 2.0 * np.pi / 0.01),
+        *one_body.drives(u),
+        *one_body.timings("sensor", 0.015, (DELAY, DELAY), (LAG, LAG)),
+        *one_body.gains("sensor", (GAIN, GAIN)),
+        *one_body_outside.outside(u),
     ]
     return {effect.name: effect for effect in found}
 

@@ -42,10 +42,11 @@ BESIDE = (
 PROTOCOL = """\
 1. Cases are drawn from the seed: machine, true parameters, start values up to 15 % off, excitation, feedback, noise, read-out, torque
    noise, slow drift and jitter of the samples, all anew for each. The plants
-   ([`experiments/concealed`]({root}/experiments/concealed/README.md)) are NumPy and share no code
+   ([`experiments/concealed`]({root}/experiments/concealed/README.md)) are NumPy, or MuJoCo's, and share no code
    with the tool; they integrate more finely than it does, their dry friction truly sticks.
-   Effects are scaled until the plain model, refitted in linearisation, leaves an error of 2.5 to 4 (weak), 8 to 20 (moderate) or 40 to
-   100 times (dominant) the floor, or as far as the machine lets them; the key holds the visibility that came out.
+   Effects are scaled until the plain model, refitted in linearisation, leaves an error of 2.5 to 4 (weak), 8 to 20 (moderate), 40 to
+   100 (dominant) or 300 to 3000 times (overwhelming, with sensors 30 times as good) the floor, or as far as the machine lets them; the key
+   holds the visibility that came out.
 2. The answers, with all that counts as right, are sealed: encrypted, and committed to by a salted SHA-256 that is printed and put on
    record with the hashes of all cases, of the rules of scoring and of the tool's sources.
 3. The tool is run on each case by its command line. It sees the card, the recordings and the nominal model. The hash of each verdict goes

@@ -1,6 +1,6 @@
 """What is concealed in the machines that MuJoCo simulates: dry friction, damping, stops, filters, dead bands, tilt.
 
-Switches are the changes to the description (`engine/describe.py`). `accept`, `near`, `ports` as in `effects.py`; twins, and why:
+Switches are the changes to the description (`engine/describe.py`). `accept`, `near`, `ports` as in `arm.py`; twins, and why:
 
 - A delay of the input is not one of a sensor where there are several sensors, or a law depends on the true position.
 - A base tilted about a joint's axis is gravity, turned; on a pendulum the same as an angle sensor that is turned.

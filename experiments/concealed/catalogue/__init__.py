@@ -1,0 +1,1 @@
+"""What is concealed in which machine."""
