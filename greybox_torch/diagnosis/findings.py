@@ -16,9 +16,10 @@ from greybox_torch.diagnosis.confirm.free_runs import Judgement
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.promotion import promote_validation, serves
 from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains, take_back_weakest
+from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.final import Final, finish, from_longest_windows
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.select.backward import drop_superfluous
+from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.plain_model import fit_plain_model, weighted_by_noise
 from greybox_torch.diagnosis.select.search import search
 from greybox_torch.diagnosis.select.state import SearchState
@@ -154,10 +155,21 @@ def _judged(
     study.working_on("judging on the validation experiments")
     judge = partial(Judgement, dataset, problem)
     judged = judge(state, plain, augmented, study.substeps, study.device)
-    while state.effects and not judged.holds:
+    while state.effects and ((empty := _empty(study, state, augmented)) or not judged.holds):
         if not state.compared_without:
             state = result_of(drop_superfluous(study, state))
-        state, gains = take_back_weakest(study, state, gains)
+        if empty is not None:
+            state = result_of(drop(study, state, empty))
+            gains = {n: g for n, g in gains.items() if n in state.prefixes}
+        else:
+            state, gains = take_back_weakest(study, state, gains)
         augmented = _finish(study, state.current) if state.effects else plain
         judged = judge(state, plain, augmented, study.substeps, study.device)
     return state, gains, judged
+
+
+def _empty(study: Study, state: SearchState, augmented: Final) -> str | None:
+    """An effect whose parameters, fitted to whole records, say nothing about the machine."""
+    told = (augmented.values(), augmented.deviations())
+    found = (e.prefix for e in state.effects if degenerate(e, study.surroundings, *told) is not None)
+    return next(found, None)

@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.profiles import explained_energy, law_curve, local_signals, most_of, profile
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.select.posterior import for_all_that_is_left, shared
+from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.diagnosis.verdict import Effect, Profile, Timeline
@@ -75,7 +76,8 @@ def _effect(
     probability, alternatives = (0.5, ()) if taken is None or taken.taken is None else shared(taken.taken, taken.ranked)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     if not isinstance(attachment.mechanism, Unknown):
-        probability = for_all_that_is_left(probability, state.current)
+        share = remaining_share(state.plain, state.current)
+        probability = for_all_that_is_left(probability, share, state.current, study.settings.least_size)
     profiles = _profiles(study, state, model, attachment, site)
     timelines = () if gain is None else gain.timelines
     mechanism = attachment.mechanism

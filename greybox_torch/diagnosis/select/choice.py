@@ -8,6 +8,7 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import far_above_noise
 from greybox_torch.diagnosis.hypothesis.significance import surely_better, white_samples
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
+from greybox_torch.diagnosis.select.remaining import completes, difference
 
 LEAST_GAIN = 0.01
 """Improvement of the mean squared error (as a share, averaged over window lengths) below which nothing is claimed."""
@@ -28,9 +29,14 @@ def least_gain(fitted: Hypothesis) -> float:
     return LEAST_GAIN_FAR_ABOVE_NOISE if far_above_noise(fitted) else LEAST_GAIN
 
 
-def chosen(ranked: Sequence[RankedCandidate]) -> RankedCandidate | None:
-    """The best of the hypotheses that pay: a named mechanism, unless a free curve is better by a margin and much better."""
-    named = simplest([r for r in ranked if not r.unknown])
+def chosen(ranked: Sequence[RankedCandidate], plain: Hypothesis, least_size: float) -> RankedCandidate | None:
+    """The best of the hypotheses that pay: a named mechanism, unless a free curve is better by a margin and much better.
+
+    Args:
+        plain: the model as it stands.
+        least_size: the share of its mismatch by which a law must go farther than a simpler one that it contains.
+    """
+    named = simplest([r for r in ranked if not r.unknown], plain, least_size)
     curve = next((r for r in ranked if r.unknown), None)
     if named is None or curve is None:
         return named or curve
@@ -43,8 +49,11 @@ def alone_at_noise(curve: Hypothesis, named: Hypothesis) -> bool:
     return white_samples(curve) > 0 and not white_samples(named)
 
 
-def simplest(ranked: Sequence[RankedCandidate]) -> RankedCandidate | None:
-    """The best, or what it generalises where it is not better than that by more than chance."""
+def simplest(ranked: Sequence[RankedCandidate], plain: Hypothesis, least_size: float) -> RankedCandidate | None:
+    """The best, or what it generalises where it is not better than that by more than chance, or by less than a finding is.
+
+    The latter does not count against a law that leaves noise alone where the simpler one does not.
+    """
     best = next(iter(ranked), None)
     if best is None:
         return None
@@ -54,4 +63,10 @@ def simplest(ranked: Sequence[RankedCandidate]) -> RankedCandidate | None:
         for r in ranked
         if r.leader.attachment.mechanism.name in contained and r.leader.attachment.port == best.leader.attachment.port
     )
-    return next((r for r in simpler if surely_better(r.fitted, best.fitted) < LEAST_SIGNIFICANCE), best)
+    alone = completes(best.fitted)
+
+    def as_good(r: RankedCandidate) -> bool:
+        small = difference(plain, r.fitted, best.fitted) < least_size
+        return surely_better(r.fitted, best.fitted) < LEAST_SIGNIFICANCE or (small and not alone)
+
+    return next((r for r in simpler if as_good(r)), best)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-from greybox_torch.diagnosis.hypothesis.noise import ABOVE_NOISE, only_noise, times_noise
+from greybox_torch.diagnosis.hypothesis.noise import ABOVE_NOISE, floor_known, only_noise, times_noise
 from greybox_torch.diagnosis.select.choice import CURVE_MARGIN, alone_at_noise
-from greybox_torch.diagnosis.select.forward_step import forward_step, take_best
+from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import Stage, only_if
 from greybox_torch.diagnosis.study import Study
@@ -25,10 +25,10 @@ def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> St
     Args:
         curves: whether free curves are offered.
     """
-    while len(state.effects) < MOST_EFFECTS and not only_noise(study.problem, state.current):
+    while len(state.effects) < MOST_EFFECTS and not _done(study, state):
         before = state
         state = yield from forward_step(study, before, curves=curves)
-        if not state.took_one and _fine_curves_may_help(study, state, curves):
+        if not state.took_one and _fine_curves_may_help(study, state, curves) and not little_is_left(study, state):
             state = yield from forward_step(study, state, curves=curves, fine=True)
         if not state.took_one:
             break
@@ -38,6 +38,12 @@ def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> St
             if len(state.effects) == len(taken.parent.effects):
                 break  # what is there already comes as far as the curve, and no name goes farther
     return state
+
+
+def _done(study: Study, state: SearchState) -> bool:
+    """Whether noise alone is left, or so little that no effect can be a finding and none could be seen to complete the model."""
+    hidden = little_is_left(study, state) and not floor_known(study.problem)
+    return hidden or only_noise(study.problem, state.current)
 
 
 def _fine_curves_may_help(study: Study, state: SearchState, curves: bool) -> bool:

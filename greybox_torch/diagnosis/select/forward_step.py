@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order, rank
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
@@ -14,6 +15,7 @@ from greybox_torch.diagnosis.select.choice import CURVE_MARGIN, LEAST_SIGNIFICAN
 from greybox_torch.diagnosis.select.compare import compare
 from greybox_torch.diagnosis.select.finer_curve import with_finer_curve
 from greybox_torch.diagnosis.select.offered import screen_scores
+from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
@@ -55,12 +57,22 @@ def take_best(
     compared = compare(study, state.current, screened, ranked)
     state = with_better_fit(state, compared.parent)
     in_turn = rank_by_likelihood(compared.ranked, study.substeps, device=study.device)
-    paying = (r for r in in_turn if r.gain > least_gain(r.fitted) and r.significance > LEAST_SIGNIFICANCE)
-    taken = chosen([r for r in paying if not r.unknown or substantial(state, r)])
+    paying = [r for r in in_turn if r.gain > least_gain(r.fitted) and r.significance > LEAST_SIGNIFICANCE]
+    paying = [r for r in paying if degenerate(r.leader.attachment, study.surroundings, r.fitted.values()) is None]
+    if little_is_left(study, state):
+        paying = [r for r in paying if completes(r.fitted)]
+    taken = chosen(
+        [r for r in paying if not r.unknown or substantial(state, r)], state.plain, study.settings.least_size
+    )
     step = SelectionStep(screened, state.current, tuple(in_turn), taken)
     state = replace(state.at(state.current if taken is None else taken.fitted), steps=(*state.steps, step))
     yield state
     return (yield from with_finer_curve(study, state)) if taken is not None and taken.unknown else state
+
+
+def little_is_left(study: Study, state: SearchState) -> bool:
+    """Whether what the effects so far leave of the mismatch is less than a finding is."""
+    return bool(state.effects) and remaining_share(state.plain, state.current) < study.settings.least_size
 
 
 def with_better_fit(state: SearchState, fitted: Hypothesis) -> SearchState:

@@ -41,9 +41,13 @@ def of_a_stopped_search(effects: Sequence[Effect]) -> tuple[Effect, ...]:
     )
 
 
-def for_all_that_is_left(probability: float, left: Hypothesis) -> float:
-    """The probability of a name, given what all findings together leave."""
-    return min(probability, CEILING_FAR_ABOVE_NOISE) if far_above_noise(left) else probability
+def for_all_that_is_left(probability: float, share: float, left: Hypothesis, least_size: float) -> float:
+    """The probability of a name, given what all findings together leave: much more than noise, and more than a finding is.
+
+    Args:
+        share: of the whole mismatch, that ``left`` leaves.
+    """
+    return min(probability, CEILING_FAR_ABOVE_NOISE) if far_above_noise(left) and share > least_size else probability
 
 
 def shared(chosen: RankedCandidate, ranked: Sequence[RankedCandidate]) -> tuple[float, tuple[Alternative, ...]]:

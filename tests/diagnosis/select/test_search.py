@@ -42,19 +42,19 @@ def test_the_simpler_law_is_meant_where_the_richer_one_is_not_better_by_more_tha
     energies = rng.uniform(0.9, 1.1, WINDOWS)
     scattered = energies * rng.uniform(0.9, 1.1, WINDOWS)
     simple, rich = ranked(CoulombFriction(), energies), ranked(StribeckFriction(), scattered * 0.99)
-    assert simplest([rich, simple]) is simple
+    assert simplest([rich, simple], simple.fitted, 0.0) is simple
     clearly = ranked(StribeckFriction(), 0.5 * scattered)
-    assert simplest([clearly, simple]) is clearly
-    assert simplest([simple, rich]) is simple
-    assert simplest([]) is None
+    assert simplest([clearly, simple], simple.fitted, 0.0) is clearly
+    assert simplest([simple, rich], simple.fitted, 0.0) is simple
+    assert simplest([], simple.fitted, 0.0) is None
 
 
 def test_a_curve_is_taken_only_where_it_goes_much_farther(ranked) -> None:
     named = ranked(CoulombFriction(), np.full(WINDOWS, 1e-3))
     little, much = (ranked(Unknown("speed"), np.full(WINDOWS, e)) for e in (0.95e-3, 1e-9))
-    assert chosen([little, named]) is named
-    assert chosen([much, named]) is much
-    assert chosen([much]) is much
+    assert chosen([little, named], named.fitted, 0.0) is named
+    assert chosen([much, named], named.fitted, 0.0) is much
+    assert chosen([much], named.fitted, 0.0) is much
 
 
 def test_a_curve_is_also_refitted_from_a_part_of_it(dead_zone_search) -> None:
