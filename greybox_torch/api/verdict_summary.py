@@ -37,10 +37,12 @@ def effect_table(verdict: Verdict) -> tuple[list[str], list[list[str | float]]]:
 
 
 def notes(verdict: Verdict) -> list[str]:
-    """Where each effect acts and what else it could be; where there is none, the evidence for that."""
+    """Where each effect acts, what else it could be, and what remains; where there is none, the evidence for that."""
     if not verdict.effects:
         return list(verdict.evidence)
-    return [line for effect in verdict.effects for line in _notes(effect)]
+    left = [] if verdict.left is None else [verdict.left.sentence]
+    small = [f"Refinement: {refinement.sentence}." for refinement in verdict.refinements]
+    return [*(line for effect in verdict.effects for line in _notes(effect)), *left, *small]
 
 
 def verdict_scores(verdict: Verdict) -> dict[str, tuple[Score, ...]]:

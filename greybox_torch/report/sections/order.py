@@ -15,6 +15,7 @@ from greybox_torch.report.sections.headline import Headline
 from greybox_torch.report.sections.limits import Limits
 from greybox_torch.report.sections.making import Making
 from greybox_torch.report.sections.ranking import Ranking
+from greybox_torch.report.sections.remains import Remains
 from greybox_torch.report.sections.scores import Scores
 from greybox_torch.report.sections.spectrum import Spectrum
 from greybox_torch.report.sections.traces import Traces
@@ -27,6 +28,7 @@ SECTIONS: dict[str, MakeSection] = {
     "effects": lambda verdict, about: Effects.of(verdict),
     "evidence": lambda verdict, about: Evidence.of(verdict),
     "scores": Scores.of,
+    "remains": lambda verdict, about: Remains.of(verdict),
     "limits": lambda verdict, about: Limits.of(verdict),
     "traces": lambda verdict, about: Traces.of(verdict),
     "spectrum": lambda verdict, about: Spectrum.of(verdict),

@@ -1,0 +1,36 @@
+"""What remains: how much of the mismatch the recommended model leaves, and the refinements, which are too small to be findings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greybox_torch.diagnosis.verdict import Verdict
+from greybox_torch.report import text
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """A row: what it would be called, where, and its share of the whole mismatch in %."""
+
+    mechanism: str
+    port: str
+    size: str
+
+
+@dataclass(frozen=True)
+class Remains:
+    """The sentence about what is left, and the rows of refinements."""
+
+    sentence: str
+    refinements: tuple[Refinement, ...]
+    template: str = "remains.html.j2"
+
+    @classmethod
+    def of(cls, verdict: Verdict) -> Remains | None:
+        if verdict.left is None:
+            return None
+        rows = (
+            Refinement(text.words(e.mechanism), e.port, f"{100 * e.size:.2g} %")
+            for e in sorted(verdict.refinements, key=lambda e: -e.size)
+        )
+        return cls(verdict.left.sentence, tuple(rows))
