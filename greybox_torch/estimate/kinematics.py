@@ -74,7 +74,10 @@ def hidden_starts(
         return states
     half = int(np.clip(steps // SHARE_OF_WINDOW, *HALF_WIDTHS))
     slopes = np.array([[_slope(records, k, s, half) for k in relations.outputs] for s in samples])
-    rest = slopes - states[:, relations.measured] @ relations.known.T - records.u[:, samples].T @ relations.inputs.T
+    own = relations.inputs[
+        :, : len(records.u)
+    ]  # effects may add inputs of their own, which no position's rate depends on
+    rest = slopes - states[:, relations.measured] @ relations.known.T - records.u[:, samples].T @ own.T
     found = (rest - relations.constant) @ relations.inverse.T
     filled = states.copy()
     usable = relations.determined & np.isfinite(found)

@@ -7,6 +7,10 @@ import pytest
 
 from greybox_torch import Body, GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.estimate.kinematics import hidden_starts, kinematics_of
+from greybox_torch.mechanisms.actuator import InputDelay
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.simulation.records import Records
 
 STEP = 0.01
@@ -94,3 +98,11 @@ def test_the_other_end_of_a_strut_follows_from_both_measurements() -> None:
 @pytest.mark.parametrize("model", [Scaled])
 def test_a_rate_that_depends_on_a_parameter_says_nothing(model) -> None:
     assert kinematics_of(model()) is None
+
+
+def test_inputs_that_an_effect_adds_are_no_part_of_it() -> None:
+    cart = Cart()
+    around = {"actuator": Surroundings({"input": Range(-1.0, 1.0, 0.5)}, {"input": "N"}, "N", STEP)}
+    delayed = AugmentedModel(cart, [attach(cart, "actuator", InputDelay())], around)
+    found = hidden_starts(delayed, records(0.3 * STEP * np.arange(100)), np.zeros((1, 2)), np.array([50]), 40)
+    np.testing.assert_allclose(found[:, 1], 0.3, rtol=1e-9)
