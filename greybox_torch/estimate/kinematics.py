@@ -27,6 +27,9 @@ EXACT = 1e-9
 HALF_WIDTHS = (2, 40)
 """Fewest and most samples on either side from which a slope is taken."""
 
+FEWEST = 4
+"""Known samples that a slope needs."""
+
 SHARE_OF_WINDOW = 8
 """Part of a window that one side of the slope's stretch is."""
 
@@ -73,7 +76,7 @@ def hidden_starts(
     if relations is None:
         return states
     half = int(np.clip(steps // SHARE_OF_WINDOW, *HALF_WIDTHS))
-    slopes = np.array([[_slope(records, k, s, half) for k in relations.outputs] for s in samples])
+    slopes = np.stack([_slopes(records, k, samples, half) for k in relations.outputs], axis=1)
     own = relations.inputs[
         :, : len(records.u)
     ]  # effects may add inputs of their own, which no position's rate depends on
@@ -135,17 +138,20 @@ def _at_random(model: GreyBoxModel) -> tuple[np.ndarray, np.ndarray | None]:
     return np.hstack([drawn.T, np.ones((count, 1))])[finite], rates[:, finite]
 
 
-def _slope(records: Records, output: int, sample: int, half: int) -> float:
-    """The slope of a measured signal at a sample, from a parabola through the samples around it; NaN where too few are known."""
-    experiment = int(records.experiments(np.array([sample]))[0])
-    span = records.span(experiment)
-    near = slice(max(span.start, sample - half), min(span.stop, sample + half + 1))
-    y = records.y[output, near]
-    known = ~np.isnan(y)
-    if known.sum() < 4:
-        return float("nan")
-    time = np.concatenate([[0.0], np.cumsum(records.dt[near][:-1])])
-    time = time - time[sample - near.start]
-    scale = max(float(np.abs(time).max()), 1e-300)
-    columns = np.vander(time[known] / scale, 3)
-    return float(np.linalg.lstsq(columns, y[known], rcond=None)[0][1] / scale)
+def _slopes(records: Records, output: int, samples: np.ndarray, half: int) -> np.ndarray:
+    """The slopes (W,) of a measured signal at ``samples`` (W,), from parabolas through those around; NaN where too few are known."""
+    experiment = records.experiments(samples)
+    near = samples[:, None] + np.arange(-half, half + 1)
+    inside = (near >= records.first[experiment][:, None]) & (near <= records.last[experiment][:, None])
+    near = np.clip(near, 0, records.y.shape[1] - 1)
+    y, clock = records.y[output, near], np.concatenate([[0.0], np.cumsum(records.dt[:-1])])
+    weight = (inside & ~np.isnan(y)).astype(float)
+    time = clock[near] - clock[samples][:, None]
+    scale = np.maximum(np.abs(time * weight).max(axis=1), 1e-300)
+    powers = (time / scale[:, None])[..., None] ** np.arange(3)
+    normal = np.einsum("wsi,wsj,ws->wij", powers, powers, weight)
+    right = np.einsum("wsi,ws->wi", powers, np.where(weight > 0, y, 0.0))
+    known = weight.sum(axis=1) >= FEWEST
+    normal[~known] = np.eye(3)
+    found = np.linalg.solve(normal, right[..., None])[:, 1, 0] / scale
+    return np.where(known, found, np.nan)
