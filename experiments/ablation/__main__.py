@@ -21,8 +21,7 @@ from experiments.ablation.page import write
 from experiments.ablation.results import Case, load_case
 from experiments.concealed.generate import main as generate
 from experiments.speed.settings import ALL_FREE_CARD, PUBLISHED_CARD, header
-from greybox_torch import TrainingSettings, load_dataset, load_model
-from greybox_torch.errors import NumericalError, UserError
+from greybox_torch import NumericalError, TrainingSettings, UserError, load_dataset, load_model
 
 CONCEALED = "speed_bump,backlash"
 SAME = ("data", "quick", "networks")

@@ -8,12 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from experiments.verdicts.running import diagnose
-from greybox_torch.checkpoint import Checkpoint, load_checkpoint
-from greybox_torch.data import DataSet
-from greybox_torch.errors import NumericalError, UserError
+from greybox_torch import Checkpoint, DataSet, GreyBoxModel, NumericalError, UserError, load_checkpoint
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.stored import restored_model
-from greybox_torch.model import GreyBoxModel
 
 
 @dataclass(frozen=True)

@@ -13,13 +13,12 @@ from experiments.ablation.measure import Fits, drift, fits_of, timed, values_of
 from experiments.ablation.networks import NetworkChoice, judged
 from experiments.ablation.results import Case, Entry
 from experiments.ablation.series import Scaling
-from greybox_torch.data import DataSet
+from greybox_torch import DataSet, GreyBoxModel, TrainingSettings, fit_physics
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.estimate.metrics import fit_percent, root_mean_square
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.model import GreyBoxModel
-from greybox_torch.train import Physics, Trained, TrainingSettings, fit_physics
+from greybox_torch.train import Physics, Trained
 
 MODELS = {
     "published": "physics with the card's values",

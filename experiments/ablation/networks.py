@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from greybox_torch.data import DataSet
-from greybox_torch.errors import UserError
-from greybox_torch.model import Coupling, GreyBoxModel
+from greybox_torch import Coupling, DataSet, GreyBoxModel, TrainingSettings, UserError, train_hybrid
 from greybox_torch.model.ports import driving_body
-from greybox_torch.train import Physics, Trained, TrainingSettings, train_hybrid
+from greybox_torch.train import Physics, Trained
 
 
 @dataclass(frozen=True)

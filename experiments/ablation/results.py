@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from greybox_torch.errors import UserError
+from greybox_torch import UserError
 from greybox_torch.files import json_text, write_text
 
 SCHEMA = "greybox-ablation/1"

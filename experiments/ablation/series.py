@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
-from greybox_torch.data import DataSet, Recording
-from greybox_torch.model import GreyBoxModel
+from greybox_torch import DataSet, GreyBoxModel, Recording
 
 SAMPLES = 2500
 """Samples of the longest estimation record that the network steps through: of more, inputs are averaged over a few."""

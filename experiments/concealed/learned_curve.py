@@ -17,9 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from experiments.concealed.catalogue.arm import CATALOGUE
-from greybox_torch.data import load_dataset
-from greybox_torch.systems import load_model
-from greybox_torch.train import Trained, TrainingSettings, train_hybrid
+from greybox_torch import TrainingSettings, load_dataset, load_model, train_hybrid
+from greybox_torch.train import Trained
 
 VISITED = 0.98
 """Share of the samples of the estimation experiment that lie within the speeds compared."""

@@ -13,8 +13,7 @@ from typing import Any
 
 from experiments.make_checkpoints.machines import CHECKOUT, Machine, Network
 from experiments.speed.settings import header
-from greybox_torch import load_checkpoint, load_dataset
-from greybox_torch.errors import UserError
+from greybox_torch import UserError, load_checkpoint, load_dataset
 from greybox_torch.files import write_text
 
 SNAPSHOT = "training.safetensors"

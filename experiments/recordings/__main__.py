@@ -20,7 +20,8 @@ from typing import Any
 from experiments.recordings.cases import CASES, HERE, Case
 from experiments.recordings.table import row, table
 from experiments.verdicts.running import ROOT, VERDICT, Outcome, diagnose_all, has_verdict
-from greybox_torch.errors import UserError, did_you_mean
+from greybox_torch import UserError
+from greybox_torch.errors import did_you_mean
 from greybox_torch.files import json_text, write_text
 
 

@@ -21,7 +21,7 @@ from experiments.verdicts.cards import chosen_cards, find_cards
 from experiments.verdicts.comparison import compare_all
 from experiments.verdicts.running import Outcome, diagnose_all, has_verdict
 from experiments.verdicts.scoring import score_all
-from greybox_torch.errors import UserError
+from greybox_torch import UserError
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -6,7 +6,8 @@ import tomllib
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from greybox_torch.errors import UserError, did_you_mean
+from greybox_torch import UserError
+from greybox_torch.errors import did_you_mean
 
 
 def find_cards(places: Sequence[Path]) -> dict[str, Path]:

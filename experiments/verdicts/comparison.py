@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from experiments.verdicts.running import VERDICT
-from greybox_torch.errors import UserError
+from greybox_torch import UserError
 
 OF_THE_RUN = ("seconds", "stages")
 """Fields that differ from run to run of the same tool."""

@@ -17,7 +17,8 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from experiments.concealed.against.table import compared, table
-from greybox_torch.errors import GreyboxError, UserError, did_you_mean
+from greybox_torch import UserError
+from greybox_torch.errors import GreyboxError, did_you_mean
 from greybox_torch.files import json_text, write_text
 
 METHOD_NAMES = ("retuned", "sindy", "network")

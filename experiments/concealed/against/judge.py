@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from experiments.concealed.against.plain import Plain
+from greybox_torch import GreyBoxModel
 from greybox_torch.estimate.problem import problem_for
-from greybox_torch.model import GreyBoxModel
 
 SCHEMA = "greybox-against/1"
 

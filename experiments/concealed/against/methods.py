@@ -10,7 +10,7 @@ import numpy as np
 
 from experiments.concealed.against.judge import SCHEMA, Answer, result
 from experiments.concealed.against.plain import Plain
-from greybox_torch.errors import NumericalError
+from greybox_torch import NumericalError
 
 
 def _retuned(plain: Plain) -> tuple[Answer, ...]:

@@ -13,8 +13,7 @@ from typing import Any
 
 import torch
 
-from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.model import Signals
+from greybox_torch import Signals, Surroundings
 
 ORDERS = range(2, 9)
 """Periods per turn of the periodic terms beside the first."""
