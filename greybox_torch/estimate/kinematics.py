@@ -16,6 +16,7 @@ import numpy as np
 import torch
 
 from greybox_torch.model import GreyBoxModel, Signals
+from greybox_torch.model.sensed_states import sensed_states
 from greybox_torch.simulation.records import Records
 
 TRIALS = 6
@@ -89,9 +90,9 @@ def hidden_starts(
 
 
 def _found(model: GreyBoxModel) -> Kinematics | None:
-    outputs = [o.name for o in model.outputs]
-    own = np.array([s.name in outputs or s.initial == "measured" for s in model.states])
-    shown = [(i, outputs.index(s.name)) for i, s in enumerate(model.states) if s.name in outputs]
+    outputs, sensed = [o.name for o in model.outputs], sensed_states(model)
+    own = np.array([s.name in sensed or s.initial == "measured" for s in model.states])
+    shown = [(i, outputs.index(sensed[s.name])) for i, s in enumerate(model.states) if s.name in sensed]
     hidden, measured = np.flatnonzero(~own), np.flatnonzero(own)
     if not shown or not len(hidden):
         return None

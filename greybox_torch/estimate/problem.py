@@ -12,6 +12,7 @@ import torch
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel, Parameter, Signals, State
+from greybox_torch.model.sensed_states import sensed_states
 from greybox_torch.simulation.records import Records, make_records
 
 
@@ -239,9 +240,9 @@ def measured_at(model: GreyBoxModel, state: State, records: Records, samples: np
 
 
 def _measuring_signal(model: GreyBoxModel, state: State, records: Records) -> np.ndarray:
-    names = [o.name for o in model.outputs]
-    if state.name in names:
-        return records.y[names.index(state.name)]
+    shown = sensed_states(model).get(state.name)
+    if shown is not None:
+        return records.y[[o.name for o in model.outputs].index(shown)]
     for signals, rows in ((model.outputs, records.y), (model.inputs, records.u)):
         same = [i for i, signal in enumerate(signals) if signal.unit == state.unit]
         if len(same) == 1:
@@ -249,8 +250,8 @@ def _measuring_signal(model: GreyBoxModel, state: State, records: Records) -> np
         if len(same) > 1:
             break
     raise UserError(
-        f"model {model.title}, state '{state.name}': initial is 'measured', but not exactly one output or input is in '{state.unit}'; "
-        "expected an output of the same name, or exactly one signal in the same unit"
+        f"model {model.title}, state '{state.name}': initial is 'measured', but no output shows it and not exactly one output or input is "
+        f"in '{state.unit}'; expected an output that is this state, or exactly one signal in the same unit"
     )
 
 
