@@ -1,7 +1,7 @@
 """Verdicts on a folder of cases: made, compared, scored.
 
     python -m experiments.verdicts run CASES [CASES …] --out VERDICTS [--workers 2] [--time-limit S] [--only NAME,…]
-    python -m experiments.verdicts compare BEFORE AFTER
+    python -m experiments.verdicts compare BEFORE AFTER [--only NAME,…]
     python -m experiments.verdicts score CASES VERDICTS
 
 `run` diagnoses every data set's card in or below the folders CASES (cards, and lists of lines NAME CARD, are taken too) into
@@ -17,7 +17,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from experiments.verdicts.cards import chosen_cards, find_cards
+from experiments.verdicts.cards import chosen_cards, find_cards, names_of
 from experiments.verdicts.comparison import compare_all
 from experiments.verdicts.running import Outcome, diagnose_all, has_verdict
 from experiments.verdicts.scoring import score_all
@@ -57,7 +57,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _compare(options: argparse.Namespace) -> int:
-    changes = compare_all(options.before, options.after)
+    changes = compare_all(options.before, options.after, names_of(options.only))
     for change in changes:
         print(f"{change.name}: {'equal' if not change.changes else ''}".rstrip())
         for what in change.changes:
@@ -94,6 +94,9 @@ def _parser() -> argparse.ArgumentParser:
     compare = commands.add_parser("compare", help="equal to the last digit, or what changed")
     compare.add_argument("before", type=Path, metavar="BEFORE")
     compare.add_argument("after", type=Path, metavar="AFTER")
+    compare.add_argument(
+        "--only", default="", help="names of cases, separated by commas; all that either folder has by default"
+    )
     compare.set_defaults(command=_compare)
     scores = commands.add_parser("score", help="verdicts against keys")
     scores.add_argument("cases", type=Path, metavar="CASES")

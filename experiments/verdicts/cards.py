@@ -34,11 +34,16 @@ def find_cards(places: Sequence[Path]) -> dict[str, Path]:
 
 def chosen_cards(cards: dict[str, Path], names: str) -> dict[str, Path]:
     """Those of a comma-separated list of names, all where it is empty. Raises UserError where a name is unknown."""
-    wanted = [name.strip() for name in names.split(",") if name.strip()]
+    wanted = names_of(names)
     for name in wanted:
         if name not in cards:
             raise UserError(f"--only: no case is called {name}{did_you_mean(name, cards)}")
     return {name: cards[name] for name in wanted} if wanted else cards
+
+
+def names_of(listed: str) -> list[str]:
+    """The names of a comma-separated list."""
+    return [name.strip() for name in listed.split(",") if name.strip()]
 
 
 def case_name(card: Path) -> str:

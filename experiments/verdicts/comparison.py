@@ -10,6 +10,7 @@ from typing import Any
 
 from experiments.verdicts.running import VERDICT
 from greybox_torch import UserError
+from greybox_torch.errors import did_you_mean
 
 OF_THE_RUN = ("seconds", "stages")
 """Fields that differ from run to run of the same tool."""
@@ -25,16 +26,20 @@ class Change:
     changes: tuple[str, ...]
 
 
-def compare_all(before: Path, after: Path) -> list[Change]:
-    """Every case that has a verdict in either folder, sorted by name. Raises UserError where a folder holds none."""
+def compare_all(before: Path, after: Path, only: Sequence[str] = ()) -> list[Change]:
+    """Every case that has a verdict in either folder, sorted by name, or those of `only`.
+
+    Raises UserError where a folder holds none, or neither one of that name.
+    """
     found = {folder: {file.parent.name: file for file in folder.glob(f"*/{VERDICT}")} for folder in (before, after)}
     for folder, files in found.items():
         if not files:
             raise UserError(f"{folder}: no verdict is in it; expected NAME/{VERDICT}, as `run` writes them")
-    return [
-        _change(name, found[before].get(name), found[after].get(name))
-        for name in sorted({*found[before], *found[after]})
-    ]
+    known = {*found[before], *found[after]}
+    for name in only:
+        if name not in known:
+            raise UserError(f"--only: neither folder has a verdict on {name}{did_you_mean(name, known)}")
+    return [_change(name, found[before].get(name), found[after].get(name)) for name in only or sorted(known)]
 
 
 def compared(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[str]:

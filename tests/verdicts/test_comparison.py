@@ -88,5 +88,8 @@ def test_the_command_ends_with_one_where_something_differs(
         "same: equal",
         "1 of 2 cases are equal",
     ]
+    assert main(["compare", *map(str, folders), "--only", "same"]) == 0
+    assert main(["compare", *map(str, folders), "--only", "sane"]) == 2
+    assert 'neither folder has a verdict on sane (did you mean "same"?)' in capsys.readouterr().err
     assert main(["compare", str(folders[0]), str(tmp_path / "nowhere")]) == 2
     assert "no verdict is in it" in capsys.readouterr().err
