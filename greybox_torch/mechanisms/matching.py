@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import torch
+from scipy.optimize import least_squares
 
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
@@ -16,6 +17,9 @@ LEAST_MATCH = 0.5
 """Share of the curve's mean square that a law must match to be worth a refit."""
 
 MOST_LAWS = 3
+
+LEAST_BESIDE_GAIN = 0.02
+"""Share of the curve's mean square that a change of gain must leave for a law without an amplitude to count at all."""
 
 
 @dataclass(frozen=True)
@@ -70,12 +74,12 @@ def kinematic_laws(around: Surroundings, signals: Collection[str]) -> list[tuple
 def _trials(
     law: Mechanism, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
 ) -> list[Match]:
-    """The law fitted in its linear parameters, at every shape that it is looked for with."""
+    """The law fitted in its linear parameters at every shape that it is looked for with, or in its shape where it has no amplitude."""
+    if any(SHARE in probe.directions for probe in law.probes(around)):
+        return _shape_trials(law, around, signals, force, weight)
     results, bounds = [], {p.name: p.bounds for p in law.parameters(around)}
     root, total = np.sqrt(weight), max(float((weight * force**2).sum()), 1e-300)
     for probe in law.probes(around):
-        if SHARE in probe.directions:
-            continue
         columns = np.stack([force_column(law, around, signals, probe, name) for name in probe.directions], axis=1)
         size = np.linalg.lstsq(columns * root[:, None], force * root, rcond=1e-10)[0]
         size = np.array([np.clip(v, *bounds[n]) for n, v in zip(probe.directions, size, strict=True)])
@@ -84,6 +88,43 @@ def _trials(
             Match(law, share, {**probe.values, **dict(zip(probe.directions, map(float, size), strict=True))})
         )
     return results
+
+
+def _shape_trials(
+    law: Mechanism, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
+) -> list[Match]:
+    """A law that no parameter is an amplitude of (a saturation, a dead band), fitted from every shape that it is looked for with.
+
+    While the curve was learned, the gain of the model may have moved to meet it half way: the curve is then α φ(u) − u, with φ(u) the
+    input that acts. So a part of the curve that is proportional to φ(u) is left open; where a gain is all that there is to explain,
+    the law counts for nothing.
+    """
+    free = [p for p in law.parameters(around) if not p.fixed]
+    low, high = np.array([p.bounds for p in free]).T
+    root = np.sqrt(weight)
+    signal = next(iter(signals.values())).numpy()
+    alone = float(np.sum((root * force) ** 2))
+    after_gain = float(np.sum(_without(root * signal, root * force) ** 2))
+
+    def left(z: np.ndarray) -> np.ndarray:
+        drawn = law_force(law, around, signals, dict(zip((p.name for p in free), map(float, z), strict=True)))
+        return _without(root * (signal + drawn), root * (force - drawn))
+
+    results = []
+    for probe in law.probes(around):
+        start = np.array([probe.values.get(p.name, p.value) for p in free])
+        inside = np.clip(start, low + 1e-9 * np.abs(high), high - 1e-9 * np.abs(high))
+        found = least_squares(left, inside, bounds=(low, high), x_scale=np.maximum(np.abs(inside), 1e-12), max_nfev=40)
+        explained = after_gain - float(np.sum(found.fun**2))
+        share = explained / after_gain if after_gain > LEAST_BESIDE_GAIN * alone else 0.0
+        results.append(Match(law, share, dict(zip((p.name for p in free), map(float, found.x), strict=True))))
+    return results
+
+
+def _without(direction: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """A vector less its part along another."""
+    size = float(direction @ direction)
+    return vector if size == 0.0 else vector - direction * float(direction @ vector) / size
 
 
 def force_column(

@@ -78,3 +78,32 @@ def test_kinematic_laws() -> None:
     found = {law.name: sizes for law, sizes in kinematic_laws(AROUND, {"deflection", "rate"})}
     assert list(found) == ["backlash"]
     assert len(found["backlash"]) == 3 and all(0 < values["half_gap"] < 5.0 for values in found["backlash"])
+
+
+INPUT = torch.linspace(-5, 5, 201, dtype=torch.float64)
+AT_DRIVE = Surroundings({"input": Range(-5.0, 5.0, 2.5)}, {"input": "V"}, "V", 0.01)
+
+
+@pytest.mark.parametrize("gain", [1.0, 1.3])
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [("torque_saturation", {"limit": 2.2}), ("actuator_deadzone", {"half_width": 0.7})],
+)
+def test_flat_ends_are_saturation_and_a_flat_middle_is_a_dead_band(
+    name: str, values: dict[str, float], gain: float
+) -> None:
+    """Also where the gain of the model has taken a part of it upon itself, and with the ripple of a learned curve."""
+    u = INPUT.numpy()
+    acting = u + law_force(LIBRARY[name](), AT_DRIVE, {"input": INPUT}, values)
+    curve = gain * acting - u + 0.02 * np.sin(7 * u)
+    best, *others = matching_laws("actuator", AT_DRIVE, {"input": INPUT}, curve, EVENLY)
+    assert best.law.name == name and best.share > 0.95
+    assert best.values == pytest.approx(values, rel=0.2)
+    assert best in worth_a_refit([best, *others])
+
+
+def test_a_gain_is_neither_saturation_nor_dead_band() -> None:
+    curve = -0.2 * INPUT.numpy() + 0.002 * np.sin(3 * INPUT.numpy())
+    found = {m.law.name: m.share for m in matching_laws("actuator", AT_DRIVE, {"input": INPUT}, curve, EVENLY)}
+    assert max(found, key=lambda name: found[name]) == "input_gain"
+    assert found["torque_saturation"] == found["actuator_deadzone"] == 0.0
