@@ -20,7 +20,7 @@ from greybox_torch.data import load_dataset
 from greybox_torch.estimate.fit import fit
 from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.problem import Problem, make_problem
-from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.systems import load_model
 
 ALLOWED = 0.2
@@ -31,18 +31,18 @@ def main() -> int:
     arguments = _parsed()
     data = load_dataset(arguments.dataset)
     problem = make_problem(data, load_model(data.model or "robot_arm"), data.estimation())
-    stepper = make_stepper(problem.model, problem.free_names)
+    simulator = Simulator.of(problem.model, problem.free_names)
     began = time.perf_counter()
-    found = fit(problem, stepper=stepper)
+    found = fit(problem, simulator=simulator)
     optimum, sigma = found.problem, np.sqrt(found.mse * found.samples / (found.samples - _unknowns(found.problem)))
     print(f"optimum: mean squared error {found.mse:.5f}, noise of the repeats {sigma:.4f}, {found.samples} samples")
 
-    exact = np.concatenate(simulate(optimum, stepper, substeps=found.substeps)).T
+    exact = np.concatenate(simulate(optimum, simulator.with_substeps(found.substeps))).T
     rng = np.random.default_rng(arguments.seed)
     estimates, reported = [], []
     for repeat in range(arguments.repeats):
         noisy = np.where(np.isnan(problem.records.y), np.nan, exact + rng.normal(0.0, sigma, exact.shape))
-        again = fit(replace(optimum, records=replace(optimum.records, y=noisy)), stepper=stepper)
+        again = fit(replace(optimum, records=replace(optimum.records, y=noisy)), simulator=simulator)
         assert again.uncertainty is not None
         estimates.append(_vector(again.problem))
         reported.append(again.uncertainty.deviations())

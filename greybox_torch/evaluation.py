@@ -16,11 +16,11 @@ from greybox_torch.estimate.comparison import Comparison, Score, compare
 from greybox_torch.estimate.overflow import avoidance, first_overflow, remedies
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.residuals import Residuals, residuals_of
+from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.rates import rates_at
 from greybox_torch.restored import load_beside
-from greybox_torch.simulation.stepper import make_stepper
-from greybox_torch.simulation.substeps import choose_substeps
+from greybox_torch.simulation.simulator import SimulationOptions
 from greybox_torch.systems import load_model, model_reference
 
 
@@ -108,15 +108,14 @@ def evaluate(
 def evaluated(data: DataSet, model: GreyBoxModel, *, device: str = "cpu", precision: str = "double") -> Evaluation:
     """Simulate all experiments of ``data`` with the values that ``model`` holds, the card's where it holds none of its own."""
     problem = make_problem(data, model, data.recordings)
-    stepper = make_stepper(model, (), device=device, precision=precision)
-    substeps = choose_substeps(problem.driving_records, stepper, problem.values, problem.initial) or 1
-    comparison = compare(problem, data.recordings, stepper, substeps=substeps)
+    simulator = simulator_for(problem, SimulationOptions(device, precision), tangents=False)
+    comparison = compare(problem, data.recordings, simulator)
     found, overflow = first_overflow(problem, comparison.simulated), None
     if found is not None:
         time = next(r.time[found.sample] for r in data.recordings if r.name == found.experiment)
         overflow = (
             f"the simulation of '{found.experiment}' overflows at {time:.6g} s; "
-            f"{avoidance(remedies(problem, stepper, substeps))}; "
+            f"{avoidance(remedies(problem, simulator))}; "
             "try parameters and start states nearer to the truth, tighter bounds, or a smaller sample time"
         )
-    return Evaluation(data, model_reference(model), problem, comparison, substeps, overflow)
+    return Evaluation(data, model_reference(model), problem, comparison, simulator.substeps, overflow)

@@ -13,7 +13,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Score, compare
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 
 Found = TypeVar("Found")
 
@@ -41,7 +41,9 @@ def fits_of(data: DataSet, base: GreyBoxModel, model: GreyBoxModel, values: Mapp
     restated = start if model is base else problem_for(start, model, {})
     problem = all_starts_free(data, restated)
     problem = problem.with_values(np.array([values[name] for name in problem.names]))
-    return Fits.of(compare(problem, data.recordings, make_stepper(model, ()), substeps=substeps).scores)
+    return Fits.of(
+        compare(problem, data.recordings, Simulator.of(model, (), SimulationOptions(substeps=substeps))).scores
+    )
 
 
 def values_of(problem: Problem) -> dict[str, float]:

@@ -14,7 +14,7 @@ from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Stepper, make_stepper
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.systems import RobotArm
 from greybox_torch.train.gradients import Batch, SequenceGradient
 from greybox_torch.train.gradients.adjoint import AdjointGradient
@@ -50,13 +50,13 @@ def make_way(name: str, problem: Problem) -> SequenceGradient:
     return TangentsGradient(problem, compiled(problem))
 
 
-def compiled(problem: Problem) -> Stepper:
-    return make_stepper(problem.model, problem.free_names)
+def compiled(problem: Problem) -> Simulator:
+    return Simulator.of(problem.model, problem.free_names)
 
 
 def true_slope(problem: Problem, batch: Batch) -> np.ndarray:
     """The derivative (d,) of the loss of the differential equation's solution: steps sixteen times as fine."""
-    return TangentsGradient(problem, compiled(problem), substeps=16)(problem.values, batch).slope
+    return TangentsGradient(problem, compiled(problem).with_substeps(16))(problem.values, batch).slope
 
 
 def _plain(model: GreyBoxModel, records: Records, values: np.ndarray) -> Problem:

@@ -14,7 +14,9 @@ import torch
 
 from experiments.speed.records import Published
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulation.stepper import make_stepper, whole_records
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import whole_records
 
 LEARNING_RATES = (0.003, 0.01, 0.03)
 """In units of each unknown's start value. The best of them counts."""
@@ -36,13 +38,14 @@ class Descent:
 
 def our_gradient(problem: Problem, task: Published) -> Gradient:
     """The gradient of our engine, one pass over the whole record."""
-    stepper, windows = make_stepper(problem.model, problem.free_names), whole_records(problem.records)
+    simulator, windows = Simulator.of(problem.model, problem.free_names), whole_records(problem.records)
     directions = np.eye(len(task.x0))[None, list(task.free_states)]
 
     def gradient(z: np.ndarray) -> tuple[float, np.ndarray]:
         p, x0 = task.at(z)
-        run = stepper.run(
-            problem.records, windows, p, x0[None], tangents=True, start_directions=directions, weights=problem.weights
+        run = simulator.run(
+            problem.records,
+            Pass(windows, p, x0[None], tangents=True, start_directions=directions, weights=problem.weights),
         )
         assert run.normal is not None
         matrix = run.normal[0] / len(task.y)

@@ -11,8 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from experiments.speed.records import SAMPLES, arm_values, simulated_records
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Windows, make_stepper, whole_records
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import Windows, whole_records
 from greybox_torch.systems import RobotArm
 
 WIDTH = 16
@@ -47,8 +49,9 @@ class NetworkTask:
 def network_task(windows: int = 64, length: int = 200, *, seed: int = 3) -> NetworkTask:
     """Windows spread evenly over a simulated record, beginning at its true states, and small random weights."""
     records = simulated_records(1, max(SAMPLES, windows * length))
-    whole = make_stepper(RobotArm(), ()).run(
-        records, whole_records(records), arm_values(), np.array([[0.0, 0.0, -19.0, -22.3, -23.3]]), keep_states=True
+    whole = Simulator.of(RobotArm(), ()).run(
+        records,
+        Pass(whole_records(records), arm_values(), np.array([[0.0, 0.0, -19.0, -22.3, -23.3]]), keep_states=True),
     )
     assert whole.states is not None
     start = np.linspace(0, records.u.shape[1] - length, windows).astype(np.int64)

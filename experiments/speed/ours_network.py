@@ -10,7 +10,8 @@ import torch
 
 from experiments.speed.network import SPEED_SCALE, WIDTH, NetworkTask
 from greybox_torch.model import Parameter, Signals
-from greybox_torch.simulation.stepper import Stepper, make_stepper
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.systems import RobotArm
 
 WEIGHTS = (*(f"{kind}_{k}" for kind in ("hidden", "bias", "output") for k in range(WIDTH)), "output_bias")
@@ -31,15 +32,15 @@ class ArmWithNetwork(RobotArm):
 
 
 @lru_cache(maxsize=1)
-def _stepper() -> Stepper:
-    return make_stepper(ArmWithNetwork(), WEIGHTS)
+def _simulator() -> Simulator:
+    return Simulator.of(ArmWithNetwork(), WEIGHTS)
 
 
 def ours_network_gradient(task: NetworkTask) -> tuple[float, np.ndarray]:
     """Loss and gradient (49,) of :class:`NetworkTask`. What is compiled once is kept between calls."""
     weights = np.concatenate([task.hidden, task.hidden_bias, task.output, task.output_bias])
-    run = _stepper().run(
-        task.records, task.windows, np.concatenate([task.p, weights]), task.x0, tangents=True, weights=np.ones(1)
+    run = _simulator().run(
+        task.records, Pass(task.windows, np.concatenate([task.p, weights]), task.x0, tangents=True, weights=np.ones(1))
     )
     assert run.normal is not None
     total, count = run.normal.sum(axis=0), len(task.x0) * task.windows.steps

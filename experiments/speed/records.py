@@ -9,8 +9,10 @@ import numpy as np
 
 from greybox_torch.data import load_dataset
 from greybox_torch.estimate.problem import Problem, make_problem
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import make_stepper, whole_records
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import whole_records
 from greybox_torch.systems import RobotArm, load_model
 
 SAMPLE_TIME = 0.0005
@@ -70,7 +72,7 @@ def simulated_records(experiments: int, samples: int, *, noise: float = 1.0, see
         names=tuple(f"record {e + 1}" for e in range(experiments)),
         hold="zoh",
     )
-    run = make_stepper(RobotArm(), ()).run(silent, whole_records(silent), arm_values(), starts(experiments))
+    run = Simulator.of(RobotArm(), ()).run(silent, Pass(whole_records(silent), arm_values(), starts(experiments)))
     y = run.y[..., 0].reshape(1, -1) + np.random.default_rng(seed + 1000).normal(0.0, noise, u.shape)
     return replace(silent, y=y)
 

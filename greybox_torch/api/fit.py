@@ -27,9 +27,9 @@ from greybox_torch.estimate.levenberg_marquardt import DEFAULT
 from greybox_torch.estimate.precision import settings_for
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.profile import SETTINGS, check_profiled, profile
+from greybox_torch.estimate.simulators import fine_enough, simulator_for
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulation.stepper import Stepper, make_stepper
-from greybox_torch.simulation.substeps import choose_substeps
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 
 MOST_STARTS = 4096
 
@@ -71,45 +71,42 @@ def fit(
     problem = make_problem(data, given, data.estimation())
     names = check_names("profile", profiles)
     check_profiled(names, problem.free_names, problem.names, given.title)
-    stepper = make_stepper(given, problem.free_names, device=device, precision=precision)
-    weaknesses = _at_start(problem, stepper, precision)
+    simulator = simulator_for(problem, SimulationOptions(device, precision))
+    weaknesses = _at_start(problem, simulator)
     for weakness in weaknesses:
         progress(f"At the start values: {weakness.sentence}.")
     found = estimate(
         problem,
-        stepper=stepper,
+        simulator=simulator,
         settings=settings_for(precision, DEFAULT),
-        device=device,
-        precision=precision,
         progress=lambda stage, k, error: progress(f"{stage}, iteration {k}: mean squared error {error:.6g}"),
         starts=starts,
         seed=check_seed(seed),
     )
     drawn = {}
     for name in names:
-        drawn[name] = profile(found, stepper, name, settings=settings_for(precision, SETTINGS))
+        drawn[name] = profile(found, simulator, name, settings=settings_for(precision, SETTINGS))
         progress(f"profile of {name}: {len(drawn[name].values)} points")
-    comparisons = _compared(data, given, found, stepper)
+    comparisons = _compared(data, given, found, simulator)
     return FitResult(data, found, comparisons, drawn, weaknesses, precision, time.perf_counter() - began)
 
 
-def _at_start(problem: Problem, stepper: Stepper, precision: str) -> tuple[Unidentifiable, ...]:
+def _at_start(problem: Problem, simulator: Simulator) -> tuple[Unidentifiable, ...]:
     """What the data do not determine, as far as the start values tell."""
-    substeps = choose_substeps(problem.driving_records, stepper, problem.values, problem.initial) or 1
-    start = FreeRun(problem, stepper, substeps)
-    return identifiability(start, start.start, precision=precision)
+    start = FreeRun(problem, simulator)
+    return identifiability(start, start.start)
 
 
-def _compared(data: DataSet, model: GreyBoxModel, found: Estimation, stepper: Stepper) -> dict[str, Comparison]:
+def _compared(data: DataSet, model: GreyBoxModel, found: Estimation, simulator: Simulator) -> dict[str, Comparison]:
     """Start and refitted values on all experiments.
 
     Start states come from the first tenth of each, but for the refit on the experiments it was estimated on: there they are its own.
     """
     recordings = data.recordings
     start = make_problem(data, model, recordings)
-    substeps = choose_substeps(start.driving_records, stepper, start.values, start.initial) or 1
-    before = compare(start, recordings, stepper, substeps=substeps)
+    before = compare(start, recordings, fine_enough(simulator, start))
     refit = start.with_values(found.problem.values)
-    everywhere = compare(refit, recordings, stepper, substeps=found.substeps)
-    own = compare(found.problem, data.estimation(), stepper, substeps=found.substeps, estimate_starts=False)
+    fitted_with = simulator.with_substeps(found.substeps)
+    everywhere = compare(refit, recordings, fitted_with)
+    own = compare(found.problem, data.estimation(), fitted_with, estimate_starts=False)
     return {"start": before, "refit": everywhere.with_experiments_of(own)}

@@ -24,11 +24,11 @@ from greybox_torch.commands.train_summary import print_summary, written_files
 from greybox_torch.estimate.comparison import Score, compare
 from greybox_torch.estimate.fit import FitResult
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
+from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.files import json_text, write_all
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.stored import attachment_json
-from greybox_torch.simulation.stepper import make_stepper
-from greybox_torch.simulation.substeps import choose_substeps
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 from greybox_torch.systems import model_reference
 from greybox_torch.train import (
     Explanation,
@@ -93,7 +93,7 @@ def run(dataset: Path, options: Options, choices: Choices) -> None:
             progress=progress,
         )
         found = train(settings=settings, snapshot=task.folder / SNAPSHOT, resume=choices.resume)
-        explained = _explained(found, choices, train, lambda what: tell(what, 1.0, ""), task.device)
+        explained = _explained(found, choices, train, lambda what: tell(what, 1.0, ""))
         tell("scoring", 1.0, "")
         scores = _scores(task, found, explained)
     result = result_json(task, found, scores, explained)
@@ -112,7 +112,7 @@ def run(dataset: Path, options: Options, choices: Choices) -> None:
 
 
 def _explained(
-    found: Trained, choices: Choices, train: Callable[..., Trained], told: Callable[[str], None], device: str
+    found: Trained, choices: Choices, train: Callable[..., Trained], told: Callable[[str], None]
 ) -> Explanation | None:
     """What the network stands for; the trainings of an ensemble share the physics."""
     if not choices.explain:
@@ -121,7 +121,7 @@ def _explained(
     for seed in range(found.settings.seed + 1, found.settings.seed + choices.ensemble):
         told(f"training with seed {seed}")
         others.append(train(settings=replace(found.settings, seed=seed), physics=found.shared_physics))
-    return explain(found, others, device=device, told=told)
+    return explain(found, others, told=told)
 
 
 @contextmanager
@@ -142,14 +142,13 @@ def _scores(task: Task, found: Trained, explained: Explanation | None) -> Scores
     tenth of each.
     """
     start = make_problem(task.data, task.model, task.data.recordings)
-    plain = make_stepper(task.model, (), device=task.device)
-    substeps = choose_substeps(start.driving_records, plain, start.values, start.initial) or 1
+    plain = simulator_for(start, SimulationOptions(task.device), tangents=False)
     free = all_starts_free(task.data, start)
     refit = free.with_values(found.physics.problem.values)
     recordings = task.data.recordings
     result = {
-        "start": compare(start, recordings, plain, substeps=substeps).scores,
-        "refit": compare(refit, recordings, plain, substeps=found.physics.substeps).scores,
+        "start": compare(start, recordings, plain).scores,
+        "refit": compare(refit, recordings, plain.with_substeps(found.physics.substeps)).scores,
         "augmented": _scores_of(task, start, found.result),
     }
     named = None if explained is None else explained.result
@@ -159,8 +158,8 @@ def _scores(task: Task, found: Trained, explained: Explanation | None) -> Scores
 def _scores_of(task: Task, start: Problem, found: FitResult) -> tuple[Score, ...]:
     model = found.problem.model
     problem = all_starts_free(task.data, problem_for(start, model, {})).with_values(found.problem.values)
-    stepper = make_stepper(model, (), device=task.device)
-    return compare(problem, task.data.recordings, stepper, substeps=found.substeps).scores
+    simulator = Simulator.of(model, (), SimulationOptions(task.device, substeps=found.substeps))
+    return compare(problem, task.data.recordings, simulator).scores
 
 
 def _named_files(

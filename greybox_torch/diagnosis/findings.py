@@ -18,7 +18,6 @@ from greybox_torch.diagnosis.confirm.promotion import promote_validation, serves
 from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains, take_back_weakest
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.final import Final, finish, from_longest_windows
-from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.plain_model import fit_plain_model, weighted_by_noise
 from greybox_torch.diagnosis.select.search import search
@@ -27,9 +26,8 @@ from greybox_torch.diagnosis.stopping import TimeIsUp, best_so_far, or_else, res
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
+from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulation.stepper import make_stepper
-from greybox_torch.simulation.substeps import choose_substeps
 
 MakeStudy = partial[Study]
 
@@ -56,15 +54,16 @@ def find(dataset: DataSet, model: GreyBoxModel, make_study: MakeStudy, clock: St
     """Search on the estimation experiments, and let the others confirm what was found or take it back.
 
     Args:
-        make_study: :class:`Study` with everything but the problem and how it is simulated.
+        make_study: :class:`Study` with everything but the problem and how many sub-steps it needs.
     """
     problem = all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
-    study = make_study(problem, _substeps(problem, make_study))
+    study = make_study(problem)
+    study = replace(study, options=simulator_for(problem, study.options).options)
     clock.lap("preparing")
     study, state, complete = _searched(study)
     clock.lap("searching: screen, refit, select")
     unlimited = study.without_limit()
-    others = HeldOut(dataset, study.problem, study.substeps) if dataset.validation() else None
+    others = HeldOut(dataset, study.problem, study.options.substeps) if dataset.validation() else None
     state, gains, confirmed = _confirmed(unlimited, state, others)
     clock.lap("confirming on held-out experiments")
     (plain, augmented), fitted = _finished(unlimited, state)
@@ -91,11 +90,6 @@ def find_with_more(first: Findings, model: GreyBoxModel, make_study: MakeStudy, 
     except (TimeIsUp, KeyboardInterrupt):
         return replace(best, complete=False)
     return replace(best, complete=best.complete and last.complete)
-
-
-def _substeps(problem: Problem, make_study: MakeStudy) -> int:
-    stepper = make_stepper(problem.model, problem.free_names, device=make_study.keywords["device"])
-    return choose_substeps(problem.driving_records, stepper, problem.values, problem.initial) or 1
 
 
 def _searched(study: Study) -> tuple[Study, SearchState, bool]:
@@ -128,18 +122,14 @@ def _finished(study: Study, state: SearchState) -> tuple[tuple[Final, Final], bo
 
     def fits() -> tuple[Final, Final]:
         study.working_on("fitting whole records")
-        plain = _finish(study, state.plain)
-        return plain, _finish(study, state.current) if state.effects else plain
+        plain = finish(state.plain)
+        return plain, finish(state.current) if state.effects else plain
 
     def as_they_are() -> tuple[Final, Final]:
         plain = from_longest_windows(state.plain)
         return plain, from_longest_windows(state.current) if state.effects else plain
 
     return or_else(fits, as_they_are)
-
-
-def _finish(study: Study, hypothesis: Hypothesis) -> Final:
-    return finish(hypothesis, study.substeps, device=study.device)
 
 
 def _judged(
@@ -154,7 +144,7 @@ def _judged(
     """Effects taken back, the weakest first, until those left hold on the validation experiments."""
     study.working_on("judging on the validation experiments")
     judge = partial(Judgement, dataset, problem)
-    judged = judge(state, plain, augmented, study.substeps, study.device)
+    judged = judge(state, plain, augmented, study.options)
     while state.effects and ((empty := _empty(study, state, augmented)) or not judged.holds):
         if not state.compared_without:
             state = result_of(drop_superfluous(study, state))
@@ -163,8 +153,8 @@ def _judged(
             gains = {n: g for n, g in gains.items() if n in state.prefixes}
         else:
             state, gains = take_back_weakest(study, state, gains)
-        augmented = _finish(study, state.current) if state.effects else plain
-        judged = judge(state, plain, augmented, study.substeps, study.device)
+        augmented = finish(state.current) if state.effects else plain
+        judged = judge(state, plain, augmented, study.options)
     return state, gains, judged
 
 

@@ -31,6 +31,7 @@ from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.stored import attachment_json
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulation.simulator import SimulationOptions
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ def diagnose(
         )
     make_study = partial(
         Study,
-        device=device,
+        options=SimulationOptions(device),
         settings=settings,
         budget=budget,
         report=progress,

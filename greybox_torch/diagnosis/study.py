@@ -9,6 +9,7 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import Deadline
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.simulation.simulator import SimulationOptions
 
 
 def silent(text: str) -> None:
@@ -25,8 +26,7 @@ class Study:
     """
 
     problem: Problem
-    substeps: int
-    device: str = "cpu"
+    options: SimulationOptions
     surroundings: Mapping[str, Surroundings] = field(default_factory=dict)
     shifts: Mapping[str, str] = field(default_factory=dict)
     settings: DiagnosisSettings = field(default_factory=DiagnosisSettings)

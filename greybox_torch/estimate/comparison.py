@@ -12,7 +12,7 @@ from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.metrics import fit_percent, root_mean_square
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.simulator import Simulator
 
 
 @dataclass(frozen=True)
@@ -56,9 +56,8 @@ class Comparison:
 def compare(
     problem: Problem,
     recordings: Sequence[Recording],
-    stepper: Stepper,
+    simulator: Simulator,
     *,
-    substeps: int = 1,
     estimate_starts: bool = True,
 ) -> Comparison:
     """Free-run simulation of every experiment of ``problem`` against its measurement.
@@ -68,8 +67,8 @@ def compare(
         estimate_starts: estimate the free start states on the first tenth of each experiment before.
     """
     if estimate_starts:
-        problem = estimate_initial(problem, stepper, substeps=substeps)
-    simulated = simulate(problem, stepper, substeps=substeps)
+        problem = estimate_initial(problem, simulator)
+    simulated = simulate(problem, simulator)
     scores = []
     for e, recording in enumerate(recordings):
         for k, output in enumerate(problem.model.outputs):

@@ -13,10 +13,10 @@ from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimi
 from greybox_torch.estimate.logarithmic import minimise_on_logarithms
 from greybox_torch.estimate.metrics import fit_percent
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.simulators import fine_enough
 from greybox_torch.estimate.termination import Termination
 from greybox_torch.estimate.window_fit import fit_windows
-from greybox_torch.simulation.stepper import Stepper
-from greybox_torch.simulation.substeps import choose_substeps
+from greybox_torch.simulation.simulator import Simulator
 
 TOLERABLE = 30.0
 """Fit in % from which a simulation is a place to begin a descent on whole records."""
@@ -61,13 +61,14 @@ class Descent:
 class Way:
     """What every descent needs: how to simulate, when to stop, whom to tell."""
 
-    stepper: Stepper
+    simulator: Simulator
     settings: Settings
     progress: Progress | None = None
     seed: int = 0
 
-    def substeps(self, problem: Problem) -> int:
-        return choose_substeps(problem.driving_records, self.stepper, problem.values, problem.initial) or 1
+    def fine_enough(self, problem: Problem) -> Simulator:
+        """The simulator with as many sub-steps as ``problem`` needs at its values."""
+        return fine_enough(self.simulator, problem)
 
 
 def descend(problem: Problem, way: Way, starts: int | None) -> Descent | None:
@@ -76,27 +77,23 @@ def descend(problem: Problem, way: Way, starts: int | None) -> Descent | None:
     Args:
         starts: how many start values to descend from, those given among them; by default one, or many where those turn out poor.
     """
-    substeps = way.substeps(problem)
-    fits = _fits(problem, way.stepper, substeps)
+    simulator = way.fine_enough(problem)
+    fits = _fits(problem, simulator)
     tolerable = fits.min() > TOLERABLE
-    begin, before = (problem, 0) if tolerable else _by_windows(problem, way, substeps)
+    begin, before = (problem, 0) if tolerable else _by_windows(problem, way, simulator)
     found = _whole_records(begin, way, before)
     if starts is None:
-        starts = (
-            1 if found is not None and _trusted(fits, found, way.stepper) else _default_starts(problem, way.stepper)
-        )
+        starts = 1 if found is not None and _trusted(fits, found) else _default_starts(problem, simulator)
     if starts > 1 and problem.free.any():
-        elsewhere = look_around(
-            problem, way.stepper, starts=starts, seed=way.seed, substeps=substeps, progress=way.progress
-        )
+        elsewhere = look_around(problem, simulator, starts=starts, seed=way.seed, progress=way.progress)
         other = None if elsewhere is None else _whole_records(elsewhere, way, 0, (minimise_on_logarithms, minimise))
         found = _better(found, other)
     return found
 
 
-def _fits(problem: Problem, stepper: Stepper, substeps: int) -> np.ndarray:
+def _fits(problem: Problem, simulator: Simulator) -> np.ndarray:
     """Fit in % of every output of every experiment in free run."""
-    runs = simulate(problem, stepper, substeps=substeps)
+    runs = simulate(problem, simulator)
     return np.array(
         [
             fit_percent(problem.records.y[k, problem.records.span(e)], run[:, k])
@@ -106,23 +103,23 @@ def _fits(problem: Problem, stepper: Stepper, substeps: int) -> np.ndarray:
     )
 
 
-def _trusted(before: np.ndarray, found: Descent, stepper: Stepper) -> bool:
+def _trusted(before: np.ndarray, found: Descent) -> bool:
     """Whether the start values lay so near the optimum that it is the one meant, or it is so good that there is no better one."""
-    after = _fits(found.run.at(found.optimum.point), stepper, found.run.substeps)
+    after = _fits(found.run.at(found.optimum.point), found.run.simulator)
     near = (before >= TRUSTED) & (100.0 - before <= POOR * (100.0 - after))
     return bool((near | (after > CLOSE)).all())
 
 
-def _default_starts(problem: Problem, stepper: Stepper) -> int:
+def _default_starts(problem: Problem, simulator: Simulator) -> int:
     """Without a compiler a pass takes seconds, and only the user can say that it is worth it."""
-    return min(MOST_STARTS, STARTS_A_PARAMETER * int(problem.free.sum())) if stepper.compiled else 1
+    return min(MOST_STARTS, STARTS_A_PARAMETER * int(problem.free.sum())) if simulator.compiled else 1
 
 
-def _by_windows(problem: Problem, way: Way, substeps: int) -> tuple[Problem, int]:
+def _by_windows(problem: Problem, way: Way, simulator: Simulator) -> tuple[Problem, int]:
     """Better parameters by way of windows with free start states; each length is kept only if the one before simulates."""
     evaluations, longest = 0, int(problem.records.lengths.max())
     for share in WINDOW_SHARES:
-        found = fit_windows(problem, way.stepper, max(20, round(share * longest)), substeps=substeps)
+        found = fit_windows(problem, simulator, max(20, round(share * longest)))
         if found is None:
             continue
         evaluations += found.evaluations
@@ -139,15 +136,15 @@ def _whole_records(
 
     Where the parameters have come to need finer steps than they began with, the optimum is found anew with those.
     """
-    found = _optimum(FreeRun(problem, way.stepper, way.substeps(problem)), way, before, methods)
+    found = _optimum(FreeRun(problem, way.fine_enough(problem)), way, before, methods)
     for _ in range(FINER):
         if found is None:
             return None
         problem = found.run.at(found.optimum.point)
-        needed = way.substeps(problem)
-        if needed <= found.run.substeps:
+        finer = way.fine_enough(problem)
+        if finer.substeps <= found.run.simulator.substeps:
             return found
-        found = _optimum(FreeRun(problem, way.stepper, needed), way, found.evaluations, methods[-1:])
+        found = _optimum(FreeRun(problem, finer), way, found.evaluations, methods[-1:])
     return found
 
 

@@ -16,7 +16,7 @@ from greybox_torch.estimate.overflow import overflow_error
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.termination import Outcome, Termination
 from greybox_torch.estimate.uncertainty import Uncertainty, uncertainty
-from greybox_torch.simulation.stepper import Stepper, make_stepper
+from greybox_torch.simulation.simulator import Simulator
 
 
 @dataclass(frozen=True)
@@ -66,10 +66,8 @@ class FitResult:
 def fit(
     problem: Problem,
     *,
-    stepper: Stepper | None = None,
+    simulator: Simulator | None = None,
     settings: Settings = DEFAULT,
-    device: str = "cpu",
-    precision: str = "double",
     progress: Progress | None = None,
     with_uncertainty: bool = True,
     starts: int | None = None,
@@ -82,31 +80,33 @@ def fit(
     start values, they were poor, and another valley may be deeper: many more start values are drawn around them and tried.
 
     Args:
+        simulator: with tangents for the problem's free parameters; by default one on the CPU in double precision. How many sub-steps are
+            made is chosen anew.
         starts: how many start values to try, those given among them; 1 for these alone, None to decide as told above.
         seed: of the start values drawn.
 
     Raises:
         NumericalError: the simulation overflows even over short windows.
     """
-    stepper = stepper or make_stepper(problem.model, problem.free_names, device=device, precision=precision)
-    way = Way(stepper, settings, progress, seed)
+    simulator = simulator or Simulator.of(problem.model, problem.free_names)
+    way = Way(simulator, settings, progress, seed)
     if not problem.free.any() and not problem.initial_free.any():
-        return _unmoved(FreeRun(problem, stepper, way.substeps(problem)), problem.samples)
+        return _unmoved(FreeRun(problem, way.fine_enough(problem)), problem.samples)
     found = descend(problem, way, starts)
     if found is None:
-        raise overflow_error("estimating", problem, stepper, way.substeps(problem))
+        raise overflow_error("estimating", problem, way.fine_enough(problem))
     weaknesses = ()
     if with_uncertainty:
-        weaknesses = identifiability(found.run, found.optimum.point, found.optimum.model, precision=precision)
+        weaknesses = identifiability(found.run, found.optimum.point, found.optimum.model)
     return _result(found, problem.samples, with_uncertainty, weaknesses)
 
 
 def _unmoved(run: FreeRun, samples: int) -> FitResult:
     here = run.quadratic(run.start)
     if here is None:
-        raise overflow_error("simulating", run.problem, run.stepper, run.substeps)
+        raise overflow_error("simulating", run.problem, run.simulator)
     mse = 2 * here.cost / samples
-    return FitResult(run.problem, mse, mse, samples, 0, 1, Termination.nothing_free, None, run.substeps)
+    return FitResult(run.problem, mse, mse, samples, 0, 1, Termination.nothing_free, None, run.simulator.substeps)
 
 
 def _result(found: Descent, samples: int, with_uncertainty: bool, weaknesses: tuple[Unidentifiable, ...]) -> FitResult:
@@ -122,7 +122,7 @@ def _result(found: Descent, samples: int, with_uncertainty: bool, weaknesses: tu
         evaluations=found.evaluations,
         termination=optimum.termination,
         uncertainty=uncertainty(run, optimum.point) if with_uncertainty else None,
-        substeps=run.substeps,
+        substeps=run.simulator.substeps,
         identifiability=weaknesses,
         notes=notes(problem, weaknesses),
     )

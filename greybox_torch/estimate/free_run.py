@@ -12,26 +12,21 @@ from greybox_torch.estimate.levenberg_marquardt import Extra, Quadratic
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.rough_starts import rough_starts
 from greybox_torch.simulation.parallel_run import ParallelRun
-from greybox_torch.simulation.stepper import Stepper, whole_records
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import whole_records
 
 
-def simulate(problem: Problem, stepper: Stepper, *, substeps: int = 1) -> list[np.ndarray]:
+def simulate(problem: Problem, simulator: Simulator) -> list[np.ndarray]:
     """Simulated outputs (N_e, n_y) of every experiment from its start state."""
-    run = stepper.run(
-        problem.driving_records, whole_records(problem.records), problem.values, problem.initial, substeps=substeps
-    )
+    run = simulator.run(problem.driving_records, Pass(whole_records(problem.records), problem.values, problem.initial))
     return [np.array(run.y[e, :n]) for e, n in enumerate(problem.records.lengths)]
 
 
-def visited_states(problem: Problem, stepper: Stepper, *, substeps: int = 1) -> list[np.ndarray]:
+def visited_states(problem: Problem, simulator: Simulator) -> list[np.ndarray]:
     """States (N_e, n_x) that every experiment runs through from its start state."""
-    run = stepper.run(
-        problem.driving_records,
-        whole_records(problem.records),
-        problem.values,
-        problem.initial,
-        substeps=substeps,
-        keep_states=True,
+    run = simulator.run(
+        problem.driving_records, Pass(whole_records(problem.records), problem.values, problem.initial, keep_states=True)
     )
     assert run.states is not None
     return [run.states[e, :n] for e, n in enumerate(problem.records.lengths)]
@@ -42,8 +37,7 @@ class FreeRun:
     """Unknowns of a problem as one vector z: free parameters, then free start states experiment by experiment."""
 
     problem: Problem
-    stepper: Stepper
-    substeps: int = 1
+    simulator: Simulator
 
     @property
     def n_parameters(self) -> int:
@@ -103,7 +97,7 @@ class FreeRun:
     @cached_property
     def _parallel(self) -> ParallelRun:
         estimated = np.flatnonzero(self.problem.free)
-        return ParallelRun(self.stepper, self.problem.records, estimated, self.problem.free_states, self.substeps)
+        return ParallelRun(self.simulator, self.problem.records, estimated, self.problem.free_states)
 
     @cached_property
     def _rough(self) -> np.ndarray:

@@ -16,7 +16,7 @@ import numpy as np
 from greybox_torch.estimate.population import Members, Population, improve
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.substeps import choose_substeps
 
 SPREAD, WIDE_SPREAD = 6.0, 15.0
@@ -46,11 +46,10 @@ JITTER, UNCERTAIN = 0.1, 0.3
 
 def look_around(
     problem: Problem,
-    stepper: Stepper,
+    simulator: Simulator,
     *,
     starts: int,
     seed: int = 0,
-    substeps: int = 1,
     progress: Callable[[str, int, float], None] | None = None,
 ) -> Problem | None:
     """The best of what ``starts`` descents from start values around those of ``problem`` found; None where none simulates.
@@ -59,8 +58,8 @@ def look_around(
     Results are rough: they are where a local estimation should begin.
     """
     generator = np.random.default_rng(seed)
-    people = _followed(problem, stepper, _drawn(problem, starts, SPREAD, generator), substeps)
-    fine = _whole(problem, stepper, substeps)
+    people = _followed(problem, simulator, _drawn(problem, starts, SPREAD, generator))
+    fine = _whole(problem, simulator)
     for turn in range(1, TURNS + 1):
         if not len(people):
             return None
@@ -68,7 +67,7 @@ def look_around(
             progress(f"search from {starts} starts", turn, 2.0 * float(people.cost[0]) / fine.problem.samples)
         if turn == TURNS:
             break
-        fine = _whole(problem, stepper, max(FINER * substeps, _finer(fine, people)))
+        fine = _whole(problem, simulator.with_substeps(max(FINER * simulator.substeps, _finer(fine, people))))
         around = _drawn_anew(fine, people, _drawn(problem, SCREENED * starts, WIDE_SPREAD, generator), generator)
         found = _sorted(improve(fine, _promising(fine, around, starts // 4), FINE_ITERATIONS))
         if not len(found) or found.cost[0] > (1.0 - 1e-3) * people.cost[0]:
@@ -77,14 +76,14 @@ def look_around(
     return problem.with_values(people.values[0], people.initial[0])
 
 
-def _followed(problem: Problem, stepper: Stepper, people: Population, substeps: int) -> Population:
+def _followed(problem: Problem, simulator: Simulator, people: Population) -> Population:
     """Where descents from ``people`` end, the distinct ones, best first."""
     part = _beginning(problem.driving_records, ROUGH_SHARE, ROUGH_SAMPLES)
-    rough = Members(replace(problem, records=part), part, stepper, substeps)
+    rough = Members(replace(problem, records=part), part, simulator)
     people = _distinct(rough, improve(rough, people, ROUGH_ITERATIONS))
     if not len(people):
         return people
-    return _sorted(improve(_whole(problem, stepper, substeps), people, FINE_ITERATIONS))
+    return _sorted(improve(_whole(problem, simulator), people, FINE_ITERATIONS))
 
 
 def _sorted(people: Population) -> Population:
@@ -100,15 +99,15 @@ def _promising(members: Members, people: Population, most: int) -> Population:
     return _sorted(Population(people.values, people.initial, np.concatenate(parts))).members(slice(most))
 
 
-def _whole(problem: Problem, stepper: Stepper, substeps: int) -> Members:
+def _whole(problem: Problem, simulator: Simulator) -> Members:
     part = _beginning(problem.driving_records, 1.0, FINE_SAMPLES)
-    return Members(replace(problem, records=part), part, stepper, substeps)
+    return Members(replace(problem, records=part), part, simulator)
 
 
 def _finer(members: Members, people: Population) -> int:
     """Sub-steps that the best of ``people`` needs: a place must not be good for the errors of its integration."""
-    needed = choose_substeps(members.records, members.stepper, people.values[0], people.initial[0])
-    return min(FINEST, max(members.substeps, needed or FINEST))
+    needed = choose_substeps(members.records, members.simulator.stepper, people.values[0], people.initial[0])
+    return min(FINEST, max(members.simulator.substeps, needed or FINEST))
 
 
 def _drawn(problem: Problem, count: int, spread: float, generator: np.random.Generator) -> Population:

@@ -48,9 +48,7 @@ class Unidentifiable:
         return self.kind in ("unmoved", "together")
 
 
-def identifiability(
-    run: FreeRun, z: np.ndarray, here: Quadratic[None] | None = None, *, precision: str = "double"
-) -> tuple[Unidentifiable, ...]:
+def identifiability(run: FreeRun, z: np.ndarray, here: Quadratic[None] | None = None) -> tuple[Unidentifiable, ...]:
     """What the data do not determine of the unknowns ``z`` (d,) of ``run``; nothing where the simulation overflows there.
 
     Args:
@@ -59,7 +57,7 @@ def identifiability(
     here = here or run.quadratic(z)
     if here is None or not run.n_parameters:
         return ()
-    view = Information(run, z, here.hessian, precision)
+    view = Information(run, z, here.hessian)
     unmoved, flat = view.unmoved(), view.flat_directions()
     nearby = _nearby(view, here) if len(unmoved) or len(flat) else None
     found = [_unmoved(view, i, nearby, here) for i in unmoved if i < run.n_parameters]

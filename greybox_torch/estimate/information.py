@@ -28,7 +28,10 @@ class Information:
     run: FreeRun
     z: np.ndarray
     hessian: np.ndarray
-    precision: str
+
+    @property
+    def precision(self) -> str:
+        return self.run.simulator.options.precision
 
     @property
     def scale(self) -> np.ndarray:

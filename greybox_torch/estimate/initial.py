@@ -11,8 +11,10 @@ from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Settings, minimise
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import fit_windows
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Stepper, Windows
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import Windows
 
 SHORT = 6
 """Into how many windows the beginning of a record is cut for a first guess of its start states."""
@@ -22,7 +24,7 @@ MOST_TRIALS = 2
 """How many of the possible start values are followed to their optimum."""
 
 
-def estimate_initial(problem: Problem, stepper: Stepper, *, fraction: float = 0.1, substeps: int = 1) -> Problem:
+def estimate_initial(problem: Problem, simulator: Simulator, *, fraction: float = 0.1) -> Problem:
     """The problem with the free start states of every experiment estimated on its first ``fraction``, parameters as they are.
 
     Start values that a model knows only up to a few possibilities (the angle at which a periodic effect begins) are tried one by one.
@@ -43,61 +45,47 @@ def estimate_initial(problem: Problem, stepper: Stepper, *, fraction: float = 0.
             initial_free=free,
             free=np.zeros_like(problem.free),
         )
-        rows.append(_best_start(part, trials, stepper, substeps))
+        rows.append(_best_start(part, trials, simulator))
     return problem.with_values(problem.values, np.array(rows))
 
 
-def _best_start(part: Problem, trials: Sequence[Mapping[str, float]], stepper: Stepper, substeps: int) -> np.ndarray:
+def _best_start(part: Problem, trials: Sequence[Mapping[str, float]], simulator: Simulator) -> np.ndarray:
     """The start states (n_x,) of the one experiment of ``part`` that fit it best."""
     names = [s.name for s in part.model.states]
     rows = np.repeat(part.initial, max(len(trials), 1), axis=0)
     for row, trial in zip(rows, trials, strict=False):
         row[[names.index(n) for n in trial]] = list(trial.values())
     if len(rows) > MOST_TRIALS:
-        rows = _promising(part, rows, stepper, substeps)
+        rows = _promising(part, rows, simulator)
     best, cost = part.initial[0], np.inf
     for initial in rows[:, None]:
-        for begin in (initial, _from_short_windows(replace(part, initial=initial), stepper, substeps)):
-            run = FreeRun(replace(part, initial=begin), _AllFixed(stepper), substeps)
+        for begin in (initial, _from_short_windows(replace(part, initial=initial), simulator)):
+            run = FreeRun(replace(part, initial=begin), simulator)
             optimum = minimise(run.quadratic, run.start, *run.bounds, settings=Settings(iterations=30, tolerance=1e-8))
             if optimum is not None and optimum.model.cost < (1 - 1e-6) * cost:
                 best, cost = run.at(optimum.point).initial[0], optimum.model.cost
     return best
 
 
-def _promising(part: Problem, rows: np.ndarray, stepper: Stepper, substeps: int) -> np.ndarray:
+def _promising(part: Problem, rows: np.ndarray, simulator: Simulator) -> np.ndarray:
     """Those of the start states ``rows`` (K, n_x) that simulate best, the states that are not tried from short windows."""
     others = part.initial_free & (np.ptp(rows, axis=0) == 0)
-    rows = np.where(others, _from_short_windows(part, stepper, substeps), rows)
+    rows = np.where(others, _from_short_windows(part, simulator), rows)
     first, last = (np.repeat(end, len(rows)) for end in (part.records.first, part.records.last))
     windows = Windows(first, last, int(part.records.lengths[0]))
-    run = stepper.run(part.driving_records, windows, part.values, rows, substeps=substeps, weights=part.weights)
+    run = simulator.run(part.driving_records, Pass(windows, part.values, rows, weights=part.weights))
     assert run.normal is not None
     energies = np.nan_to_num(run.normal[:, -1, -1], nan=np.inf)
     return rows[np.argsort(energies, kind="stable")[:MOST_TRIALS]]
 
 
-def _from_short_windows(part: Problem, stepper: Stepper, substeps: int) -> np.ndarray:
+def _from_short_windows(part: Problem, simulator: Simulator) -> np.ndarray:
     """Start states (1, n_x) from a short stretch at the beginning, where a wrong guess has no time to lead astray."""
     length = max(20, int(part.records.lengths[0]) // SHORT)
-    fit = fit_windows(
-        part, _AllFixed(stepper), length, substeps=substeps, settings=Settings(iterations=15, tolerance=1e-4)
-    )
+    fit = fit_windows(part, simulator, length, settings=Settings(iterations=15, tolerance=1e-4))
     if fit is None:
         return part.initial
     return np.where(part.initial_free, fit.starts[:1], part.initial)
-
-
-class _AllFixed:
-    """A stepper whose parameter tangents are left out: only start states vary."""
-
-    def __init__(self, stepper: Stepper) -> None:
-        self._stepper = stepper
-        self.sensitive: tuple[str, ...] = ()
-        self.compiled = stepper.compiled
-
-    def run(self, *args, tangents: bool = False, **options):
-        return self._stepper.run(*args, tangents=False, **options)
 
 
 def _beginning(records: Records, experiment: int, fraction: float) -> Records:

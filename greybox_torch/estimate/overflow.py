@@ -11,7 +11,9 @@ from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.termination import Outcome, Termination, listed
-from greybox_torch.simulation.stepper import Stepper, Windows
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import Windows
 
 FACTORS = (0.5, 2.0, 0.1, 10.0, 1e-2, 1e2, 1e-3, 1e3, 0.0, -1.0)
 """What a parameter's value is multiplied by in search of one with which the simulation stays finite, the nearest first."""
@@ -53,7 +55,7 @@ def first_overflow(problem: Problem, simulated: Sequence[np.ndarray]) -> Overflo
     return None
 
 
-def remedies(problem: Problem, stepper: Stepper, substeps: int = 1) -> tuple[Suggestion, ...]:
+def remedies(problem: Problem, simulator: Simulator) -> tuple[Suggestion, ...]:
     """Parameter values, one changed at a time and within its bounds, with which no experiment overflows: the nearest to the present ones.
 
     Tried on the free parameters, or on all where none is free; empty where no single one helps.
@@ -63,7 +65,7 @@ def remedies(problem: Problem, stepper: Stepper, substeps: int = 1) -> tuple[Sug
         candidates = [(int(k), factor * float(problem.values[k])) for k in tried if problem.values[k] != 0.0]
         rows = [_changed(problem, k, value) for k, value in candidates]
         allowed = [i for i, row in enumerate(rows) if _allowed(problem, row)]
-        finite = _finite(problem, stepper, np.array([rows[i] for i in allowed]), substeps) if allowed else []
+        finite = _finite(problem, simulator, np.array([rows[i] for i in allowed])) if allowed else []
         units = {p.name: p.unit for p in problem.model.declared_parameters}
         found = tuple(
             Suggestion(problem.names[k], value, float(problem.values[k]), units[problem.names[k]])
@@ -85,18 +87,18 @@ def avoidance(found: Sequence[Suggestion]) -> str:
     return f"it does not with {listed([str(remedy) for remedy in found[:3]], 'or')}"
 
 
-def overflow_error(doing: str, problem: Problem, stepper: Stepper, substeps: int) -> NumericalError:
+def overflow_error(doing: str, problem: Problem, simulator: Simulator) -> NumericalError:
     """The error to raise where the whole records overflow: when, in which experiment, and which start values avoid it.
 
     Args:
         doing: "estimating" or "simulating".
     """
-    found = first_overflow(problem, simulate(problem, stepper, substeps=substeps))
+    found = first_overflow(problem, simulate(problem, simulator))
     if found is None:  # the outputs are finite, and their sensitivities are not
         detail = "the outputs stay finite, their sensitivities do not"
     else:
         where = f"at t = {found.time:.6g} s in '{found.experiment}'"
-        detail = f"{where}; {avoidance(remedies(problem, stepper, substeps))}"
+        detail = f"{where}; {avoidance(remedies(problem, simulator))}"
     return NumericalError(f"{doing} {problem.model.title}: {Outcome(Termination.overflow, detail).sentence}")
 
 
@@ -111,7 +113,7 @@ def _allowed(problem: Problem, row: np.ndarray) -> bool:
     return bool(inside.all()) and problem.admissible(row)
 
 
-def _finite(problem: Problem, stepper: Stepper, rows: np.ndarray, substeps: int) -> np.ndarray:
+def _finite(problem: Problem, simulator: Simulator, rows: np.ndarray) -> np.ndarray:
     """Which of the parameter sets (C, n_p) simulate every experiment to its end, (C,)."""
     records, count = problem.driving_records, len(problem.records.first)
     together = max(1, LANES // count)
@@ -122,7 +124,7 @@ def _finite(problem: Problem, stepper: Stepper, rows: np.ndarray, substeps: int)
             np.tile(records.first, len(part)), np.tile(records.last, len(part)), int(records.lengths.max())
         )
         starts = np.tile(problem.initial, (len(part), 1))
-        y = stepper.run(records, windows, np.repeat(part, count, axis=0), starts, substeps=substeps).y
+        y = simulator.run(records, Pass(windows, np.repeat(part, count, axis=0), starts)).y
         inside = np.arange(y.shape[1]) < np.tile(records.lengths, len(part))[:, None]
         good = (np.isfinite(y).all(axis=2) | ~inside).all(axis=1)
         result += good.reshape(len(part), count).all(axis=1).tolist()

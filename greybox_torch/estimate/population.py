@@ -8,8 +8,10 @@ import numpy as np
 
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Stepper, Windows
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import Windows
 
 
 @dataclass(frozen=True)
@@ -33,8 +35,7 @@ class Members:
 
     problem: Problem
     records: Records
-    stepper: Stepper
-    substeps: int
+    simulator: Simulator
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
@@ -56,7 +57,7 @@ class Members:
     def outputs(self, people: Population) -> np.ndarray:
         """Weighted outputs (M, E·K·n_y) of the free runs, zero where a sample is missing or beyond the end of an experiment."""
         rows, starts = self._lanes(people)
-        y = self.stepper.run(self.records, self._windows(len(people)), rows, starts, substeps=self.substeps).y
+        y = self.simulator.run(self.records, Pass(self._windows(len(people)), rows, starts)).y
         recorded, known = self._recorded()
         y = np.where(known, y.reshape(len(people), *recorded.shape), 0.0) * self.problem.weights
         return y.reshape(len(people), -1)
@@ -75,15 +76,16 @@ class Members:
         states, n_p = self.problem.free_states, int(self.problem.free.sum())
         directions = np.zeros((len(rows), len(states), starts.shape[1]))
         directions[:, np.arange(len(states)), states] = 1.0
-        run = self.stepper.run(
+        run = self.simulator.run(
             self.records,
-            self._windows(count),
-            rows,
-            starts,
-            tangents=True,
-            start_directions=directions,
-            substeps=self.substeps,
-            weights=self.problem.weights,
+            Pass(
+                self._windows(count),
+                rows,
+                starts,
+                tangents=True,
+                start_directions=directions,
+                weights=self.problem.weights,
+            ),
         )
         assert run.normal is not None
         normal = run.normal.reshape(count, experiments, *run.normal.shape[1:])

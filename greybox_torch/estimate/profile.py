@@ -19,7 +19,7 @@ from greybox_torch.errors import ArgumentError, did_you_mean
 from greybox_torch.estimate.fit import FitResult
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimise
-from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.simulator import Simulator
 
 LEVEL = 0.95
 """Confidence of the interval."""
@@ -103,16 +103,16 @@ def check_profiled(names: Iterable[str], free: Iterable[str], declared: Iterable
             raise ArgumentError("profile", name, f"this parameter is fixed; {expected}")
 
 
-def profile(found: FitResult, stepper: Stepper, name: str, *, settings: Settings = SETTINGS) -> Profile:
+def profile(found: FitResult, simulator: Simulator, name: str, *, settings: Settings = SETTINGS) -> Profile:
     """The profile of the free parameter ``name`` around the estimate ``found``.
 
     The parameter is held at values that move away from the estimate, in steps that adapt to the rise, until the 95 % level is passed, a
     bound is met, or the simulation fails; the others are estimated again at each, from where they were at the neighbouring value.
 
     Args:
-        stepper: with the tangents of the problem's free parameters.
+        simulator: with the tangents of the problem's free parameters.
     """
-    run = FreeRun(found.problem, stepper, found.substeps)
+    run = FreeRun(found.problem, simulator.with_substeps(found.substeps))
     start, index = run.start, found.problem.free_names.index(name)
     colour, deviation = _colour(found, index), found.parameter_deviations("sandwich").get(name, np.inf)
     variance = found.mse * found.samples / max(found.samples - len(start), 1)

@@ -7,7 +7,7 @@ import numpy as np
 from greybox_torch.estimate.kinematics import hidden_starts
 from greybox_torch.estimate.problem import Problem, measured_at
 from greybox_torch.model.sensed_states import sensed_states
-from greybox_torch.simulation.stepper import Windows
+from greybox_torch.simulation.windows import Windows
 
 
 def rough_starts(problem: Problem, windows: Windows) -> np.ndarray:

@@ -11,12 +11,12 @@ from greybox_torch.mechanisms.added_declarations import position_unit
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
-from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.simulator import Simulator
 
 
-def survey(model: GreyBoxModel, problem: Problem, stepper: Stepper, substeps: int) -> dict[str, Surroundings]:
+def survey(model: GreyBoxModel, problem: Problem, simulator: Simulator) -> dict[str, Surroundings]:
     """Ranges of the signals around every port of ``model``, along the free run of ``problem`` (of that model, or of it augmented)."""
-    return surroundings_along(model, problem, np.concatenate(visited_states(problem, stepper, substeps=substeps)))
+    return surroundings_along(model, problem, np.concatenate(visited_states(problem, simulator)))
 
 
 def surroundings_along(model: GreyBoxModel, problem: Problem, states: np.ndarray) -> dict[str, Surroundings]:

@@ -17,7 +17,9 @@ from greybox_torch.estimate.levenberg_marquardt import ROUGH, Settings
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.rough_starts import rough_starts
 from greybox_torch.estimate.window_step import Hold, WindowModel, held, stepped
-from greybox_torch.simulation.stepper import Stepper, Windows, cut
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import Windows, cut
 
 SHRINKING = 30.0
 """Samples' worth of error that a shrunk parameter costs when it is as large as it began."""
@@ -48,12 +50,11 @@ class WindowFit:
 
 def fit_windows(
     problem: Problem,
-    stepper: Stepper,
+    simulator: Simulator,
     length: int,
     *,
     starts: np.ndarray | None = None,
     shorter: WindowFit | None = None,
-    substeps: int = 1,
     settings: Settings = ROUGH,
     size: float | None = None,
 ) -> WindowFit | None:
@@ -68,10 +69,10 @@ def fit_windows(
     windows = cut(problem.records, length)
     states = starts
     if states is None and shorter is not None:
-        states = _starts_of(shorter, problem, stepper, windows, substeps)
+        states = _starts_of(shorter, problem, simulator, windows)
     elif states is None:
-        states = carried_starts(problem, stepper, windows, rough_starts(problem, windows), substeps)
-    here = _evaluate(problem, stepper, windows, states, None, substeps)
+        states = carried_starts(problem, simulator, windows, rough_starts(problem, windows))
+    here = _evaluate(problem, simulator, windows, states, None)
     if here is None:
         return None
     hold = _weak_hold(problem, states, here.mean_square, windows.steps, size)
@@ -85,7 +86,7 @@ def fit_windows(
                 break
             there = None
             if problem.admissible(trial.values):
-                there = _evaluate(trial, stepper, windows, trial_states, hold, substeps)
+                there = _evaluate(trial, simulator, windows, trial_states, hold)
                 evaluations += 1
             gain = -1.0 if there is None else (here.cost - there.cost) / predicted
             if there is not None and gain > LEAST_GAIN_RATIO:
@@ -97,8 +98,8 @@ def fit_windows(
             damping, growth = damping * growth, growth * 2.0
         still = not accepted or change < settings.tolerance
         if problem.carried.any() and (still or accepted_steps % CARRY_EVERY == 0):
-            carried = carried_starts(problem, stepper, windows, states, substeps)
-            again = _evaluate(problem, stepper, windows, carried, hold, substeps)
+            carried = carried_starts(problem, simulator, windows, states)
+            again = _evaluate(problem, simulator, windows, carried, hold)
             evaluations += 1
             if again is not None and again.cost < here.cost:
                 still = still and again.cost > (1 - settings.tolerance) * here.cost
@@ -108,7 +109,7 @@ def fit_windows(
     return WindowFit(problem, windows, states, here.mean_square, here.energies, evaluations)
 
 
-def _starts_of(shorter: WindowFit, problem: Problem, stepper: Stepper, windows: Windows, substeps: int) -> np.ndarray:
+def _starts_of(shorter: WindowFit, problem: Problem, simulator: Simulator, windows: Windows) -> np.ndarray:
     """Start states from a fit on shorter windows, where one of those begins; rough ones elsewhere.
 
     States that it does not have and that are carried are brought along its windows: their trajectories stay near the measured one, so that
@@ -119,7 +120,7 @@ def _starts_of(shorter: WindowFit, problem: Problem, stepper: Stepper, windows: 
     for i, state in enumerate(problem.model.states):
         if state.name in known:
             between[:, i] = shorter.starts[:, known.index(state.name)]
-    between = carried_starts(problem, stepper, shorter.windows, between, substeps)
+    between = carried_starts(problem, simulator, shorter.windows, between)
     states = rough_starts(problem, windows)
     index = np.minimum(np.searchsorted(shorter.windows.start, windows.start), len(shorter.windows.start) - 1)
     same = shorter.windows.start[index] == windows.start
@@ -127,10 +128,10 @@ def _starts_of(shorter: WindowFit, problem: Problem, stepper: Stepper, windows: 
     return states
 
 
-def states_along(fit: WindowFit, stepper: Stepper, substeps: int) -> np.ndarray:
+def states_along(fit: WindowFit, simulator: Simulator) -> np.ndarray:
     """States (N, n_x) at the samples of the records, every window from its own start."""
     problem, windows = fit.problem, fit.windows
-    run = stepper.run(problem.driving_records, windows, problem.values, fit.starts, substeps=substeps, keep_states=True)
+    run = simulator.run(problem.driving_records, Pass(windows, problem.values, fit.starts, keep_states=True))
     assert run.states is not None
     states = np.zeros((problem.records.u.shape[1], run.states.shape[2]))
     for w, (first, last) in enumerate(zip(windows.start, windows.last, strict=True)):
@@ -138,9 +139,7 @@ def states_along(fit: WindowFit, stepper: Stepper, substeps: int) -> np.ndarray:
     return states
 
 
-def carried_starts(
-    problem: Problem, stepper: Stepper, windows: Windows, starts: np.ndarray, substeps: int
-) -> np.ndarray:
+def carried_starts(problem: Problem, simulator: Simulator, windows: Windows, starts: np.ndarray) -> np.ndarray:
     """``starts`` (W, n_x) with the carried states brought along from window to window of each experiment."""
     if not problem.carried.any():
         return starts
@@ -152,7 +151,7 @@ def carried_starts(
         following = np.array([c[k + 1] for c in chains if len(c) > k + 1])
         ahead = windows.start[following] - windows.start[now]
         part = Windows(windows.start[now], windows.last[now], int(ahead.max()) + 1)
-        run = stepper.run(records, part, problem.values, starts[now], substeps=substeps, keep_states=True)
+        run = simulator.run(records, Pass(part, problem.values, starts[now], keep_states=True))
         assert run.states is not None
         reached = np.nan_to_num(run.states[np.arange(len(now)), ahead])
         starts[np.ix_(following, problem.carried)] = reached[:, problem.carried]
@@ -183,25 +182,18 @@ def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: 
 
 def _evaluate(
     problem: Problem,
-    stepper: Stepper,
+    simulator: Simulator,
     windows: Windows,
     states: np.ndarray,
     hold: Hold | None,
-    substeps: int,
 ) -> WindowModel | None:
     count, n_x = states.shape
     n_p = int(problem.free.sum())
     open_states = np.flatnonzero(~problem.carried)
     eye = np.broadcast_to(np.eye(n_x)[open_states], (count, len(open_states), n_x))
-    run = stepper.run(
+    run = simulator.run(
         problem.driving_records,
-        windows,
-        problem.values,
-        states,
-        tangents=n_p > 0,
-        start_directions=eye,
-        substeps=substeps,
-        weights=problem.weights,
+        Pass(windows, problem.values, states, tangents=n_p > 0, start_directions=eye, weights=problem.weights),
     )
     assert run.normal is not None
     if not np.isfinite(run.normal).all():

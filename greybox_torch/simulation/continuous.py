@@ -14,8 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Stepper, Windows
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import Windows
 
 WINDOWS = 64
 """Into how many windows all experiments together are cut: enough to fill the lanes of several cores evenly."""
@@ -81,7 +83,7 @@ def chain(records: Records, *, count: int = WINDOWS, shortest: int = 8) -> Chain
 
 
 def continuous(
-    stepper: Stepper,
+    simulator: Simulator,
     records: Records,
     links: Chain,
     p: np.ndarray,
@@ -89,7 +91,6 @@ def continuous(
     *,
     guess: np.ndarray,
     transitions: np.ndarray | None = None,
-    substeps: int = 1,
 ) -> Trajectory | None:
     """The trajectory that begins at ``x0`` (E, n_x), with window starts iterated from ``guess`` (W, n_x).
 
@@ -106,7 +107,7 @@ def continuous(
     for _ in range(SWEEPS):
         fresh = transitions is None
         directions = np.broadcast_to(np.eye(x0.shape[1]), (len(starts), x0.shape[1], x0.shape[1])) if fresh else None
-        run = stepper.run(records, links.windows, p, starts, start_directions=directions, substeps=substeps)
+        run = simulator.run(records, Pass(links.windows, p, starts, start_directions=directions))
         if fresh:
             assert run.dx_end is not None
             transitions = np.array(run.dx_end)
@@ -130,7 +131,7 @@ def continuous(
 
 
 def sequential_starts(
-    stepper: Stepper, records: Records, links: Chain, p: np.ndarray, x0: np.ndarray, *, substeps: int = 1
+    simulator: Simulator, records: Records, links: Chain, p: np.ndarray, x0: np.ndarray, *, substeps: int = 1
 ) -> np.ndarray:
     """Window start states (W, n_x) of the trajectory from ``x0`` (E, n_x), one window after another; not finite where it overflows."""
     windows = links.windows
@@ -139,7 +140,7 @@ def sequential_starts(
     for position in range(links.order.shape[1] - 1):
         now, following = links.links(position)
         part = Windows(windows.start[now], windows.last[now], windows.steps)
-        starts[following] = stepper.run(records, part, p, starts[now], substeps=substeps).x_end
+        starts[following] = simulator.run(records, Pass(part, p, starts[now])).x_end
     return starts
 
 

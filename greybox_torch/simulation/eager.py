@@ -11,8 +11,9 @@ from torch.func import jvp, vmap
 
 from greybox_torch.model import GreyBoxModel, Signals
 from greybox_torch.simulation.packed_normals import PackedNormals
+from greybox_torch.simulation.passes import Pass, Run
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Probes, Run, Windows
+from greybox_torch.simulation.windows import Windows
 
 Vector = torch.Tensor
 Field = Callable[[Vector, Vector, Vector], Vector]
@@ -36,31 +37,20 @@ class EagerStepper:
     def compiled(self) -> bool:
         return False
 
-    def run(
-        self,
-        records: Records,
-        windows: Windows,
-        p: np.ndarray,
-        x0: np.ndarray,
-        *,
-        tangents: bool = False,
-        start_directions: np.ndarray | None = None,
-        tangents0: np.ndarray | None = None,
-        substeps: int = 1,
-        keep_states: bool = False,
-        weights: np.ndarray | None = None,
-        probes: Probes | None = None,
-    ) -> Run:
+    def run(self, records: Records, asked: Pass, substeps: int = 1) -> Run:
+        windows, weights = asked.windows, asked.weights
         count, n_x = len(windows.start), len(self.model.states)
-        n_p = len(self.sensitive) if tangents else 0
-        n_s = 0 if start_directions is None else start_directions.shape[1]
-        values = self._tensor(np.broadcast_to(np.atleast_2d(p), (count, len(self.model.declared_parameters))).T)
-        x = self._tensor(x0.T)
+        n_p = len(self.sensitive) if asked.tangents else 0
+        n_s = 0 if asked.start_directions is None else asked.start_directions.shape[1]
+        values = self._tensor(
+            np.broadcast_to(np.atleast_2d(asked.parameters), (count, len(self.model.declared_parameters))).T
+        )
+        x = self._tensor(asked.starts.T)
         dx = torch.zeros(n_p + n_s, n_x, count, dtype=self.dtype, device=self.device)
-        if n_p and tangents0 is not None:
-            dx[:n_p] = self._tensor(np.moveaxis(tangents0, 0, -1))
-        if start_directions is not None:
-            dx[n_p:] = self._tensor(np.moveaxis(start_directions, 0, -1))
+        if n_p and asked.tangents0 is not None:
+            dx[:n_p] = self._tensor(np.moveaxis(asked.tangents0, 0, -1))
+        if asked.start_directions is not None:
+            dx[n_p:] = self._tensor(np.moveaxis(asked.start_directions, 0, -1))
         dp = self._parameter_directions(n_p, n_s, count)
         ys, dys, xs = [], [], []
         with torch.no_grad():
@@ -68,7 +58,7 @@ class EagerStepper:
                 y, dy = self._pushed(self._outputs, x, u0, values, dx, dp)
                 ys.append(y)
                 dys.append(dy)
-                if keep_states:
+                if asked.keep_states:
                     xs.append(x)
                 for m in range(substeps):
                     step = runge_kutta_step(self._rates, u0, u1, dt / substeps, m / substeps, (m + 1) / substeps)
@@ -82,10 +72,10 @@ class EagerStepper:
             dy=dy if directed and weights is None else None,
             x_end=_array(x, (1, 0)),
             dx_end=_array(dx, (2, 0, 1)) if directed else None,
-            states=_array(torch.stack(xs), (2, 0, 1)) if keep_states else None,
-            normal=None if probes is not None else normal,
+            states=_array(torch.stack(xs), (2, 0, 1)) if asked.keep_states else None,
+            normal=None if asked.probes is not None else normal,
             packed=None
-            if probes is None or normal is None
+            if asked.probes is None or normal is None
             else PackedNormals.of(normal[..., None], len(normal), normal.shape[1]),
         )
 

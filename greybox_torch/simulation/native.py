@@ -13,9 +13,9 @@ from greybox_torch.codegen.build import library
 from greybox_torch.codegen.emit import emit
 from greybox_torch.codegen.lower import Equations
 from greybox_torch.simulation.packed_normals import PackedNormals
+from greybox_torch.simulation.passes import Pass, Run
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.side_by_side import cores
-from greybox_torch.simulation.stepper import Probes, Run, Windows
 
 _LONG, _POINTER = ctypes.c_long, ctypes.c_void_p
 
@@ -74,36 +74,23 @@ class NativeStepper:
     def compiled(self) -> bool:
         return True
 
-    def run(
-        self,
-        records: Records,
-        windows: Windows,
-        p: np.ndarray,
-        x0: np.ndarray,
-        *,
-        tangents: bool = False,
-        start_directions: np.ndarray | None = None,
-        tangents0: np.ndarray | None = None,
-        substeps: int = 1,
-        keep_states: bool = False,
-        weights: np.ndarray | None = None,
-        probes: Probes | None = None,
-    ) -> Run:
+    def run(self, records: Records, asked: Pass, substeps: int = 1) -> Run:
+        windows, weights = asked.windows, asked.weights
         real = np.float64 if self.precision == "double" else np.float32
         lanes = 64 // np.dtype(real).itemsize
         count, n_x, n_y = len(windows.start), self.equations.n_states, self.equations.n_outputs
         groups = -(-count // lanes)
-        n_p = len(self.sensitive) if tangents else 0
-        n_s = 0 if start_directions is None else start_directions.shape[1]
+        n_p = len(self.sensitive) if asked.tangents else 0
+        n_s = 0 if asked.start_directions is None else asked.start_directions.shape[1]
         n_d = n_p + n_s
         n_t = self.equations.n_tangent
 
-        rows = np.broadcast_to(p, (count, self.equations.n_parameters))
+        rows = np.broadcast_to(asked.parameters, (count, self.equations.n_parameters))
         dx0 = np.zeros((count, n_d, n_t))
-        if n_p and tangents0 is not None:
-            dx0[:, :n_p] = tangents0[..., :n_t]
-        if start_directions is not None:
-            dx0[:, n_p:] = start_directions[..., :n_t]
+        if n_p and asked.tangents0 is not None:
+            dx0[:, :n_p] = asked.tangents0[..., :n_t]
+        if asked.start_directions is not None:
+            dx0[:, n_p:] = asked.start_directions[..., :n_t]
         width = (n_d + _TILE) // _TILE * _TILE
         signals = _signals(records, real)
         packed = {
@@ -113,18 +100,18 @@ class NativeStepper:
             "last": _lanes(windows.last, lanes, np.int64),
             "column": np.array([*range(n_p), *([len(self.sensitive)] * n_s)], dtype=np.int64),
             "p": _lanes(rows if rows.shape[1] else np.zeros((count, 1)), lanes, real),
-            "x": _lanes(x0, lanes, real),
+            "x": _lanes(asked.starts, lanes, real),
             "dx": _lanes(dx0, lanes, real),
             "y": _empty((groups, windows.steps, n_y, lanes), real),
             "dy": _empty((groups, windows.steps, n_y, n_d, lanes), real) if n_d and weights is None else None,
-            "trace": _empty((groups, windows.steps, n_x, lanes), real) if keep_states else None,
+            "trace": _empty((groups, windows.steps, n_x, lanes), real) if asked.keep_states else None,
             "measured": None if weights is None else signals["y"],
             "weight": None if weights is None else _aligned(weights, real),
             "normal": None if weights is None else _zeros((groups, width, width, lanes), real),
         }
         threads = _threads(groups, windows.steps * substeps * (1 + n_d))
         sizes = (groups, windows.steps, substeps, int(records.hold == "foh"), len(records.dt), n_d, threads)
-        sparse = (n_d, n_d, 0) if probes is None else (n_p - probes.count, n_p, probes.band + _TILE)
+        sparse = (n_d, n_d, 0) if asked.probes is None else (n_p - asked.probes.count, n_p, asked.probes.band + _TILE)
         pointers = [None if a is None else a.ctypes.data for a in packed.values()]
         self.loaded.run(ctypes.byref(_Job(*sizes, *sparse, *pointers)))
         dy, normal = packed["dy"], packed["normal"]
@@ -133,11 +120,11 @@ class NativeStepper:
             dy=None if dy is None else _windows(dy, count),
             x_end=_windows(packed["x"], count),
             dx_end=_windows(packed["dx"], count) if n_d else None,
-            states=_windows(packed["trace"], count) if keep_states else None,
+            states=_windows(packed["trace"], count) if asked.keep_states else None,
             normal=None
-            if normal is None or probes is not None
+            if normal is None or asked.probes is not None
             else _mirrored(_windows(normal, count)[:, : n_d + 1, : n_d + 1]),
-            packed=None if normal is None or probes is None else PackedNormals.of(normal, count, n_d + 1),
+            packed=None if normal is None or asked.probes is None else PackedNormals.of(normal, count, n_d + 1),
         )
 
 

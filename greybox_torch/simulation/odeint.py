@@ -13,7 +13,7 @@ from torchdiffeq import odeint, odeint_adjoint
 
 from greybox_torch.model import GreyBoxModel, Signals
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Windows
+from greybox_torch.simulation.windows import Windows
 
 FIXED = ("euler", "midpoint", "rk4", "explicit_adams", "implicit_adams", "heun3")
 

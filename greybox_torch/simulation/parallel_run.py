@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from greybox_torch.simulation.continuous import Chain, chain, continuous, propagated, sequential_starts
+from greybox_torch.simulation.passes import Pass, Run
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Run, Stepper
+from greybox_torch.simulation.simulator import Simulator
 
 
 @dataclass(frozen=True)
@@ -33,11 +34,10 @@ class ParallelRun:
         states: indices of the states whose start value varies.
     """
 
-    stepper: Stepper
+    simulator: Simulator
     records: Records
     estimated: np.ndarray
     states: np.ndarray
-    substeps: int = 1
     links: Chain = field(init=False)
     sequential: int = field(default=0, init=False)
     """How many runs had to be made sequentially."""
@@ -112,15 +112,16 @@ class ParallelRun:
         if not np.isfinite(starts).all():
             return None
         count, n_x = starts.shape
-        run = self.stepper.run(
+        run = self.simulator.run(
             records,
-            self.links.windows,
-            p,
-            starts,
-            tangents=len(self.estimated) > 0,
-            start_directions=np.broadcast_to(np.eye(n_x), (count, n_x, n_x)),
-            substeps=self.substeps,
-            weights=weights,
+            Pass(
+                self.links.windows,
+                p,
+                starts,
+                tangents=len(self.estimated) > 0,
+                start_directions=np.broadcast_to(np.eye(n_x), (count, n_x, n_x)),
+                weights=weights,
+            ),
         )
         assert run.dx_end is not None
         n_p = len(self.estimated)
@@ -154,13 +155,11 @@ class ParallelRun:
             )
             guess = known.starts + np.einsum("wd,wdx->wx", moved[self.links.experiment], known.slopes)
             transitions = known.transitions
-        found = continuous(
-            self.stepper, records, self.links, p, x0, guess=guess, transitions=transitions, substeps=self.substeps
-        )
+        found = continuous(self.simulator, records, self.links, p, x0, guess=guess, transitions=transitions)
         if found is not None:
             return found.starts
         self.sequential += 1
-        return sequential_starts(self.stepper, records, self.links, p, x0, substeps=self.substeps)
+        return sequential_starts(self.simulator, records, self.links, p, x0)
 
 
 def _condensed(normal: np.ndarray, slopes: np.ndarray, n_p: int) -> np.ndarray:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Stepper, Windows
+from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.windows import Windows
 
 LARGEST = 64
 
@@ -25,9 +27,10 @@ def choose_substeps(
     )
     spread = np.nanstd(records.y, axis=1)
     limit = tolerance * np.where(spread > 0, spread, 1.0)
-    coarse, substeps = stepper.run(records, windows, p, starts).y, 1
+    asked = Pass(windows, p, starts)
+    coarse, substeps = stepper.run(records, asked).y, 1
     while substeps <= LARGEST:
-        fine = stepper.run(records, windows, p, starts, substeps=2 * substeps).y
+        fine = stepper.run(records, asked, 2 * substeps).y
         finite = np.isfinite(coarse).all() and np.isfinite(fine).all()
         with np.errstate(over="ignore"):  # steps that are too long give numbers of any size
             near = finite and (np.sqrt(np.mean((fine - coarse) ** 2, axis=(0, 1))) <= limit).all()

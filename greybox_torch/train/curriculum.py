@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.errors import NumericalError
-from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.train.adam import Adam, learning_rate
 from greybox_torch.train.gradients import Batch, SequenceGradient
 from greybox_torch.train.settings import TrainingSettings
@@ -29,14 +30,13 @@ class Curriculum:
     """
 
     unknowns: Unknowns
-    stepper: Stepper
+    simulator: Simulator
     gradient: SequenceGradient
     settings: TrainingSettings
     lengths: tuple[int, ...]
     mask: np.ndarray
     mean_square: float
     spread: float
-    substeps: int
 
     @property
     def samples(self) -> int:
@@ -52,13 +52,9 @@ class Curriculum:
     def loss(self, z: np.ndarray, batch: Batch) -> float:
         """Mean squared error of a batch relative to that of the physics; infinite where the simulation is not finite."""
         values = self.unknowns.values(z)
-        run = self.stepper.run(
+        run = self.simulator.run(
             self.unknowns.hybrid.problem.model.prepared(batch.records, values),
-            batch.windows,
-            values,
-            batch.starts,
-            substeps=self.substeps,
-            weights=self.unknowns.hybrid.problem.weights,
+            Pass(batch.windows, values, batch.starts, weights=self.unknowns.hybrid.problem.weights),
         )
         assert run.normal is not None
         energy = float(run.normal[:, -1, -1].sum())
@@ -98,7 +94,7 @@ def _begin(course: Curriculum, state: TrainingState) -> None:
     """A new window length: start states from the shorter windows, moments and patience anew."""
     problem, length = course.unknowns.problem(state.z), course.lengths[state.stage]
     shorter = None if state.stage == 0 else (course.lengths[state.stage - 1], state.starts)
-    state.starts = fitted_starts(problem, course.stepper, length, course.substeps, shorter=shorter)
+    state.starts = fitted_starts(problem, course.simulator, length, shorter=shorter)
     state.best, state.waited, state.steps = state.z.copy(), 0, 0
     state.best_loss = course.loss(state.z, course.stage(state).held_out_batch)
 
@@ -106,7 +102,7 @@ def _begin(course: Curriculum, state: TrainingState) -> None:
 def _refresh(course: Curriculum, state: TrainingState) -> None:
     """The start states of the windows as the present parameters have them, and the best held-out loss with these."""
     problem, length = course.unknowns.problem(state.best), course.lengths[state.stage]
-    state.starts = fitted_starts(problem, course.stepper, length, course.substeps, starts=state.starts)
+    state.starts = fitted_starts(problem, course.simulator, length, starts=state.starts)
     state.best_loss = course.loss(state.best, course.stage(state).held_out_batch)
 
 

@@ -64,7 +64,6 @@ def explain(
     others: Sequence[Trained] = (),
     *,
     refit: bool = True,
-    device: str = "cpu",
     told: Callable[[str], None] = lambda text: None,
 ) -> Explanation:
     """Turn what a network has learned into a named term, where a law of the library does as well.
@@ -91,7 +90,7 @@ def explain(
     network = found.hybrid.network
     curves = curves_of(members, found.hybrid.surroundings[network.port].units)
     matches = tuple(_matches(found, first))
-    terms = _terms(found, matches, device, told) if refit else ()
+    terms = _terms(found, matches, told) if refit else ()
     term = needless(terms, found)
     if term is not None:
         told(f"explaining: {term.attachment.prefix} on all samples")
@@ -127,7 +126,7 @@ def _matches(found: Trained, learned: LearnedForce) -> list[Match]:
     return matching_laws(kind, around, signals, learned.force, weight, {a.mechanism.name for a in there})
 
 
-def _terms(found: Trained, matches: Sequence[Match], device: str, told: Callable[[str], None]) -> tuple[NamedTerm, ...]:
+def _terms(found: Trained, matches: Sequence[Match], told: Callable[[str], None]) -> tuple[NamedTerm, ...]:
     """The laws that come near the curve, and the kinematic ones of its signals, in the network's place; best first."""
     physics, network = found.physics.problem, found.hybrid.network
     beside = dict(zip(found.result.problem.names, map(float, found.result.problem.values), strict=True))
@@ -139,7 +138,7 @@ def _terms(found: Trained, matches: Sequence[Match], device: str, told: Callable
     for attachment, sizes, share in candidates:
         told(f"explaining: {attachment.prefix} instead of the network")
         starts = [{**beside, **{f"{attachment.prefix}.{n}": v for n, v in values.items()}} for values in sizes]
-        term = refitted_term(found, attachment, starts, share, device)
+        term = refitted_term(found, attachment, starts, share)
         terms += [] if term is None else [term]
     return tuple(sorted(terms, key=lambda term: term.held_out))
 

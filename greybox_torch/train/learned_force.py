@@ -61,7 +61,7 @@ def visited_signals(found: Trained) -> dict[str, np.ndarray]:
     problem, model = found.result.problem, found.result.problem.model
     assert isinstance(model, AugmentedModel)
     records = problem.driving_records
-    states = np.concatenate(visited_states(problem, found.course.stepper, substeps=found.result.substeps))
+    states = np.concatenate(visited_states(problem, found.course.simulator))
     spans = [records.span(e) for e in range(len(records.lengths))]
     index = np.concatenate([np.arange(span.start, span.stop) for span in spans])
     kept = slice(None, None, max(1, -(-len(index) // MOST_SAMPLES)))
@@ -123,7 +123,7 @@ def _variance(force: LearnedForce, bins: Sequence[np.ndarray]) -> np.ndarray:
 
 def _covariances(found: Trained) -> tuple[np.ndarray, ...]:
     """Of the network's free parameters (d, d), beside everything else that was estimated."""
-    run = FreeRun(found.result.problem, found.course.stepper, found.result.substeps)
+    run = FreeRun(found.result.problem, found.course.simulator)
     weight = (found.polished.chosen.weight or 0.0) * found.course.mean_square
     penalty = PenalisedRun(run, found.course.unknowns, weight).stiffness
     whole = uncertainty(run, run.start, penalty)

@@ -11,7 +11,7 @@ from greybox_torch.estimate.fit import FitResult, fit
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.simulation.stepper import Stepper, make_stepper
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.train.physics import estimate_physics
 from greybox_torch.train.polish import held_out_error
 from greybox_torch.train.stages import without_samples
@@ -32,7 +32,7 @@ class NamedTerm:
     held_out: float
     lost: float
     problem: Problem
-    stepper: Stepper
+    simulator: Simulator
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -42,7 +42,7 @@ class NamedTerm:
 
 
 def refitted_term(
-    found: Trained, attachment: Attachment, starts: list[dict[str, float]], match: float | None, device: str = "cpu"
+    found: Trained, attachment: Attachment, starts: list[dict[str, float]], match: float | None
 ) -> NamedTerm | None:
     """The law of ``attachment`` instead of the network, from each of several start values; the best on the samples fitted.
 
@@ -50,25 +50,25 @@ def refitted_term(
     """
     course, physics = found.course, found.physics.problem
     model = AugmentedModel(physics.model, (attachment,), found.hybrid.surroundings)
-    fitted, stepper = [], None
+    fitted, simulator = [], None
     for start in starts:
         problem = problem_for(physics, model, start)
         if found.settings.freeze_physics:
             own = np.array([name.startswith(f"{attachment.prefix}.") for name in problem.names])
             problem = replace(problem, free=problem.free & own)
-        stepper = stepper or make_stepper(model, problem.free_names, device=device)
+        simulator = simulator or course.simulator.for_model(model, problem.free_names)
         masked = without_samples(problem, course.mask)
         try:
-            fitted.append(estimate_physics(masked, stepper, course.lengths, found.settings.seed).result)
+            fitted.append(estimate_physics(masked, simulator, course.lengths, found.settings.seed).result)
         except NumericalError:  # this start overflows; another may not
             continue
-    if not fitted or stepper is None:
+    if not fitted or simulator is None:
         return None
     best = min(fitted, key=lambda result: result.mse).problem
     complete = problem_for(physics, model, {})
-    held_out = held_out_error(complete, best, stepper, course)
+    held_out = held_out_error(complete, best, simulator, course)
     lost = held_out / found.polished.chosen.held_out - 1.0
-    return NamedTerm(attachment, match, held_out, lost, best, stepper)
+    return NamedTerm(attachment, match, held_out, lost, best, simulator)
 
 
 def on_all_samples(term: NamedTerm, found: Trained) -> FitResult:
@@ -78,4 +78,4 @@ def on_all_samples(term: NamedTerm, found: Trained) -> FitResult:
         NumericalError: the simulation overflows.
     """
     problem = replace(term.problem, records=found.physics.problem.records)
-    return fit(problem, stepper=term.stepper, seed=found.settings.seed, starts=1)
+    return fit(problem, simulator=term.simulator, seed=found.settings.seed, starts=1)

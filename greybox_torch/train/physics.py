@@ -12,11 +12,11 @@ from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.fit import FitResult, fit
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
+from greybox_torch.estimate.simulators import fine_enough
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulation.stepper import Stepper, make_stepper
-from greybox_torch.simulation.substeps import choose_substeps
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 from greybox_torch.train.settings import TrainingSettings
 from greybox_torch.train.stages import window_lengths
 
@@ -52,8 +52,8 @@ def fit_physics(
     """
     settings = settings or TrainingSettings()
     problem = training_problem(data, model, values)
-    stepper = make_stepper(model, problem.free_names, device=device)
-    return estimate_physics(problem, stepper, window_lengths(problem.records, settings), settings.seed)
+    simulator = Simulator.of(model, problem.free_names, SimulationOptions(device))
+    return estimate_physics(problem, simulator, window_lengths(problem.records, settings), settings.seed)
 
 
 def training_problem(data: DataSet, model: GreyBoxModel, values: Mapping[str, float] | None = None) -> Problem:
@@ -69,19 +69,18 @@ def training_problem(data: DataSet, model: GreyBoxModel, values: Mapping[str, fl
     return problem_for(problem, model, values or {}) if values or base is not model else problem
 
 
-def estimate_physics(problem: Problem, stepper: Stepper, lengths: Sequence[int], seed: int = 0) -> Physics:
+def estimate_physics(problem: Problem, simulator: Simulator, lengths: Sequence[int], seed: int = 0) -> Physics:
     """The plain model estimated by way of windows of rising ``lengths``, and from its start values directly; the better of the two.
 
     Raises:
         NumericalError: the simulation overflows either way.
     """
-    substeps = choose_substeps(problem.driving_records, stepper, problem.values, problem.initial) or 1
-    chain = windows_in_turn(problem, stepper, lengths, substeps, None)
+    chain = windows_in_turn(problem, fine_enough(simulator, problem), lengths, None)
     found = []
     if chain:
-        found.append(_fitted(on_whole_records(chain[-1], problem), stepper, seed))
+        found.append(_fitted(on_whole_records(chain[-1], problem), simulator, seed))
     try:
-        found.append(_fitted(problem, stepper, seed))
+        found.append(_fitted(problem, simulator, seed))
     except NumericalError:
         if not found:
             raise
@@ -91,9 +90,8 @@ def estimate_physics(problem: Problem, stepper: Stepper, lengths: Sequence[int],
 
 def windows_in_turn(
     problem: Problem,
-    stepper: Stepper,
+    simulator: Simulator,
     lengths: Sequence[int],
-    substeps: int,
     size: float | None,
     settings: Settings = SETTINGS,
 ) -> list[WindowFit]:
@@ -106,7 +104,7 @@ def windows_in_turn(
     for length in lengths:
         before = found[-1] if found else None
         begun = problem if before is None else problem.with_values(before.problem.values)
-        fitted = fit_windows(begun, stepper, length, shorter=before, substeps=substeps, settings=settings, size=size)
+        fitted = fit_windows(begun, simulator, length, shorter=before, settings=settings, size=size)
         if fitted is None:
             break
         found.append(fitted)
@@ -120,8 +118,8 @@ def on_whole_records(windows: WindowFit, problem: Problem) -> Problem:
     return problem.with_values(windows.problem.values, initial)
 
 
-def _fitted(problem: Problem, stepper: Stepper, seed: int) -> FitResult:
-    return fit(problem, stepper=stepper, seed=seed, starts=1)
+def _fitted(problem: Problem, simulator: Simulator, seed: int) -> FitResult:
+    return fit(problem, simulator=simulator, seed=seed, starts=1)
 
 
 def with_physics(problem: Problem, physics: np.ndarray) -> Problem:

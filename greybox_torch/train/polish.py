@@ -15,7 +15,7 @@ import numpy as np
 from greybox_torch.estimate.free_run import FreeRun, simulate
 from greybox_torch.estimate.levenberg_marquardt import Optimum, Quadratic, Settings, minimise
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.train.curriculum import Curriculum
 from greybox_torch.train.physics import on_whole_records, windows_in_turn, with_physics
 from greybox_torch.train.stages import without_samples
@@ -97,11 +97,11 @@ class PenalisedRun:
         )
 
 
-def polish(course: Curriculum, z: np.ndarray, physics: Problem, plain: Stepper, told: Told) -> Polished:
+def polish(course: Curriculum, z: np.ndarray, physics: Problem, plain: Simulator, told: Told) -> Polished:
     """From the unknowns ``z`` (d,) that the windows were left with to the optimum of whole records.
 
     Args:
-        physics: the plain model at its own optimum, on the same records, and ``plain`` its stepper.
+        physics: the plain model at its own optimum, on the same records, and ``plain`` its simulator.
         told: is told what is being done.
     """
     hybrid = course.unknowns.hybrid.problem
@@ -122,7 +122,7 @@ def polish(course: Curriculum, z: np.ndarray, physics: Problem, plain: Stepper, 
         return Polished(_at_rest(course.unknowns, hybrid, physics), chosen, choices, None)
     told(f"Gauss-Newton on all samples, penalty {chosen.weight:g}")
     best = next(problem for choice, problem in trials if choice is chosen)
-    run = FreeRun(replace(best, records=hybrid.records), course.stepper, course.substeps)
+    run = FreeRun(replace(best, records=hybrid.records), course.simulator)
     optimum = PenalisedRun(run, course.unknowns, chosen.weight * course.mean_square).minimum(LAST_SETTINGS)
     return Polished(run.problem if optimum is None else run.at(optimum.point), chosen, choices, optimum)
 
@@ -140,31 +140,31 @@ def _by_windows(course: Curriculum, values: np.ndarray) -> Problem:
     longest = max(course.lengths[-1], int(masked.records.lengths.max()) // LONGEST_PART)
     lengths = [*course.lengths, *([longest] if longest > course.lengths[-1] else [])]
     size = course.unknowns.force
-    found = windows_in_turn(masked, course.stepper, lengths, course.substeps, size, WINDOW_SETTINGS)
+    found = windows_in_turn(masked, course.simulator, lengths, size, WINDOW_SETTINGS)
     return on_whole_records(found[-1], masked) if found else masked
 
 
 def _trial(course: Curriculum, start: Problem, weight: float) -> tuple[Choice, Problem] | None:
-    run = FreeRun(start, course.stepper, course.substeps)
+    run = FreeRun(start, course.simulator)
     optimum = PenalisedRun(run, course.unknowns, weight * course.mean_square).minimum(RECORD_SETTINGS)
     if optimum is None:
         return None
     at = run.at(optimum.point)
-    return Choice(weight, held_out_error(course.unknowns.hybrid.problem, at, course.stepper, course)), at
+    return Choice(weight, held_out_error(course.unknowns.hybrid.problem, at, course.simulator, course)), at
 
 
-def held_out_error(complete: Problem, at: Problem, stepper: Stepper, course: Curriculum) -> float:
+def held_out_error(complete: Problem, at: Problem, simulator: Simulator, course: Curriculum) -> float:
     """Mean squared weighted error of the free run of ``at`` on the held-out samples of ``complete``; infinite where it overflows."""
-    simulated, mask = np.concatenate(simulate(at, stepper, substeps=course.substeps)).T, course.mask
+    simulated, mask = np.concatenate(simulate(at, simulator)).T, course.mask
     with np.errstate(all="ignore"):
         errors = ((complete.records.y - simulated) * complete.weights[:, None])[:, mask]
         value = float(np.nanmean(errors**2)) if np.isfinite(simulated).all() else float("inf")
     return value if np.isfinite(value) else float("inf")
 
 
-def _physics_alone(course: Curriculum, physics: Problem, plain: Stepper) -> Choice:
+def _physics_alone(course: Curriculum, physics: Problem, plain: Simulator) -> Choice:
     """The plain model on the same footing: estimated without the held-out stretches, unless it is frozen."""
-    run = FreeRun(without_samples(physics, course.mask), plain, course.substeps)
+    run = FreeRun(without_samples(physics, course.mask), plain)
     optimum = (
         None
         if course.settings.freeze_physics

@@ -13,7 +13,8 @@ from greybox_torch.estimate.overflow import overflow_error
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Stepper, Windows, cut
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import Windows, cut
 from greybox_torch.train.gradients import Batch
 from greybox_torch.train.settings import TrainingSettings
 
@@ -99,9 +100,8 @@ def stage(problem: Problem, length: int, starts: np.ndarray, mask: np.ndarray, w
 
 def fitted_starts(
     problem: Problem,
-    stepper: Stepper,
+    simulator: Simulator,
     length: int,
-    substeps: int,
     *,
     starts: np.ndarray | None = None,
     shorter: tuple[int, np.ndarray] | None = None,
@@ -120,9 +120,7 @@ def fitted_starts(
     if shorter is not None:
         windows = cut(problem.records, shorter[0])
         before = WindowFit(fixed, windows, shorter[1], 0.0, np.zeros(len(windows.start)), 0)
-    found = fit_windows(
-        fixed, stepper, length, starts=starts, shorter=before, substeps=substeps, settings=START_SETTINGS
-    )
+    found = fit_windows(fixed, simulator, length, starts=starts, shorter=before, settings=START_SETTINGS)
     if found is None:
-        raise overflow_error("training", problem, stepper, substeps)
+        raise overflow_error("training", problem, simulator)
     return found.starts

@@ -19,7 +19,7 @@ from greybox_torch.estimate.surroundings import survey
 from greybox_torch.estimate.termination import Termination
 from greybox_torch.estimate.uncertainty import uncertainty
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulation.stepper import Stepper, make_stepper
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 from greybox_torch.train.curriculum import Curriculum, descend
 from greybox_torch.train.gradients import make_gradient
 from greybox_torch.train.gradients.tangents import TangentsGradient
@@ -84,18 +84,19 @@ def train_hybrid(
     if resume:
         check_snapshot(_path(snapshot), about)
     tell(Report("estimating the physics"))
-    plain = make_stepper(model, problem.free_names, device=device)
+    plain = Simulator.of(model, problem.free_names, SimulationOptions(device))
     alone = physics or estimate_physics(problem, plain, lengths, settings.seed)
     before = load_snapshot(_path(snapshot), about, alone) if resume else None
     alone = alone if before is None else before.physics
     result = alone.result
-    surroundings = survey(model, result.problem, plain, result.substeps)
+    plain = plain.with_substeps(result.substeps)
+    surroundings = survey(model, result.problem, plain)
     hybrid = attach_network(result.problem, site.name, learner, surroundings)
     hybrid = _frozen(hybrid) if settings.freeze_physics else _begun(hybrid, alone.values)
     if before is not None:
         check_unknowns(_path(snapshot), before, int(hybrid.problem.free.sum()), len(hybrid.problem.model.states))
-    stepper = make_stepper(hybrid.problem.model, hybrid.problem.free_names, device=device)
-    course = _course(hybrid, stepper, settings, lengths, result, device, before)
+    simulator = plain.for_model(hybrid.problem.model, hybrid.problem.free_names)
+    course = _course(hybrid, simulator, settings, lengths, before)
     state = TrainingState.new(course.unknowns.start, settings.seed) if before is None else before.state
     kept = Keeper(snapshot, about, alone, course)
 
@@ -109,7 +110,7 @@ def train_hybrid(
     finally:
         kept.last()
     polished = polish(course, state.z, result.problem, plain, lambda what: tell(Report(what, 1.0)))
-    augmented = _result(polished, stepper, result)
+    augmented = _result(polished, simulator)
     seconds = time.perf_counter() - began
     return Trained(result, augmented, hybrid, polished, tuple(state.history), settings, seconds, course)
 
@@ -133,19 +134,17 @@ def _begun(hybrid: Hybrid, values: np.ndarray) -> Hybrid:
 
 def _course(
     hybrid: Hybrid,
-    stepper: Stepper,
+    simulator: Simulator,
     settings: TrainingSettings,
     lengths: tuple[int, ...],
-    physics: FitResult,
-    device: str,
     before: Snapshot | None,
 ) -> Curriculum:
-    problem, substeps = hybrid.problem, physics.substeps
+    problem = hybrid.problem
     mask = held_out_samples(problem.records, lengths[-1], settings)
     if before is None:
-        starts = fitted_starts(problem, stepper, lengths[0], substeps)
+        starts = fitted_starts(problem, simulator, lengths[0])
         batch = stage(problem, lengths[0], starts, mask, settings.warm_up).training_batch
-        run = TangentsGradient(problem, stepper, substeps).normal(problem.values, batch)
+        run = TangentsGradient(problem, simulator).normal(problem.values, batch)
         samples = max(batch.samples, 1)
         mean_square = max(float(run[-1, -1]) / samples, 1e-12 * _spread(problem) ** 2)
         unknowns = Unknowns.of(hybrid, np.diag(run)[:-1] / samples, mean_square)
@@ -153,8 +152,8 @@ def _course(
         mean_square, rest = before.mean_square, hybrid.problem.values[problem.free] / before.scale
         heights, own = hybrid.heights[problem.free], hybrid.is_network[problem.free]
         unknowns = Unknowns(hybrid, before.scale, np.where(heights, 0.0, rest), own)
-    gradient = make_gradient(settings.gradient, problem, stepper, substeps=substeps, device=device)
-    return Curriculum(unknowns, stepper, gradient, settings, lengths, mask, mean_square, _spread(problem), substeps)
+    gradient = make_gradient(settings.gradient, problem, simulator)
+    return Curriculum(unknowns, simulator, gradient, settings, lengths, mask, mean_square, _spread(problem))
 
 
 def _spread(problem: Problem) -> float:
@@ -162,10 +161,10 @@ def _spread(problem: Problem) -> float:
     return float(np.sqrt(np.mean(np.nanvar(problem.records.y * problem.weights[:, None], axis=1))))
 
 
-def _result(polished: Polished, stepper: Stepper, physics: FitResult) -> FitResult:
+def _result(polished: Polished, simulator: Simulator) -> FitResult:
     """The hybrid's estimate in the form of any other; deviations allow for the weights, which the data seldom determine one by one."""
     problem, optimum = polished.problem, polished.optimum
-    run = FreeRun(problem, stepper, physics.substeps)
+    run = FreeRun(problem, simulator)
     here = run.quadratic(run.start)
     mse = float("inf") if here is None else 2.0 * here.cost / problem.samples
     share = len(run.start) / problem.samples
@@ -178,5 +177,5 @@ def _result(polished: Polished, stepper: Stepper, physics: FitResult) -> FitResu
         evaluations=0 if optimum is None else optimum.evaluations,
         termination=Termination.stalled if optimum is None else optimum.termination,
         uncertainty=None if here is None else uncertainty(run, run.start),
-        substeps=physics.substeps,
+        substeps=simulator.substeps,
     )

@@ -22,7 +22,7 @@ from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.stored import attachment_json
 from greybox_torch.mechanisms.unknown import Unknown
-from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.systems import RobotArm, load_model
 from greybox_torch.train.physics import training_problem
 
@@ -35,7 +35,7 @@ def folder(motor_folder: Callable[..., Path]) -> Path:
     folder = motor_folder(dead_zone=0.4)
     data, base = load_dataset(folder / "dataset.toml"), load_model(f"{folder / 'my_motor.py'}:Motor")
     problem = training_problem(data, base)
-    around = survey(base, problem, make_stepper(base, ()), 1)
+    around = survey(base, problem, Simulator.of(base))
     found = [attach(base, "actuator", ActuatorDeadzone()), attach(base, "rotor", Unknown("speed", 6))]
     values = {p.name: p.value for p in AugmentedModel(base, found, around).declared_parameters}
     effects = [attachment_json(a, around[a.port]) for a in found]

@@ -13,8 +13,11 @@ from hypothesis.extra.numpy import arrays
 
 from greybox_torch.model import GreyBoxModel, Signals
 from greybox_torch.simulation.native import NativeStepper
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Stepper, Windows, make_stepper
+from greybox_torch.simulation.simulator import make_stepper
+from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.windows import Windows
 from greybox_torch.systems import load_model
 
 POINTS = 8
@@ -43,11 +46,13 @@ def test_value_and_derivative(
     x, p = np.array([a + 0.00123, b + 0.00456]), np.array([c, d])
     run = stepper.run(
         Records(u[None], np.zeros((1, POINTS)), np.ones(POINTS), np.array([0]), np.array([POINTS - 1]), ("",), "zoh"),
-        Windows(np.arange(POINTS), np.arange(POINTS), 1),
-        p,
-        x.T,
-        tangents=True,
-        start_directions=np.broadcast_to(np.eye(2), (POINTS, 2, 2)),
+        Pass(
+            Windows(np.arange(POINTS), np.arange(POINTS), 1),
+            p,
+            x.T,
+            tangents=True,
+            start_directions=np.broadcast_to(np.eye(2), (POINTS, 2, 2)),
+        ),
     )
     assert run.dy is not None
     leaf_x = torch.tensor(x, requires_grad=True)
@@ -78,7 +83,7 @@ def _slopes(values: torch.Tensor, *leaves: torch.Tensor) -> np.ndarray:
 def test_power_of_zero_has_a_slope_in_its_exponent(model: GreyBoxModel, stepper: Stepper) -> None:
     records = Records(np.zeros((1, 1)), np.zeros((1, 1)), np.ones(1), np.array([0]), np.array([0]), ("",), "zoh")
     run = stepper.run(
-        records, Windows(np.array([0]), np.array([0]), 1), np.array([2.0, 0.0]), np.zeros((1, 2)), tangents=True
+        records, Pass(Windows(np.array([0]), np.array([0]), 1), np.array([2.0, 0.0]), np.zeros((1, 2)), tangents=True)
     )
     assert run.dy is not None
     row = [output.name for output in model.outputs].index("power_parameter")

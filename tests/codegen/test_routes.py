@@ -14,8 +14,11 @@ from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.native import NativeStepper
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Stepper, make_stepper, whole_records
+from greybox_torch.simulation.simulator import make_stepper
+from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.windows import whole_records
 from greybox_torch.systems import RobotArm
 
 
@@ -52,7 +55,7 @@ def records() -> Records:
 
 
 def simulated(stepper: Stepper, records: Records) -> tuple[np.ndarray, np.ndarray]:
-    run = stepper.run(records, whole_records(records), np.array([0.7]), np.ones((1, 1)), tangents=True)
+    run = stepper.run(records, Pass(whole_records(records), np.array([0.7]), np.ones((1, 1)), tangents=True))
     assert run.dy is not None
     return run.y, run.dy
 
@@ -160,7 +163,7 @@ def test_stribeck_term_does_not_overflow_at_high_speed() -> None:
     )
     p = np.array([{**arm.values(), "alpha": 50.0}[d.name] for d in arm.declared_parameters])
     run = make_stepper(arm, ("alpha", "F_cs")).run(
-        records, whole_records(records), p, np.array([[0.0, 0.0, 50.0, 50.0, 50.0]]), tangents=True
+        records, Pass(whole_records(records), p, np.array([[0.0, 0.0, 50.0, 50.0, 50.0]]), tangents=True)
     )
     assert run.dy is not None
     assert np.isfinite(run.y).all()

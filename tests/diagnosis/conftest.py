@@ -18,6 +18,8 @@ from greybox_torch.estimate.problem import Problem, all_starts_free, make_proble
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 from greybox_torch.systems import RobotArm
 from greybox_torch.systems.load import load_model
 
@@ -121,7 +123,7 @@ def begun() -> Callable[[DataSet, GreyBoxModel], Begun]:
 
     def begin(dataset: DataSet, model: GreyBoxModel, substeps: int = 1) -> Begun:
         problem = all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
-        return Begun(*fit_plain_model(Study(problem, substeps)))
+        return Begun(*fit_plain_model(Study(problem, SimulationOptions(substeps=substeps))))
 
     return begin
 
@@ -136,14 +138,14 @@ def dead_zone_search(motor_data, motor, begun) -> Begun:
 def arm_search(data_set, begun) -> Begun:
     """A short, rich record of the robot arm as the model has it."""
     from greybox_torch.simulation.records import Records
-    from greybox_torch.simulation.stepper import make_stepper, whole_records
+    from greybox_torch.simulation.windows import whole_records
 
     arm, n, step = RobotArm(), 1500, 1e-3
     t = step * np.arange(n)
     torque = 6.0 * np.sign(np.sin(4.0 * t)) + sum(np.sin(2 * np.pi * f * t + f) for f in (7.0, 13.0, 23.0))
     records = Records(torque[None], np.zeros((1, n)), np.full(n, step), np.array([0]), np.array([n - 1]), ("",), "zoh")
     p = np.array(list(arm.values().values()))
-    speed = make_stepper(arm, ()).run(records, whole_records(records), p, np.zeros((1, 5))).y[0, :, 0]
+    speed = Simulator.of(arm).run(records, Pass(whole_records(records), p, np.zeros((1, 5)))).y[0, :, 0]
     noisy = speed + np.random.default_rng(3).normal(0, 0.01, n)
     return begun(
         data_set(

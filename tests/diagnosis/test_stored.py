@@ -17,7 +17,8 @@ from greybox_torch.mechanisms.stored import attachment_json, restored_model
 from greybox_torch.mechanisms.transmission import Backlash
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulation.eager import EagerStepper
-from greybox_torch.simulation.stepper import Windows
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.windows import Windows
 from greybox_torch.systems import RobotArm
 
 
@@ -43,7 +44,8 @@ def test_round_trip_gives_the_same_simulation(arm_search) -> None:
     p = np.array([v + 0.01 * rng.uniform() for v in model.values().values()])
     x0, windows = 0.01 * rng.normal(size=(1, len(model.states))), Windows(np.array([0]), np.array([19]), 20)
     one, other = (
-        EagerStepper.of(m, (), "cpu", "double").run(m.prepared(records, p), windows, p, x0).y for m in (model, again)
+        EagerStepper.of(m, (), "cpu", "double").run(m.prepared(records, p), Pass(windows, p, x0)).y
+        for m in (model, again)
     )
     assert np.array_equal(one, other) and np.ptp(one) > 0
 

@@ -10,7 +10,9 @@ import pytest
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.model.ports import driving_body
-from greybox_torch.simulation.stepper import make_stepper, whole_records
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import whole_records
 from greybox_torch.systems import RobotArm
 from greybox_torch.systems.load import load_model
 
@@ -19,7 +21,9 @@ from greybox_torch.systems.load import load_model
 def states(arm_search) -> np.ndarray:
     """Along windows of the middle length, each from its own start."""
     plain, over = arm_search.plain, arm_search.plain.fits[1]
-    run = plain.stepper.run(over.problem.records, over.windows, over.problem.values, over.starts, keep_states=True)
+    run = plain.simulator.run(
+        over.problem.records, Pass(over.windows, over.problem.values, over.starts, keep_states=True)
+    )
     sizes = np.diff(over.windows.start, append=plain.problem.records.u.shape[1])
     return np.concatenate([run.states[w, :n] for w, n in enumerate(sizes)])
 
@@ -83,10 +87,10 @@ def test_position_of_the_model_and_missing_samples(data_set, machines: Path) -> 
     units = {"torque": "N m", "position": "rad", "velocity": "rad/s"}
     dataset = data_set(units, [{"torque": 0 * angle, "position": angle, "velocity": 0 * angle}])
     problem = make_problem(dataset, pendulum, dataset.recordings)
-    stepper = make_stepper(pendulum, ())
-    around = survey(pendulum, problem, stepper, 1)
-    run = stepper.run(
-        problem.records, whole_records(problem.records), problem.values, problem.initial, keep_states=True
+    simulator = Simulator.of(pendulum, ())
+    around = survey(pendulum, problem, simulator)
+    run = simulator.run(
+        problem.records, Pass(whole_records(problem.records), problem.values, problem.initial, keep_states=True)
     ).states[0]
     assert around["arm"].ranges["position"].high == run[:, 0].max()
     assert around["arm"].units["position"] == "rad"

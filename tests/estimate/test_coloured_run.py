@@ -10,7 +10,7 @@ from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import minimise
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.uncertainty import of_information
-from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.simulator import Simulator
 
 from ..machines.motor import Motor
 
@@ -31,7 +31,7 @@ def run_of(data_set, motor_speed):
         speed[200 : 200 + missing] = np.nan
         data = data_set({"voltage": "V", "speed": "rad/s"}, [{"voltage": voltage, "speed": speed}], sample_time=0.01)
         problem = make_problem(data, Motor(), data.recordings, values=TRUE)
-        return FreeRun(problem, make_stepper(problem.model, problem.free_names))
+        return FreeRun(problem, Simulator.of(problem.model, problem.free_names))
 
     return make
 

@@ -15,7 +15,9 @@ from greybox_torch.estimate.logarithmic import minimise_on_logarithms
 from greybox_torch.estimate.population import Members, Population, improve
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.simulation.stepper import make_stepper, whole_records
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import whole_records
 
 UNITS = {"torque": "N m", "position": "rad"}
 TRUTH = {"frequency": 2.3, "level": 0.8}
@@ -76,19 +78,19 @@ def test_a_good_start_is_not_left(oscillation: Any) -> None:
 
 def test_nothing_finite_is_none(oscillation: Any) -> None:
     lost = oscillation.with_values(np.array([np.inf, 1.0]))
-    assert descend(lost, Way(make_stepper(lost.model, lost.free_names), DEFAULT), 1) is None
+    assert descend(lost, Way(Simulator.of(lost.model, lost.free_names), DEFAULT), 1) is None
 
 
 def test_a_population_descends_as_its_members_would(oscillation: Any) -> None:
     """Every member, though all share their passes; one that overflows disturbs no other."""
-    stepper = make_stepper(oscillation.model, oscillation.free_names)
-    members = Members(oscillation, oscillation.records, stepper, 1)
+    simulator = Simulator.of(oscillation.model, oscillation.free_names)
+    members = Members(oscillation, oscillation.records, simulator)
     values = np.array([[2.31, 0.7], [np.inf, 1.0], [1.0, 1.0], [2.28, 2.0]])
     people = Population(values, np.zeros((4, 1, 1)), np.full(4, np.inf))
     found = improve(members, people, 40)
     assert found.cost[1] == np.inf
     for k in (0, 2, 3):
-        run = FreeRun(oscillation.with_values(values[k]), stepper)
+        run = FreeRun(oscillation.with_values(values[k]), simulator)
         alone = minimise(run.quadratic, run.start, *run.bounds)
         assert alone is not None
         assert found.values[k] == pytest.approx(alone.point, rel=1e-5)
@@ -96,7 +98,7 @@ def test_a_population_descends_as_its_members_would(oscillation: Any) -> None:
 
 
 def test_costs_are_those_of_the_normal_matrices(oscillation: Any) -> None:
-    members = Members(oscillation, oscillation.records, make_stepper(oscillation.model, oscillation.free_names), 1)
+    members = Members(oscillation, oscillation.records, Simulator.of(oscillation.model, oscillation.free_names))
     values = np.array([[2.0, 0.7], [1.0, 1.0]])
     people = Population(values, np.zeros((2, 1, 1)), np.full(2, np.inf))
     np.testing.assert_allclose(members.costs(people), members.normals(people)[0], rtol=1e-12)
@@ -144,11 +146,12 @@ def test_the_result_is_the_optimum_of_the_sequential_free_run(data_set: Any) -> 
     noisy = 0.8 * np.sin(2.3 * time) + rng.normal(0, 0.1, 3000)
     data = data_set(UNITS, [{"torque": 0 * time, "position": noisy}])
     problem = make_problem(data, Oscillation(), data.estimation()).with_values(np.array([2.29, 0.9]))
-    stepper = make_stepper(problem.model, problem.free_names)
+    simulator = Simulator.of(problem.model, problem.free_names)
 
     def sequential(z: np.ndarray) -> Quadratic[None]:
-        run = stepper.run(
-            problem.records, whole_records(problem.records), z, problem.initial, tangents=True, weights=problem.weights
+        run = simulator.run(
+            problem.records,
+            Pass(whole_records(problem.records), z, problem.initial, tangents=True, weights=problem.weights),
         )
         assert run.normal is not None
         matrix = run.normal[0]

@@ -17,7 +17,7 @@ from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.termination import Termination
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.systems import load_model
 
 UNITS = {"voltage": "V", "speed": "rad/s"}
@@ -166,24 +166,24 @@ def test_start_states_from_the_first_tenth(motor: GreyBoxModel, motor_speed: Any
     speed[30:] = 99.0
     data = data_set(UNITS, [{"voltage": voltage, "speed": speed}], initial={"speed": {"value": 0.0}})
     problem = problem_of(data, motor).with_values(np.array([0.02, 0.1, 0.05]))
-    found = estimate_initial(problem, make_stepper(motor, ()))
+    found = estimate_initial(problem, Simulator.of(motor, ()))
     assert found.initial[0, 0] == pytest.approx(3.0, rel=1e-6)
     assert found.values.tolist() == [0.02, 0.1, 0.05]
-    fixed = estimate_initial(problem.with_initial_fixed(), make_stepper(motor, ()))
+    fixed = estimate_initial(problem.with_initial_fixed(), Simulator.of(motor, ()))
     assert fixed.initial[0, 0] == 0.0
 
 
 def test_comparison(motor: GreyBoxModel, experiments: list[Any], data_set: Any) -> None:
     data = data_set(UNITS, experiments, roles=["estimation", "validation"], initial={"speed": {"value": 0.0}})
     problem = make_problem(data, motor, data.recordings).with_values(np.array([0.02, 0.1, 0.05]))
-    found = compare(problem, data.recordings, make_stepper(motor, ()))
+    found = compare(problem, data.recordings, Simulator.of(motor, ()))
     assert [(s.experiment, s.role, s.output) for s in found.scores] == [
         ("run 1", "estimation", "speed"),
         ("run 2", "validation", "speed"),
     ]
     assert [s.fit for s in found.scores] == pytest.approx([100.0, 100.0], abs=1e-3)
     assert [run.shape for run in found.simulated] == [(400, 1), (240, 1)]
-    as_given = compare(problem, data.recordings, make_stepper(motor, ()), estimate_starts=False)
+    as_given = compare(problem, data.recordings, Simulator.of(motor, ()), estimate_starts=False)
     assert max(s.fit for s in as_given.scores) < 99.0
 
 
@@ -243,11 +243,11 @@ def test_standard_deviations_by_monte_carlo(motor: GreyBoxModel, experiments: li
     rng = np.random.default_rng(3)
     exact = problem_of(data_set(UNITS, experiments), motor)
     exact = exact.with_values(np.array([0.02, 0.1, 0.05]), np.array([[2.0], [-1.0]]))
-    stepper = make_stepper(motor, exact.free_names)
+    simulator = Simulator.of(motor, exact.free_names)
     estimates, claims = [], {"plain": [], "sandwich": []}
     for _ in range(150):
         y = exact.records.y + rng.normal(0, 0.2, exact.records.y.shape)
-        found = fit(replace(exact, records=replace(exact.records, y=y)), stepper=stepper)
+        found = fit(replace(exact, records=replace(exact.records, y=y)), simulator=simulator)
         estimates.append([*found.problem.values[[0, 2]], *found.problem.initial[:, 0]])
         for kind, rows in claims.items():
             rows.append([*found.parameter_deviations(kind).values(), *found.initial_deviations(kind)[:, 0]])
@@ -264,11 +264,11 @@ def test_the_sandwich_allows_for_coloured_noise(motor: GreyBoxModel, experiments
     rng = np.random.default_rng(4)
     exact = problem_of(data_set(UNITS, experiments[:1]), motor)
     exact = exact.with_values(np.array([0.02, 0.1, 0.05]), np.array([[2.0]]))
-    stepper = make_stepper(motor, exact.free_names)
+    simulator = Simulator.of(motor, exact.free_names)
     estimates, plain, sandwich = [], [], []
     for _ in range(60):
         slow = np.convolve(rng.normal(0, 0.2, 400 + 5), np.ones(6) / np.sqrt(6), mode="valid")
-        found = fit(replace(exact, records=replace(exact.records, y=exact.records.y + slow)), stepper=stepper)
+        found = fit(replace(exact, records=replace(exact.records, y=exact.records.y + slow)), simulator=simulator)
         estimates.append(found.problem.values[2])
         plain.append(found.parameter_deviations()["b"])
         sandwich.append(found.parameter_deviations("sandwich")["b"])

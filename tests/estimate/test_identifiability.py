@@ -19,7 +19,7 @@ from greybox_torch.estimate.information import echelon
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.termination import Outcome, Termination
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 from greybox_torch.systems import load_model
 
 UNITS = {"voltage": "V", "speed": "rad/s"}
@@ -117,8 +117,8 @@ def problem_of(data: DataSet, model: GreyBoxModel) -> Problem:
 def look(problem: Problem, precision: str = "double", **values: float) -> tuple[Unidentifiable, ...]:
     numbers = [values.get(n, v) for n, v in zip(problem.names, problem.values, strict=True)]
     problem = problem.with_values(np.array(numbers))
-    run = FreeRun(problem, make_stepper(problem.model, problem.free_names, precision=precision))
-    return identifiability(run, run.start, precision=precision)
+    run = FreeRun(problem, Simulator.of(problem.model, problem.free_names, SimulationOptions(precision=precision)))
+    return identifiability(run, run.start)
 
 
 @pytest.mark.parametrize("precision", ["double", "single"])

@@ -13,7 +13,7 @@ from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.overflow import avoidance, first_overflow, overflow_error, remedies
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.simulator import Simulator
 
 
 class Growth(GreyBoxModel):
@@ -41,8 +41,8 @@ def problem(data_set: Any) -> Problem:
 
 def test_where_and_when(problem: Problem) -> None:
     """One Runge-Kutta step of 10 ms multiplies by 1 + 4 + 8 + 64/6 + 256/24 = 34.33."""
-    stepper = make_stepper(problem.model, problem.free_names)
-    found = first_overflow(problem, simulate(problem, stepper))
+    simulator = Simulator.of(problem.model, problem.free_names)
+    found = first_overflow(problem, simulate(problem, simulator))
     assert found is not None
     beyond = int(np.ceil(np.log(np.finfo(float).max) / np.log(34.0 + 1 / 3)))
     assert found.experiment == "run 1"
@@ -52,19 +52,19 @@ def test_where_and_when(problem: Problem) -> None:
 
 
 def test_start_values_that_avoid_it(problem: Problem) -> None:
-    stepper = make_stepper(problem.model, problem.free_names)
-    (found,) = remedies(problem, stepper)
+    simulator = Simulator.of(problem.model, problem.free_names)
+    (found,) = remedies(problem, simulator)
     assert (found.name, found.before, found.unit) == ("a", 400.0, "1/s")
     assert found.value < 200.0
     there = problem.with_values(np.array([found.value, 1.0]))
-    assert first_overflow(there, simulate(there, stepper)) is None
+    assert first_overflow(there, simulate(there, simulator)) is None
     assert str(found) == f"a = {found.value:g} 1/s (now 400)"
 
 
 def test_none_avoids_it(problem: Problem) -> None:
     held = problem.with_values(np.array([4e6, 1.0]))
     held = make_narrow(held)
-    assert remedies(held, make_stepper(problem.model, problem.free_names)) == ()
+    assert remedies(held, Simulator.of(problem.model, problem.free_names)) == ()
     assert "check units, scales and signs" in avoidance(())
 
 
@@ -75,8 +75,8 @@ def make_narrow(problem: Problem) -> Problem:
 
 
 def test_the_error_says_all_of_it(problem: Problem) -> None:
-    stepper = make_stepper(problem.model, problem.free_names)
-    message = str(overflow_error("simulating", problem, stepper, 1))
+    simulator = Simulator.of(problem.model, problem.free_names)
+    message = str(overflow_error("simulating", problem, simulator))
     assert message.startswith("simulating Growth: failed: the simulation overflows at the start values (at t = ")
     assert " s in 'run 1'; it does not with a = " in message
     assert message.endswith("try start values nearer to the truth, tighter bounds, or a smaller sample time")

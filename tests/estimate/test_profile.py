@@ -15,7 +15,7 @@ from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.profile import THRESHOLD, Profile, check_profiled, profile
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.report.profile import plot_profile
-from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.systems import load_model
 
 UNITS = {"voltage": "V", "speed": "rad/s"}
@@ -49,7 +49,7 @@ def line(data_set: Any) -> Any:
 
 
 def of(found: FitResult, name: str) -> Profile:
-    return profile(found, make_stepper(found.problem.model, found.problem.free_names), name)
+    return profile(found, Simulator.of(found.problem.model, found.problem.free_names), name)
 
 
 @pytest.mark.parametrize("name", ["a", "b"])
@@ -87,8 +87,8 @@ def test_what_only_ratios_determine_is_open(machines: Path, motor_speed: Any, da
     free = {"k": {"fixed": False}, "b": {"upper": 0.1, "value": 0.06}}
     data = data_set(UNITS, [{"voltage": voltage, "speed": speed}], parameters=free)
     result = fit(make_problem(data, load_model(f"{machines / 'motor.py'}:Motor"), data.recordings))
-    stepper = make_stepper(result.problem.model, result.problem.free_names)
-    found = profile(result, stepper, "k", settings=Settings(iterations=5, tolerance=1e-4))
+    simulator = Simulator.of(result.problem.model, result.problem.free_names)
+    found = profile(result, simulator, "k", settings=Settings(iterations=5, tolerance=1e-4))
     assert found.upper == pytest.approx(0.1 * 2.0, rel=0.1)
     inside = (found.values > 0) & (found.values < 0.95 * found.upper)
     assert np.abs(found.rise[inside]).max() < 0.1

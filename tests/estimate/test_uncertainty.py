@@ -8,7 +8,7 @@ import pytest
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.uncertainty import uncertainty
-from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.simulator import Simulator
 
 from ..machines.motor import Motor
 
@@ -21,7 +21,7 @@ def run(data_set, motor_speed) -> FreeRun:
     speed = motor_speed(voltage) + rng.normal(0.0, 0.05, len(voltage))
     data = data_set({"voltage": "V", "speed": "rad/s"}, [{"voltage": voltage, "speed": speed}])
     problem = make_problem(data, Motor(), data.recordings, values={"J": 0.02, "k": 0.1, "b": 0.05})
-    return FreeRun(problem, make_stepper(problem.model, problem.free_names))
+    return FreeRun(problem, Simulator.of(problem.model, problem.free_names))
 
 
 def test_no_penalty_is_a_penalty_of_zero(run: FreeRun) -> None:

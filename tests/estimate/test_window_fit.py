@@ -11,7 +11,7 @@ from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.simulator import Simulator
 
 UNITS = {"voltage": "V", "speed": "rad/s"}
 TIGHT = Settings(iterations=60, tolerance=1e-12, trials=10)
@@ -50,10 +50,10 @@ def recorded(data_set: Any, extra: float) -> Problem:
 
 def fitted(problem: Problem) -> WindowFit:
     """Fitted three times over: each fit holds the start states, weakly, where it began."""
-    stepper = make_stepper(problem.model, problem.free_names)
+    simulator = Simulator.of(problem.model, problem.free_names)
     found = None
     for _ in range(3):
-        found = fit_windows(problem, stepper, 100, settings=TIGHT)
+        found = fit_windows(problem, simulator, 100, settings=TIGHT)
         assert found is not None
         problem = found.problem
     assert found is not None

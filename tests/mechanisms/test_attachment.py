@@ -27,8 +27,10 @@ from greybox_torch.model import Balance, Body, GreyBoxModel, Input, Output, Para
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.native import NativeStepper
 from greybox_torch.simulation.odeint import solve
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import make_stepper, whole_records
+from greybox_torch.simulation.simulator import make_stepper
+from greybox_torch.simulation.windows import whole_records
 from greybox_torch.systems import RobotArm
 
 STEP = 1e-3
@@ -79,7 +81,7 @@ def starts(model: GreyBoxModel, base: np.ndarray, **given: float) -> np.ndarray:
 
 def free_run(model: GreyBoxModel, records: Records, p: np.ndarray, x0: np.ndarray, stepper: Any = None) -> np.ndarray:
     stepper = stepper or EagerStepper.of(model, (), "cpu", "double")
-    return stepper.run(model.prepared(records, p), whole_records(records), p, x0).y[:, :, 0]
+    return stepper.run(model.prepared(records, p), Pass(whole_records(records), p, x0)).y[:, :, 0]
 
 
 def at(port: str, mechanism: Mechanism, **rest: Any) -> Attachment:
@@ -310,8 +312,10 @@ def test_native_and_eager_agree(full, compiled) -> None:
     records = records_of(40)
     prepared = model.prepared(records, p)
     options = {"tangents": True, "start_directions": np.eye(x0.shape[1])[None]}
-    fast = compiled.run(prepared, whole_records(records), p, x0, **options)
-    slow = EagerStepper.of(model, SENSITIVE, "cpu", "double").run(prepared, whole_records(records), p, x0, **options)
+    fast = compiled.run(prepared, Pass(whole_records(records), p, x0, **options))
+    slow = EagerStepper.of(model, SENSITIVE, "cpu", "double").run(
+        prepared, Pass(whole_records(records), p, x0, **options)
+    )
     np.testing.assert_allclose(fast.y, slow.y, rtol=1e-11, atol=1e-11)
     assert fast.dy is not None and slow.dy is not None
     scale = np.abs(slow.dy).max(axis=(0, 1, 2))
@@ -324,7 +328,7 @@ def test_native_and_odeint_agree(full, compiled, around) -> None:
     model = attached(ARM, around, *EFFECTS)
     records = records_of(60)
     prepared = model.prepared(records, p)
-    fine = compiled.run(prepared, whole_records(records), p, x0, substeps=16).y[0, :, 0]
+    fine = compiled.run(prepared, Pass(whole_records(records), p, x0), substeps=16).y[0, :, 0]
     model.set_values(dict(zip(model.values(), p, strict=True)))
     with torch.no_grad():
         reference = solve(model, prepared, whole_records(records), torch.as_tensor(x0.T), method="dopri5")
@@ -343,7 +347,7 @@ def test_tangents_are_differences(full, compiled, name) -> None:
 
     step = 1e-6 * p[index]
     expected = (output(p[index] + step) - output(p[index] - step)) / (2 * step)
-    run = compiled.run(model.prepared(records, p), whole_records(records), p, x0, tangents=True)
+    run = compiled.run(model.prepared(records, p), Pass(whole_records(records), p, x0, tangents=True))
     assert run.dy is not None
     tangent = run.dy[0, :, 0, SENSITIVE.index(name)]
     assert np.abs(expected).max() * abs(p[index]) > 1e-4
@@ -368,7 +372,7 @@ def test_tangents_of_effects_that_are_not_there(around) -> None:
     fast = make_stepper(model, names, at_zero=names[1:])
     assert isinstance(fast, NativeStepper)
     runs = [
-        s.run(records, whole_records(records), p, x0, tangents=True).dy
+        s.run(records, Pass(whole_records(records), p, x0, tangents=True)).dy
         for s in (fast, EagerStepper.of(model, names, "cpu", "double"))
     ]
     assert (np.abs(runs[1]).max(axis=(0, 1, 2)) > 0).all()
@@ -413,7 +417,7 @@ def test_transmission_error_with_its_whole_reaction_neither_makes_nor_loses_ener
     records = replace(records_of(2000), u=np.zeros((1, 2000)))
     x0 = starts(model, np.array([[0.3, 0.0, 6.0, 5.0, 4.0]]))
     stepper = EagerStepper.of(model, (), "cpu", "double")
-    states = stepper.run(records, whole_records(records), p, x0, keep_states=True).states
+    states = stepper.run(records, Pass(whole_records(records), p, x0, keep_states=True)).states
     assert states is not None
     value = dict(zip((q.name for q in model.declared_parameters), p, strict=True))
     gear, arm, *speeds, angle = states[0].T

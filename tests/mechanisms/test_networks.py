@@ -23,8 +23,10 @@ from greybox_torch.model import Signals
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.native import NativeStepper
 from greybox_torch.simulation.odeint import solve
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Windows, make_stepper
+from greybox_torch.simulation.simulator import make_stepper
+from greybox_torch.simulation.windows import Windows
 from greybox_torch.systems import RobotArm
 
 UNITS = {"speed": "rad/s", "load": "N m", "position": "rad", "time": "s", "deflection": "rad", "rate": "rad/s"}
@@ -166,7 +168,7 @@ def test_the_hybrid_begins_as_the_physics(port: str, net: Network) -> None:
     model, records = hybrid(port, net), arm_records()
     windows = Windows(np.array([0]), np.array([59]), 60)
     own, plain = (
-        make_stepper(m, ()).run(records, windows, np.array(list(m.values().values())), x0).y
+        make_stepper(m, ()).run(records, Pass(windows, np.array(list(m.values().values())), x0)).y
         for m, x0 in ((model, started(model)), (RobotArm(), started(model)[:, :5]))
     )
     np.testing.assert_array_equal(own, plain)
@@ -183,8 +185,8 @@ def test_every_route_gives_the_same(port: str, net: Network) -> None:
     free = tuple(q.name for q in model.declared_parameters if not q.fixed and q.name.startswith(port))
     native = make_stepper(model, free)
     assert isinstance(native, NativeStepper)
-    compiled = native.run(records, windows, p, x0, tangents=True)
-    eager = EagerStepper.of(model, free, "cpu", "double").run(records, windows, p, x0, tangents=True)
+    compiled = native.run(records, Pass(windows, p, x0, tangents=True))
+    eager = EagerStepper.of(model, free, "cpu", "double").run(records, Pass(windows, p, x0, tangents=True))
     np.testing.assert_allclose(compiled.y, eager.y, rtol=1e-12, atol=1e-12)
     assert compiled.dy is not None and eager.dy is not None
     np.testing.assert_allclose(compiled.dy, eager.dy, rtol=1e-7, atol=1e-12)

@@ -12,8 +12,10 @@ from hypothesis import strategies as st
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.simulation.continuous import chain, continuous, sequential_starts
 from greybox_torch.simulation.parallel_run import ParallelRun
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import make_stepper, whole_records
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
+from greybox_torch.simulation.windows import whole_records
 from greybox_torch.systems.robot_arm import RobotArm
 
 
@@ -53,26 +55,27 @@ def test_windows_of_a_chain_cover_every_sample_once(lengths: list[int], count: i
 def test_the_parallel_run_is_the_sequential_one(lengths: tuple[int, ...], hold: str, substeps: int) -> None:
     model, records = RobotArm(), torque_records(lengths, hold)
     names = ("F_v", "a_m", "k_g1", "d_a")
-    stepper = make_stepper(model, names)
+    simulator = Simulator.of(model, names, SimulationOptions(substeps=substeps))
     p = np.array(list(model.values().values()))
     estimated = np.array([list(model.values()).index(n) for n in names])
     x0 = np.random.default_rng(1).normal(0, 0.5, (len(lengths), 5))
     states = np.array([0, 2, 4])
-    parallel = ParallelRun(stepper, records, estimated, states, substeps)
+    parallel = ParallelRun(simulator, records, estimated, states)
     rough = np.zeros((len(parallel.links.windows.start), 5))
     directions = np.zeros((len(lengths), 3, 5))
     directions[:, np.arange(3), states] = 1.0
     for factor in (1.0, 1.02, 1.15):  # from nothing, from a trajectory nearby, from one farther away
         normals = parallel.normals(records, p * factor, x0 * factor, rough, np.array([0.7]))
-        exact = stepper.run(
+        exact = simulator.run(
             records,
-            whole_records(records),
-            p * factor,
-            x0 * factor,
-            tangents=True,
-            start_directions=directions,
-            substeps=substeps,
-            weights=np.array([0.7]),
+            Pass(
+                whole_records(records),
+                p * factor,
+                x0 * factor,
+                tangents=True,
+                start_directions=directions,
+                weights=np.array([0.7]),
+            ),
         ).normal
         assert normals is not None and exact is not None
         for parts, whole in zip(normals, exact, strict=True):
@@ -104,7 +107,7 @@ class Escaping(GreyBoxModel):
 
 def test_a_run_that_overflows_is_none() -> None:
     records = torque_records((800,), "zoh")
-    parallel = ParallelRun(make_stepper(Escaping(), ("a",)), records, np.array([0]), np.array([0]))
+    parallel = ParallelRun(Simulator.of(Escaping(), ("a",)), records, np.array([0]), np.array([0]))
     rough = np.zeros((len(parallel.links.windows.start), 1))
     assert parallel.normals(records, np.array([5.0]), np.array([[3.0]]), rough, np.ones(1)) is None
     assert parallel.sequential == 1
@@ -115,17 +118,17 @@ def test_where_newton_fails_the_sequential_run_serves() -> None:
     """Chaos: neighbouring trajectories part so quickly that no window start can be corrected from afar."""
     records = torque_records((1500,), "zoh")
     model = Lorenz()
-    stepper = make_stepper(model, ("rho",))
+    simulator = Simulator.of(model, ("rho",))
     links = chain(records)
     p, x0 = np.array([28.0]), np.array([[1.0, 1.0, 20.0]])
     rough = np.tile([[-8.0, 8.0, 27.0]], (len(links.windows.start), 1))
     wide = Records(records.u, records.y, np.full(1500, 0.02), records.first, records.last, records.names, "zoh")
-    assert continuous(stepper, wide, links, p, x0, guess=rough) is None
-    starts = sequential_starts(stepper, wide, links, p, x0)
-    run = stepper.run(wide, whole_records(wide), p, x0, keep_states=True)
+    assert continuous(simulator, wide, links, p, x0, guess=rough) is None
+    starts = sequential_starts(simulator, wide, links, p, x0)
+    run = simulator.run(wide, Pass(whole_records(wide), p, x0, keep_states=True))
     assert run.states is not None
     np.testing.assert_allclose(starts, run.states[0, links.windows.start], rtol=1e-12)
-    parallel = ParallelRun(stepper, wide, np.array([0]), np.array([0]))
+    parallel = ParallelRun(simulator, wide, np.array([0]), np.array([0]))
     assert parallel.normals(wide, p, x0, rough, np.ones(1)) is not None
     assert parallel.sequential == 1
 
@@ -164,7 +167,7 @@ def test_a_state_that_acts_on_nothing_is_no_hindrance() -> None:
     for model in (RobotArm(), Counting()):
         values = model.values()
         parallel = ParallelRun(
-            make_stepper(model, names), records, np.array([list(values).index(n) for n in names]), np.array([2, 4])
+            Simulator.of(model, names), records, np.array([list(values).index(n) for n in names]), np.array([2, 4])
         )
         rough = np.zeros((len(parallel.links.windows.start), len(model.states)))
         x0 = np.zeros((2, len(model.states)))

@@ -9,9 +9,11 @@ import pytest
 
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import make_records
-from greybox_torch.simulation.stepper import make_stepper, whole_records
+from greybox_torch.simulation.simulator import make_stepper
 from greybox_torch.simulation.substeps import choose_substeps
+from greybox_torch.simulation.windows import whole_records
 from greybox_torch.systems import load_model
 
 NAN = float("nan")
@@ -88,7 +90,7 @@ def test_substeps_are_as_few_as_accuracy_allows(motor: GreyBoxModel, data_set: A
         exact.append(decay * exact[-1] + (1 - decay) * v)
 
     def error(substeps: int) -> float:
-        run = stepper.run(records, whole_records(records), p, np.zeros((1, 1)), substeps=substeps)
+        run = stepper.run(records, Pass(whole_records(records), p, np.zeros((1, 1))), substeps=substeps)
         return float(np.sqrt(np.mean((run.y[0, :, 0] - exact) ** 2))) if np.isfinite(run.y).all() else np.inf
 
     chosen = choose_substeps(records, stepper, p, np.zeros((1, 1)), tolerance=3e-4)

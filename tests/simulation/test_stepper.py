@@ -15,8 +15,10 @@ from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.native import NativeStepper
 from greybox_torch.simulation.odeint import solve
+from greybox_torch.simulation.passes import Pass, Probes
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Probes, Windows, cut, make_stepper, whole_records
+from greybox_torch.simulation.simulator import SimulationOptions, make_stepper
+from greybox_torch.simulation.windows import Windows, cut, whole_records
 from greybox_torch.systems import RobotArm
 
 ARM = RobotArm()
@@ -80,11 +82,10 @@ def test_compiled_and_eager_agree(hold: str) -> None:
         "tangents": True,
         "start_directions": np.broadcast_to(np.eye(5), (4, 5, 5)),
         "tangents0": rng.standard_normal((4, len(P), 5)),
-        "substeps": 2,
         "keep_states": True,
     }
-    one = native().run(records, windows, p, x0, **options)
-    other = EagerStepper.of(ARM, PARAMETERS, "cpu", "double").run(records, windows, p, x0, **options)
+    one = native().run(records, Pass(windows, p, x0, **options), substeps=2)
+    other = EagerStepper.of(ARM, PARAMETERS, "cpu", "double").run(records, Pass(windows, p, x0, **options), substeps=2)
     for part in ("y", "dy", "x_end", "dx_end", "states"):
         expected = getattr(other, part)
         np.testing.assert_allclose(
@@ -96,7 +97,7 @@ def test_compiled_and_eager_agree(hold: str) -> None:
 def test_against_scipy(hold: str) -> None:
     records = arm_records((80,), hold)
     expected = scipy_states(records, arm_rates, X0)
-    run = native(names=()).run(records, whole_records(records), P, X0[None], substeps=8, keep_states=True)
+    run = native(names=()).run(records, Pass(whole_records(records), P, X0[None], keep_states=True), substeps=8)
     assert run.states is not None
     np.testing.assert_allclose(run.states[0], expected, rtol=1e-8, atol=1e-8)
     np.testing.assert_allclose(run.y[0, :, 0], expected[:, 2], rtol=1e-8)
@@ -110,7 +111,7 @@ def test_against_torchdiffeq(hold: str, method: str, tolerance: float) -> None:
     model = arm_with(P)
     x0 = X0 + np.array([[0, 0, 0, 0, 0], [0.01, 0, 1, 0, 0], [0, 0.02, -3, 2, 1]])
     outputs = solve(model, records, windows, torch.tensor(x0.T), method=method, rtol=1e-11, atol=1e-12)
-    run = native(names=()).run(records, windows, P, x0, substeps=1 if method == "rk4" else 8)
+    run = native(names=()).run(records, Pass(windows, P, x0), substeps=1 if method == "rk4" else 8)
     np.testing.assert_allclose(run.y[..., 0].T, outputs[0].detach().numpy(), rtol=tolerance, atol=tolerance)
 
 
@@ -129,7 +130,7 @@ def test_uneven_sample_times() -> None:
         *arm_ends(records),
         records.hold,
     )
-    run = native(names=()).run(uneven, whole_records(uneven), P, X0[None], substeps=8, keep_states=True)
+    run = native(names=()).run(uneven, Pass(whole_records(uneven), P, X0[None], keep_states=True), substeps=8)
     assert run.states is not None
     np.testing.assert_allclose(run.states[0], scipy_states(uneven, arm_rates, X0), rtol=1e-8, atol=1e-8)
 
@@ -174,7 +175,7 @@ def test_order_of_convergence(hold: str) -> None:
     exact = oscillator_solution(records, x0)
     stepper = native(Oscillator(), ())
     errors = [
-        np.abs(stepper.run(records, whole_records(records), p, x0[None], substeps=m).y[0, :, 0] - exact).max()
+        np.abs(stepper.run(records, Pass(whole_records(records), p, x0[None]), substeps=m).y[0, :, 0] - exact).max()
         for m in (1, 2, 4, 8, 16)
     ]
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
@@ -189,13 +190,13 @@ def test_tangents_of_every_parameter_and_start_state() -> None:
     )  # slow, so that all of the friction shows
     windows, stepper = whole_records(records), native()
     run = stepper.run(
-        records, windows, P, start[None], tangents=True, start_directions=np.eye(5)[None], keep_states=True
+        records, Pass(windows, P, start[None], tangents=True, start_directions=np.eye(5)[None], keep_states=True)
     )
     assert run.dy is not None
     assert run.dx_end is not None
 
     def outputs(p: np.ndarray, x0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        plain = stepper.run(records, windows, p, x0[None])
+        plain = stepper.run(records, Pass(windows, p, x0[None]))
         return plain.y[0, :, 0], plain.x_end[0]
 
     point = np.concatenate([P, start])
@@ -222,7 +223,7 @@ def test_gradients_of_the_torchdiffeq_route(method: str, adjoint: bool) -> None:
     target = np.linspace(14.0, 17.0, 40)
 
     def loss(p: np.ndarray, x0: np.ndarray) -> float:
-        return float(((stepper.run(records, windows, p, x0[None], substeps=8).y[0, :, 0] - target) ** 2).sum())
+        return float(((stepper.run(records, Pass(windows, p, x0[None]), substeps=8).y[0, :, 0] - target) ** 2).sum())
 
     model, leaf = arm_with(P), torch.tensor(X0[:, None], requires_grad=True)
     outputs = solve(model, records, windows, leaf, method=method, adjoint=adjoint, rtol=1e-9, atol=1e-10)
@@ -246,9 +247,13 @@ def changed(name: str, value: float) -> np.ndarray:
 @pytest.mark.parametrize("compiled", [True, False])
 def test_single_precision(compiled: bool) -> None:
     records = arm_records((60,))
-    double = native().run(records, whole_records(records), P, X0[None], tangents=True)
-    single = native(precision="float") if compiled else EagerStepper.of(ARM, PARAMETERS, "cpu", "float")
-    run = single.run(records, whole_records(records), P, X0[None], tangents=True)
+    double = native().run(records, Pass(whole_records(records), P, X0[None], tangents=True))
+    single = (
+        native(options=SimulationOptions(precision="float"))
+        if compiled
+        else EagerStepper.of(ARM, PARAMETERS, "cpu", "float")
+    )
+    run = single.run(records, Pass(whole_records(records), P, X0[None], tangents=True))
     assert double.dy is not None
     assert run.dy is not None
     assert 0 < np.abs(run.y - double.y).max() < 1e-3
@@ -257,11 +262,11 @@ def test_single_precision(compiled: bool) -> None:
 
 def test_windows_are_pieces_of_one_run() -> None:
     records = arm_records((150,))
-    whole = native().run(records, whole_records(records), P, X0[None], tangents=True, keep_states=True)
+    whole = native().run(records, Pass(whole_records(records), P, X0[None], tangents=True, keep_states=True))
     assert whole.states is not None
     starts = np.array([0, 1, 17, 64, 100])
     windows = Windows(starts, np.full(5, 149), 50)
-    pieces = native().run(records, windows, P, whole.states[0, starts], keep_states=True)
+    pieces = native().run(records, Pass(windows, P, whole.states[0, starts], keep_states=True))
     assert pieces.states is not None
     for piece, start in zip(range(5), starts, strict=True):
         np.testing.assert_allclose(pieces.y[piece], whole.y[0, start : start + 50], rtol=1e-12)
@@ -271,10 +276,11 @@ def test_windows_are_pieces_of_one_run() -> None:
 def test_a_record_continued_in_chunks() -> None:
     """The end of a chunk, with its tangents, is where the next begins."""
     records = arm_records((120,))
-    whole = native().run(records, whole_records(records), P, X0[None], tangents=True)
-    first = native().run(records, Windows(np.array([0]), np.array([119]), 70), P, X0[None], tangents=True)
+    whole = native().run(records, Pass(whole_records(records), P, X0[None], tangents=True))
+    first = native().run(records, Pass(Windows(np.array([0]), np.array([119]), 70), P, X0[None], tangents=True))
     rest = native().run(
-        records, Windows(np.array([70]), np.array([119]), 50), P, first.x_end, tangents=True, tangents0=first.dx_end
+        records,
+        Pass(Windows(np.array([70]), np.array([119]), 50), P, first.x_end, tangents=True, tangents0=first.dx_end),
     )
     for part in ("y", "dy"):
         joined = np.concatenate([getattr(first, part), getattr(rest, part)], axis=1)
@@ -286,13 +292,13 @@ def test_experiments_of_unequal_length() -> None:
     lengths = (90, 11, 47)
     records = arm_records(lengths)
     x0 = X0 * np.array([[1.0], [0.5], [-1.0]])
-    together = native().run(records, whole_records(records), P, x0, tangents=True)
+    together = native().run(records, Pass(whole_records(records), P, x0, tangents=True))
     for e, n in enumerate(lengths):
         part = records.span(e)
         alone = Records(
             records.u[:, part], records.y[:, part], records.dt[part], np.array([0]), np.array([n - 1]), ("",), "zoh"
         )
-        run = native().run(alone, whole_records(alone), P, x0[e : e + 1], tangents=True)
+        run = native().run(alone, Pass(whole_records(alone), P, x0[e : e + 1], tangents=True))
         assert run.dy is not None
         assert together.dy is not None
         np.testing.assert_array_equal(together.y[e, :n], run.y[0])
@@ -304,9 +310,11 @@ def test_more_windows_than_lanes() -> None:
     records = arm_records((60,))
     count = 19
     p = P * np.linspace(0.9, 1.1, count)[:, None]
-    together = native().run(records, Windows(np.zeros(count, int), np.full(count, 59), 60), p, np.tile(X0, (count, 1)))
+    together = native().run(
+        records, Pass(Windows(np.zeros(count, int), np.full(count, 59), 60), p, np.tile(X0, (count, 1)))
+    )
     for w in (0, 7, 8, 18):
-        alone = native().run(records, whole_records(records), p[w], X0[None])
+        alone = native().run(records, Pass(whole_records(records), p[w], X0[None]))
         np.testing.assert_array_equal(together.y[w], alone.y[0])
 
 
@@ -325,7 +333,7 @@ def test_a_model_without_inputs_and_parameters() -> None:
         np.zeros((0, 20)), np.zeros((1, 20)), np.full(20, 0.1), np.array([0]), np.array([19]), ("",), "zoh"
     )
     for stepper in (native(Decay(), ()), EagerStepper.of(Decay(), (), "cpu", "double")):
-        y = stepper.run(records, whole_records(records), np.zeros(0), np.ones((1, 1)), substeps=4).y
+        y = stepper.run(records, Pass(whole_records(records), np.zeros(0), np.ones((1, 1))), substeps=4).y
         np.testing.assert_allclose(y[0, :, 0], np.exp(-0.1 * np.arange(20)), rtol=1e-7)
 
 
@@ -356,9 +364,9 @@ def test_normal_matrices(compiled: bool) -> None:
     names, x0 = ("J", "k_g1", "F_c"), np.tile(X0, (3, 1))
     stepper = native(names=names) if compiled else EagerStepper.of(ARM, names, "cpu", "double")
     directions = np.broadcast_to(np.eye(5)[[2, 4]], (3, 2, 5))
-    options: dict[str, Any] = {"tangents": True, "start_directions": directions, "substeps": 2}
-    kept = stepper.run(records, windows, P, x0, **options)
-    summed = stepper.run(records, windows, P, x0, weights=np.array([0.3]), **options)
+    options: dict[str, Any] = {"tangents": True, "start_directions": directions}
+    kept = stepper.run(records, Pass(windows, P, x0, **options), substeps=2)
+    summed = stepper.run(records, Pass(windows, P, x0, weights=np.array([0.3]), **options), substeps=2)
     assert kept.dy is not None
     assert summed.normal is not None
     assert summed.dy is None
@@ -378,9 +386,9 @@ def test_normal_matrices_of_probes_lack_only_what_is_not_wanted(compiled: bool) 
     stepper = native(names=names) if compiled else EagerStepper.of(ARM, names, "cpu", "double")
     directions = np.broadcast_to(np.eye(5), (10, 5, 5))
     options: dict[str, Any] = {"tangents": True, "start_directions": directions, "weights": np.ones(1)}
-    full = stepper.run(records, windows, P, x0, **options).normal
+    full = stepper.run(records, Pass(windows, P, x0, **options)).normal
     probes = Probes(len(names) - 2, 1)
-    run = stepper.run(records, windows, P, x0, probes=probes, **options)
+    run = stepper.run(records, Pass(windows, P, x0, probes=probes, **options))
     packed = run.packed
     assert full is not None and packed is not None and run.normal is None
     size = full.shape[1]
@@ -402,9 +410,9 @@ def test_parameters_that_are_zero_throughout() -> None:
     records = arm_records((60,))
     p = np.array([{**dict(zip(PARAMETERS, P, strict=True)), "k_g3": 0.0, "d_a": 0.0}[n] for n in PARAMETERS])
     names = ("k_g1", "k_g3", "d_a")
-    plain = native(names=names).run(records, whole_records(records), p, X0[None], tangents=True)
+    plain = native(names=names).run(records, Pass(whole_records(records), p, X0[None], tangents=True))
     at_zero = native(names=names, at_zero=("k_g3", "d_a")).run(
-        records, whole_records(records), P, X0[None], tangents=True
+        records, Pass(whole_records(records), P, X0[None], tangents=True)
     )
     assert plain.dy is not None
     assert at_zero.dy is not None
@@ -425,9 +433,9 @@ def test_states_that_act_on_nothing() -> None:
         np.sin(np.arange(30.0))[None], np.zeros((1, 30)), np.full(30, 0.1), np.array([0]), np.array([29]), ("",), "zoh"
     )
     p, x0 = np.array([2.0, 0.1]), np.array([[1.0, -0.5, 7.0]])
-    run = native(Travelled(), ("w",)).run(records, whole_records(records), p, x0, tangents=True, keep_states=True)
+    run = native(Travelled(), ("w",)).run(records, Pass(whole_records(records), p, x0, tangents=True, keep_states=True))
     other = EagerStepper.of(Travelled(), ("w",), "cpu", "double").run(
-        records, whole_records(records), p, x0, tangents=True, keep_states=True
+        records, Pass(whole_records(records), p, x0, tangents=True, keep_states=True)
     )
     assert run.states is not None
     assert other.states is not None

@@ -111,10 +111,10 @@ def test_a_hundred_columns_are_offered() -> None:
     from greybox_torch.diagnosis.screen.candidates import candidates
     from greybox_torch.estimate.shifted_states import shifted_states
     from greybox_torch.estimate.surroundings import survey
-    from greybox_torch.simulation.stepper import make_stepper
+    from greybox_torch.simulation.simulator import Simulator
 
     problem = simulated_problem(4, 1000)
-    around = survey(problem.model, problem, make_stepper(problem.model, ()), 1)
+    around = survey(problem.model, problem, Simulator.of(problem.model))
     chosen = hypotheses.chosen(
         candidates(problem.model, shifted_states(problem.model, problem), around, flexible=False), around, 100
     )

@@ -12,8 +12,10 @@ from experiments.speed.peers.torchdiffeq_network import NetworkGradient
 from experiments.speed.peers.versus import records_for_peers
 from experiments.speed.records import NAMES, SAMPLE_TIME, SENSITIVE, SENSITIVE_INDEX, Published, simulated_records
 from experiments.speed.row import apart
+from greybox_torch.simulation.passes import Pass, Run
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Run, make_stepper, whole_records
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import whole_records
 from greybox_torch.systems import RobotArm
 
 SAMPLES = 1200
@@ -33,7 +35,7 @@ def arm(records: Records) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 @pytest.fixture(scope="module")
 def run(records: Records) -> Run:
     p, x0, _ = arm(records)
-    return make_stepper(RobotArm(), SENSITIVE).run(records, whole_records(records), p, x0, tangents=True)
+    return Simulator.of(RobotArm(), SENSITIVE).run(records, Pass(whole_records(records), p, x0, tangents=True))
 
 
 @pytest.fixture(scope="module")
@@ -106,8 +108,8 @@ def test_torchdiffeq_has_our_gradient(task: Published) -> None:
     n = len(task.u)
     own = Records(task.u[None], task.y[None], np.full(n, SAMPLE_TIME), np.array([0]), np.array([n - 1]), ("",), "zoh")
     directions = np.eye(5)[None, list(task.free_states)]
-    ours = make_stepper(RobotArm(), names).run(
-        own, whole_records(own), p, x0[None], tangents=True, start_directions=directions
+    ours = Simulator.of(RobotArm(), names).run(
+        own, Pass(whole_records(own), p, x0[None], tangents=True, start_directions=directions)
     )
     assert ours.dy is not None
     error = ours.y[0, :, 0] - task.y

@@ -15,7 +15,7 @@ from greybox_torch.estimate.comparison import compare
 from greybox_torch.estimate.fit import FitResult, fit
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import Body, Coupling, Signals
-from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.systems import RobotArm, load_model
 
 RECORDINGS = Path(__file__).parents[3] / "shared" / "recordings" / "robot_arm"
@@ -114,7 +114,7 @@ def _published_fit() -> FitResult:
 @recorded
 def test_published_start_values_simulate_as_published() -> None:
     data, arm = _recordings(), RobotArm()
-    scores = compare(make_problem(data, arm, data.recordings), data.recordings, make_stepper(arm, ())).scores
+    scores = compare(make_problem(data, arm, data.recordings), data.recordings, Simulator.of(arm, ())).scores
     assert scores[0].fit == pytest.approx(78.7, abs=0.4)
     assert scores[1].fit == pytest.approx(79.4, abs=0.5)
 
@@ -139,11 +139,11 @@ def test_fit_of_the_published_problem() -> None:
     assert {n: values[n] for n in optimum} == pytest.approx(optimum, rel=0.005)
     assert found.problem.initial[0, 2:] == pytest.approx([-19.000, -22.257, -23.295], abs=0.05)
     data = _recordings()
-    stepper = make_stepper(RobotArm(), found.problem.free_names)
-    (own,) = compare(found.problem, data.estimation(), stepper, estimate_starts=False).scores
+    simulator = Simulator.of(RobotArm(), found.problem.free_names)
+    (own,) = compare(found.problem, data.estimation(), simulator, estimate_starts=False).scores
     assert own.fit >= 85.2
     other = make_problem(data, RobotArm(), data.validation()).with_values(found.problem.values)
-    (validation,) = compare(other, data.validation(), stepper).scores
+    (validation,) = compare(other, data.validation(), simulator).scores
     assert validation.fit >= 84.9
 
 

@@ -10,7 +10,7 @@ from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.mechanisms.friction_net import FrictionNet
 from greybox_torch.model import Body, GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.train.hybrid import Hybrid, attach_network
 
 
@@ -80,8 +80,8 @@ def table_problem(table_data) -> Problem:
 @pytest.fixture(scope="session")
 def table_hybrid(table_problem) -> Hybrid:
     """The turntable with a network of its speed whose weights are not zero."""
-    plain = make_stepper(table_problem.model, ())
-    around = survey(table_problem.model, table_problem, plain, 1)
+    plain = Simulator.of(table_problem.model, ())
+    around = survey(table_problem.model, table_problem, plain)
     made = attach_network(table_problem, "table", FrictionNet(units=3), around)
     heights = np.where(made.heights, 0.05 + 0.02 * np.arange(len(made.heights)) / 4, made.problem.values)
     return replace(made, problem=made.problem.with_values(heights))

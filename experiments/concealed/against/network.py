@@ -11,7 +11,7 @@ import torch
 from greybox_torch.estimate.free_run import visited_states
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.model import Body, GreyBoxModel, Parameter, Signals
-from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.simulator import Simulator
 
 
 class NetworkModel(GreyBoxModel):
@@ -77,11 +77,9 @@ def ports_of(base: GreyBoxModel) -> list[str]:
     return bodies or [port.name for port in base.ports]
 
 
-def network_model(
-    base: GreyBoxModel, problem: Problem, stepper: Stepper, width: int, *, substeps: int, seed: int
-) -> NetworkModel:
+def network_model(problem: Problem, simulator: Simulator, width: int, *, seed: int) -> NetworkModel:
     """A network scaled to where the signals of ``problem`` move in free run and to the forces that act there."""
-    states = np.concatenate(visited_states(problem, stepper, substeps=substeps))
+    base, states = problem.model, np.concatenate(visited_states(problem, simulator))
     both = np.concatenate([states, problem.records.u.T], axis=1)
     spread = np.sqrt(np.mean(both**2, axis=0))
     values = dict(zip(problem.names, problem.values, strict=True))

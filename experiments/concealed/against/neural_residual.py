@@ -24,7 +24,7 @@ from greybox_torch.diagnosis.hypothesis.fit import lengths
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.window_fit import fit_windows
-from greybox_torch.simulation.stepper import Stepper, make_stepper
+from greybox_torch.simulation.simulator import Simulator
 
 WIDTHS = (6, 12)
 """Hidden units tried."""
@@ -61,30 +61,29 @@ def neural_residual(plain: Plain, *, widths: Sequence[int] = WIDTHS, seed: int =
 
 
 def _trained(plain: Plain, width: int, seed: int) -> Trained:
-    base, still = plain.problem.model, make_stepper(plain.problem.model, ())
-    model = network_model(base, plain.problem, still, width, substeps=plain.substeps, seed=seed)
+    model = network_model(plain.problem, plain.simulator, width, seed=seed)
     problem = problem_for(plain.problem, model, {})
-    stepper = make_stepper(model, problem.free_names)
+    simulator = plain.simulator.for_model(model, problem.free_names)
     first, last = _parts(problem)
     longest = lengths(plain.problem)[-1]
     reached = [problem]
     for length in lengths(plain.problem):
-        reached.append(_at_length(plain, first, last, reached[-1], stepper, length))
-    errors = [_left(plain, last.with_values(p.values), stepper, longest) for p in reached]
+        reached.append(_at_length(first, last, reached[-1], simulator, length))
+    errors = [_left(last.with_values(p.values), simulator, longest) for p in reached]
     best = int(np.argmin(errors))
     return Trained(width, model, reached[best], errors[best])
 
 
-def _at_length(plain: Plain, first: Problem, last: Problem, problem: Problem, stepper: Stepper, length: int) -> Problem:
+def _at_length(first: Problem, last: Problem, problem: Problem, simulator: Simulator, length: int) -> Problem:
     """``problem`` trained on windows of one length, with the weights that did best on the last part; as it is where none did better."""
-    best, least, patience = problem, _left(plain, last.with_values(problem.values), stepper, length), PATIENCE
+    best, least, patience = problem, _left(last.with_values(problem.values), simulator, length), PATIENCE
     begin, starts = first.with_values(problem.values), None
     for _ in range(MOST_STAGES):
-        fit = fit_windows(begin, stepper, length, starts=starts, substeps=plain.substeps, settings=STAGE)
+        fit = fit_windows(begin, simulator, length, starts=starts, settings=STAGE)
         if fit is None:
             break
         begin, starts = fit.problem, fit.starts
-        left = _left(plain, last.with_values(begin.values), stepper, length)
+        left = _left(last.with_values(begin.values), simulator, length)
         if left < least:
             best, least, patience = problem.with_values(begin.values), left, PATIENCE
         else:
@@ -103,8 +102,8 @@ def _parts(problem: Problem) -> tuple[Problem, Problem]:
     return tuple(replace(problem, records=records.part(spans, records.names)) for spans in (first, last))  # type: ignore[return-value]
 
 
-def _left(plain: Plain, last: Problem, stepper: Stepper, length: int) -> float:
+def _left(last: Problem, simulator: Simulator, length: int) -> float:
     """Mean squared error over windows of the last part, their start states free, everything else as it is."""
     rest = replace(last, free=np.zeros_like(last.free))
-    fit = fit_windows(rest, stepper, length, substeps=plain.substeps, settings=REST)
+    fit = fit_windows(rest, simulator, length, settings=REST)
     return float("inf") if fit is None else fit.mean_square

@@ -16,11 +16,11 @@ from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.comparison import Score, compare
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
+from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.simulation.stepper import make_stepper
-from greybox_torch.simulation.substeps import choose_substeps
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.systems import load_model
 
 CHOSEN_ON = 0.3
@@ -29,18 +29,21 @@ CHOSEN_ON = 0.3
 
 @dataclass(frozen=True)
 class Plain:
-    """A case with its model re-tuned: ``problem`` on the estimation experiments at the optimum, ``card`` at the card's values."""
+    """A case with its model re-tuned.
+
+    ``problem`` is on the estimation experiments at the optimum, ``card`` at the card's values; ``simulator`` has no tangents.
+    """
 
     data: DataSet
     card: Problem
     problem: Problem
-    substeps: int
+    simulator: Simulator
     seconds: float
 
     @cached_property
     def surroundings(self) -> dict[str, Surroundings]:
         """Where the signals around every port moved."""
-        return survey(self.problem.model, self.problem, make_stepper(self.problem.model, ()), self.substeps)
+        return survey(self.problem.model, self.problem, self.simulator)
 
     @cached_property
     def noise(self) -> np.ndarray:
@@ -59,7 +62,7 @@ class Plain:
     @cached_property
     def windows(self) -> WindowFit:
         """The start states of those windows at the re-tuned parameters."""
-        found = fit_windows(self._rest, make_stepper(self.problem.model, ()), self.length, substeps=self.substeps)
+        found = fit_windows(self._rest, self.simulator, self.length)
         if found is None:
             raise NumericalError(f"{self.data.path}: the re-tuned model overflows over {self.length} samples")
         return found
@@ -76,7 +79,7 @@ class Plain:
 
     def free_run(self, problem: Problem) -> tuple[Score, ...]:
         """Free runs of a problem on the held-out experiments, start states from the first tenth of each."""
-        return compare(problem, self.data.validation(), make_stepper(problem.model, ()), substeps=self.substeps).scores
+        return compare(problem, self.data.validation(), self.simulator.for_model(problem.model)).scores
 
     @cached_property
     def judged(self) -> Problem:
@@ -101,12 +104,11 @@ def retune(card: Path) -> Plain:
             raise UserError(f'{card}: [[experiment]] role: no experiment has the role "{role}"; expected at least one')
     model = load_model(data.model)
     problem = all_starts_free(data, make_problem(data, model, data.estimation()))
-    stepper = make_stepper(model, problem.free_names)
-    substeps = choose_substeps(problem.driving_records, stepper, problem.values, problem.initial) or 1
-    tuned = hypothesis(problem, (), {}, [{}], substeps=substeps, stepper=stepper)
+    simulator = simulator_for(problem)
+    tuned = hypothesis(problem, (), {}, [{}], options=simulator.options, simulator=simulator)
     if tuned is None:
         raise NumericalError(
             f"{card}: the model overflows even over short windows; try start values nearer to the truth"
         )
-    optimum = finish(tuned, substeps).problem
-    return Plain(data, problem, optimum, substeps, time.perf_counter() - began)
+    optimum = finish(tuned).problem
+    return Plain(data, problem, optimum, simulator.for_model(model), time.perf_counter() - began)

@@ -28,7 +28,8 @@ from greybox_torch.estimate.problem import problem_for
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
-from greybox_torch.simulation.stepper import Windows, make_stepper
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.windows import Windows
 
 SLACK = 1e-3
 """Share of a state's movement in a sample by which the model may be wrong elsewhere than at the port."""
@@ -83,7 +84,7 @@ class Smoother:
         )
         self.name = model.declared_parameters[-1].name
         self.problem = problem_for(plain.problem, model, {})
-        self.stepper = make_stepper(model, (self.name,))
+        self.simulator = plain.simulator.for_model(model, (self.name,))
         self.records = self.problem.driving_records
         count, n_x = self.records.u.shape[1], len(model.states)
         last = np.repeat(self.records.last, self.records.lengths)
@@ -96,14 +97,8 @@ class Smoother:
     def start(self) -> Smoothed:
         """The trajectories of short windows without any force, to begin with."""
         fit = self.plain.windows
-        stepper = make_stepper(self.plain.problem.model, ())
-        run = stepper.run(
-            fit.problem.driving_records,
-            fit.windows,
-            fit.problem.values,
-            fit.starts,
-            substeps=self.plain.substeps,
-            keep_states=True,
+        run = self.plain.simulator.run(
+            fit.problem.driving_records, Pass(fit.windows, fit.problem.values, fit.starts, keep_states=True)
         )
         assert run.states is not None
         sizes = np.diff(np.append(fit.windows.start, self.records.u.shape[1]))
@@ -134,14 +129,8 @@ class Smoother:
     def _step(self, states: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, ...]:
         """Outputs (N, n_y), the next states (N, n_x), and their derivatives over state and force (N, n_y or n_x, n_x + 1)."""
         self.values[:, -1] = force
-        run = self.stepper.run(
-            self.records,
-            self.each,
-            self.values,
-            states,
-            tangents=True,
-            start_directions=self.eye,
-            substeps=self.plain.substeps,
+        run = self.simulator.run(
+            self.records, Pass(self.each, self.values, states, tangents=True, start_directions=self.eye)
         )
         assert run.dy is not None and run.dx_end is not None
         order = np.roll(np.arange(states.shape[1] + 1), -1)  # the force's direction comes first

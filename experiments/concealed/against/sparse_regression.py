@@ -148,7 +148,7 @@ def _estimated(plain: Plain, effects: Sequence[Attachment]) -> Hypothesis | None
         initial=plain.problem.initial[: len(spans)],
     )
     at = lengths(plain.problem)[:2]
-    return hypothesis(part, effects, plain.surroundings, [{}], substeps=plain.substeps, at=at)
+    return hypothesis(part, effects, plain.surroundings, [{}], options=plain.simulator.options, at=at)
 
 
 def _left(plain: Plain, fitted: Hypothesis) -> float:
@@ -158,7 +158,7 @@ def _left(plain: Plain, fitted: Hypothesis) -> float:
         fitted.effects,
         plain.surroundings,
         [fitted.values()],
-        substeps=plain.substeps,
+        options=plain.simulator.options,
         at=lengths(plain.problem)[:2],
         frozen=frozenset(fitted.problem.names),
     )
@@ -172,9 +172,13 @@ def _left(plain: Plain, fitted: Hypothesis) -> float:
 def _on_records(plain: Plain, entry: Entry) -> dict[str, float]:
     """Coefficients and parameters estimated together on whole records."""
     whole = hypothesis(
-        plain.problem, entry.fitted.effects, plain.surroundings, [entry.fitted.values()], substeps=plain.substeps
+        plain.problem,
+        entry.fitted.effects,
+        plain.surroundings,
+        [entry.fitted.values()],
+        options=plain.simulator.options,
     )
-    return (entry.fitted if whole is None else finish(whole, plain.substeps)).values()
+    return (entry.fitted if whole is None else finish(whole)).values()
 
 
 def split(plain: Plain) -> int:

@@ -12,8 +12,10 @@ from experiments.speed.row import Entry, Row, Target, apart
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import Settings
 from experiments.speed.timing import interleaved, once
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import make_stepper, whole_records
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import whole_records
 from greybox_torch.systems import RobotArm
 
 TITLE = "Free run, 4 experiments × 19 838 samples"
@@ -27,8 +29,8 @@ JAX = ("JAX, lax.scan, jit, vmap", "JAX, lax.scan, jit, lax.map")
 
 def routes(records: Records, p: np.ndarray, x0: np.ndarray) -> dict[str, Route]:
     """Our ways to the speeds (E, N), by name. The fastest that agrees with the sequential result counts."""
-    stepper, windows = make_stepper(RobotArm(), ()), whole_records(records)
-    return {"ours, stepper on whole records": lambda: stepper.run(records, windows, p, x0).y[..., 0]}
+    simulator, windows = Simulator.of(RobotArm(), ()), whole_records(records)
+    return {"ours, stepper on whole records": lambda: simulator.run(records, Pass(windows, p, x0)).y[..., 0]}
 
 
 def measure(settings: Settings, progress: Progress) -> Row:

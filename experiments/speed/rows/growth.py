@@ -10,7 +10,9 @@ from experiments.speed.row import Entry, Row, Target
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import Settings, missing_peers
 from experiments.speed.timing import interleaved
-from greybox_torch.simulation.stepper import make_stepper, whole_records
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import whole_records
 from greybox_torch.systems import RobotArm
 
 TITLE = "Growth with samples: one record, 12 sensitivities, normal matrices"
@@ -22,7 +24,7 @@ LONGEST_JAX = 100_000
 
 def measure(settings: Settings, progress: Progress) -> Row:
     sizes = (1000, 3000, 10_000) if settings.quick else (10_000, 30_000, 100_000, 300_000, 1_000_000)
-    stepper, points, distance = make_stepper(RobotArm(), SENSITIVE), {OURS: [], JAX: []}, 0.0
+    simulator, points, distance = Simulator.of(RobotArm(), SENSITIVE), {OURS: [], JAX: []}, 0.0
     matrix = None
     if not missing_peers(("jax",)):
         from experiments.speed.peers import jax_arm
@@ -35,7 +37,7 @@ def measure(settings: Settings, progress: Progress) -> Row:
         windows, weights, measured = whole_records(records), np.ones(1), records.y[0]
 
         def ours(records=records, windows=windows, p=p, x0=x0, weights=weights) -> np.ndarray:
-            normal = stepper.run(records, windows, p, x0, tangents=True, weights=weights).normal
+            normal = simulator.run(records, Pass(windows, p, x0, tangents=True, weights=weights)).normal
             assert normal is not None
             return normal[0]
 

@@ -22,7 +22,9 @@ from greybox_torch.estimate.surroundings import survey
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.simulation.stepper import cut, make_stepper, whole_records
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.simulator import DEFAULT, Simulator
+from greybox_torch.simulation.windows import cut, whole_records
 
 TITLE = "100 hypothesis columns over windows of 310 samples, 4 experiments"
 NEEDS = Needs()
@@ -33,15 +35,17 @@ SCREEN = "the same as the screen does it, memories carried along and start state
 
 def measure(settings: Settings, progress: Progress) -> Row:
     problem = simulated_problem(4, 2000 if settings.quick else SAMPLES)
-    plain = make_stepper(problem.model, problem.free_names)
-    surroundings = survey(problem.model, problem, plain, 1)
+    plain = Simulator.of(problem.model, problem.free_names)
+    surroundings = survey(problem.model, problem, plain)
     offered = chosen(
         candidates(problem.model, shifted_states(problem.model, problem), surroundings, flexible=False),
         surroundings,
         COLUMNS,
     )
     progress("compiling the screen")
-    screen, compiling = _compiled(lambda: Screen.of(problem.model, (), offered, surroundings, problem.free_names))
+    screen, compiling = _compiled(
+        lambda: Screen.of(problem.model, (), offered, surroundings, problem.free_names, DEFAULT)
+    )
     fitted = _windows(problem, plain)
     count, n_x = fitted.starts.shape
     eye = np.broadcast_to(np.eye(n_x), (count, n_x, n_x))
@@ -49,19 +53,21 @@ def measure(settings: Settings, progress: Progress) -> Row:
     def sensitivities() -> np.ndarray:
         run = plain.run(
             problem.driving_records,
-            fitted.windows,
-            problem.values,
-            fitted.starts,
-            tangents=True,
-            start_directions=eye,
-            weights=problem.weights,
+            Pass(
+                fitted.windows,
+                problem.values,
+                fitted.starts,
+                tangents=True,
+                start_directions=eye,
+                weights=problem.weights,
+            ),
         )
         assert run.normal is not None
         return run.normal
 
     progress("timing")
     columns_pass = _columns_pass(screen, fitted)
-    rivals = {PLAIN: sensitivities, COLUMNS_PASS: columns_pass, SCREEN: lambda: screen.projected(fitted, 1).total()}
+    rivals = {PLAIN: sensitivities, COLUMNS_PASS: columns_pass, SCREEN: lambda: screen.projected(fitted).total()}
     agreement = apart(columns_pass()[:, :12, :12], sensitivities()[:, :12, :12])
     times = {n: t.median for n, t in interleaved(rivals, repeats=settings.repeats(9)).items()}
     columns = sum(len(group) for group in screen.directions)
@@ -83,20 +89,22 @@ def measure(settings: Settings, progress: Progress) -> Row:
 
 def _columns_pass(screen: Screen, fitted: WindowFit) -> Callable[[], np.ndarray]:
     """The screen's pass alone: memories begin where carrying them along has put them, once."""
-    values, begun = screen.values(fitted.problem), screen.starts(fitted, 1)
+    values, begun = screen.values(fitted.problem), screen.starts(fitted)
     records, (count, own) = screen.model.prepared(fitted.problem.records, values), fitted.starts.shape
     eye = np.broadcast_to(np.eye(own, begun.shape[1]), (count, own, begun.shape[1]))
 
     def columns() -> np.ndarray:
-        run = screen.stepper.run(
+        run = screen.simulator.run(
             records,
-            fitted.windows,
-            values,
-            begun,
-            tangents=True,
-            start_directions=eye,
-            weights=fitted.problem.weights,
-            probes=screen.probes,
+            Pass(
+                fitted.windows,
+                values,
+                begun,
+                tangents=True,
+                start_directions=eye,
+                weights=fitted.problem.weights,
+                probes=screen.probes,
+            ),
         )
         assert run.packed is not None
         return run.packed.rows(np.arange(12))
@@ -119,11 +127,11 @@ def chosen(offered: list[Attachment], around: dict[str, Surroundings], columns: 
     return result
 
 
-def _windows(problem: Problem, stepper) -> WindowFit:
+def _windows(problem: Problem, simulator: Simulator) -> WindowFit:
     """Windows that begin on the free run."""
     windows = cut(problem.records, LENGTH)
-    run = stepper.run(
-        problem.records, whole_records(problem.records), problem.values, problem.initial, keep_states=True
+    run = simulator.run(
+        problem.records, Pass(whole_records(problem.records), problem.values, problem.initial, keep_states=True)
     )
     experiment = np.searchsorted(problem.records.first, windows.start, side="right") - 1
     begun = np.array(run.states[experiment, windows.start - problem.records.first[experiment]])

@@ -16,7 +16,7 @@ from greybox_torch.estimate.fit import fit
 from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.metrics import fit_percent
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulation.stepper import Stepper, make_stepper
+from greybox_torch.simulation.simulator import Simulator
 
 TITLE = "Start values within a factor of 2 of the card's, 12 free parameters, real arm"
 NEEDS = Needs(recordings=True)
@@ -48,11 +48,11 @@ def drawn(problem: Problem, rng: np.random.Generator) -> Problem:
 
 def measure(settings: Settings, progress: Progress) -> Row:
     problem = load_problem(ALL_FREE_CARD)
-    stepper = make_stepper(problem.model, problem.free_names)
+    simulator = Simulator.of(problem.model, problem.free_names)
     rng, arrivals = np.random.default_rng(settings.seed), []
     count = min(settings.draws, 3) if settings.quick else settings.draws
     for draw in range(count):
-        arrivals.append(_arrival(drawn(problem, rng), stepper))
+        arrivals.append(_arrival(drawn(problem, rng), simulator))
         last = arrivals[-1]
         progress(f"draw {draw + 1} of {count}: {last.failure or f'fit {last.fit:.3f} %'} in {last.seconds:.1f} s")
     best = max(a.fit for a in arrivals)
@@ -72,13 +72,13 @@ def measure(settings: Settings, progress: Progress) -> Row:
     )
 
 
-def _arrival(problem: Problem, stepper: Stepper) -> Arrival:
+def _arrival(problem: Problem, simulator: Simulator) -> Arrival:
     began = time.perf_counter()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # overflow of a trial step is part of the work
-            found = fit(problem, stepper=stepper, with_uncertainty=False)
-            simulated = simulate(found.problem, stepper, substeps=found.substeps)[0][:, 0]
+            found = fit(problem, simulator=simulator, with_uncertainty=False)
+            simulated = simulate(found.problem, simulator.with_substeps(found.substeps))[0][:, 0]
         share = fit_percent(problem.records.y[0], simulated)
     except Exception as error:  # a crash of any kind is what is counted here
         return Arrival(float("-inf"), time.perf_counter() - began, f"{type(error).__name__}: {error}")

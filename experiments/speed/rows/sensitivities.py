@@ -12,8 +12,10 @@ from experiments.speed.row import Entry, Row, Target, apart
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import Settings
 from experiments.speed.timing import interleaved, once
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import make_stepper, whole_records
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import whole_records
 from greybox_torch.systems import RobotArm
 
 TITLE = "Free run with 12 forward sensitivities, 4 experiments × 19 838 samples"
@@ -26,10 +28,10 @@ JAX, NUMBA = "JAX, jacfwd of the scan, jit, vmap", "Numba, derivatives by hand"
 
 def routes(records: Records, p: np.ndarray, x0: np.ndarray) -> dict[str, Route]:
     """Our ways to the derivatives (E, N, 12) of the speeds, by name. The fastest that agrees with the peers counts."""
-    stepper, windows = make_stepper(RobotArm(), SENSITIVE), whole_records(records)
+    simulator, windows = Simulator.of(RobotArm(), SENSITIVE), whole_records(records)
 
     def sequential() -> np.ndarray:
-        derivatives = stepper.run(records, windows, p, x0, tangents=True).dy
+        derivatives = simulator.run(records, Pass(windows, p, x0, tangents=True)).dy
         assert derivatives is not None
         return derivatives[:, :, 0]
 

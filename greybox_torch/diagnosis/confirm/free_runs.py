@@ -16,7 +16,7 @@ from greybox_torch.diagnosis.verdict import Trace
 from greybox_torch.estimate.comparison import Comparison, Score, compare
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
-from greybox_torch.simulation.stepper import Stepper, make_stepper
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 
 
 class Judgement:
@@ -29,12 +29,11 @@ class Judgement:
         state: SearchState,
         plain: Final,
         augmented: Final,
-        substeps: int,
-        device: str,
+        options: SimulationOptions,
     ) -> None:
         self.recordings = dataset.recordings
         self.problem = all_starts_free(dataset, make_problem(dataset, problem.model, dataset.recordings))
-        self.plain, self.augmented, self.substeps, self.device = plain, augmented, substeps, device
+        self.plain, self.augmented, self.options = plain, augmented, options
         self.start = self._compared(problem, problem.values, None)
         self.refit = self._compared(plain.problem, plain.problem.values, plain)
         self.with_effects = (
@@ -93,14 +92,14 @@ class Judgement:
             if like.model is self.problem.model
             else problem_for(self.problem, like.model, named)
         )
-        stepper = make_stepper(like.model, (), device=self.device)
-        started = estimate_initial(problem, stepper, substeps=self.substeps)
+        simulator = Simulator.of(like.model, (), self.options)
+        started = estimate_initial(problem, simulator)
         if final is not None:
             initial = started.initial.copy()
             for row, name in zip(final.problem.initial, final.problem.records.names, strict=True):
                 initial[started.records.names.index(name)] = row
             started = replace(started, initial=initial)
-        return _scored(started, self.recordings, stepper, self.substeps)
+        return _scored(started, self.recordings, simulator)
 
     def _times_noise(self, comparison: Comparison) -> np.ndarray:
         errors = np.array([s.rmse for s in comparison.scores]).reshape(len(self.recordings), -1)
@@ -135,5 +134,5 @@ def _mean_fit(scores: Sequence[Score]) -> float:
     return float(np.mean(moving)) if moving else 0.0
 
 
-def _scored(problem: Problem, recordings: tuple[Recording, ...], stepper: Stepper, substeps: int) -> Comparison:
-    return compare(problem, recordings, stepper, substeps=substeps, estimate_starts=False)
+def _scored(problem: Problem, recordings: tuple[Recording, ...], simulator: Simulator) -> Comparison:
+    return compare(problem, recordings, simulator, estimate_starts=False)

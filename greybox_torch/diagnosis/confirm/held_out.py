@@ -16,6 +16,7 @@ from greybox_torch.diagnosis.verdict import Timeline
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
+from greybox_torch.simulation.simulator import Simulator
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ class HeldOut:
     def fits(self, hypothesis: Hypothesis) -> tuple[WindowFit, ...]:
         """The hypothesis with the parameters it was fitted with, as :func:`held_out_fits`."""
         if hypothesis not in self._fits:
-            self._fits[hypothesis] = held_out_fits(hypothesis, self.problem, self.substeps)
+            self._fits[hypothesis] = self.fits_at(hypothesis, hypothesis.values())
         return self._fits[hypothesis]
 
     def times_noise(self, hypothesis: Hypothesis) -> np.ndarray:
@@ -68,37 +69,36 @@ class HeldOut:
 
     def fits_at(self, hypothesis: Hypothesis, values: Mapping[str, float]) -> tuple[WindowFit, ...]:
         """The hypothesis with other parameters."""
-        return held_out_fits(hypothesis, self.problem, self.substeps, values)
+        # Not with the hypothesis's own sub-steps: an earlier search may have taken others, and what is compared is simulated alike.
+        return held_out_fits(hypothesis, self.problem, hypothesis.simulator.with_substeps(self.substeps), values)
 
 
 def held_out_fits(
-    hypothesis: Hypothesis, problem: Problem, substeps: int, values: Mapping[str, float] | None = None
+    hypothesis: Hypothesis, problem: Problem, simulator: Simulator, values: Mapping[str, float]
 ) -> tuple[WindowFit, ...]:
     """The hypothesis on other experiments: parameters as they are, window start states free, at the middle and the longest windows.
 
     Args:
         problem: the plain model on the held-out experiments.
-        values: parameter values by name, by default the hypothesis's own.
+        simulator: of the hypothesis.
+        values: parameter values by name.
     """
-    own = hypothesis.values() if values is None else values
-    known: Mapping[str, float] = {n: own[n] for n in hypothesis.problem.names}
+    known: Mapping[str, float] = {n: values[n] for n in hypothesis.problem.names}
     restated = (
         problem_for(problem, hypothesis.model, known)
         if hypothesis.effects
-        else problem.with_values(np.array([own[n] for n in problem.names]))
+        else problem.with_values(np.array([values[n] for n in problem.names]))
     )
     fixed = replace(restated, free=np.zeros_like(restated.free))
-    started = estimate_initial(fixed, hypothesis.stepper, substeps=substeps)
+    started = estimate_initial(fixed, simulator)
     shortest, *longer = lengths(problem)
-    short = placed(started, hypothesis.stepper, shortest, substeps)
+    short = placed(started, simulator, shortest)
     if short is None or not longer:
         return () if short is None else (short,)
     found: list[WindowFit] = []
     for length in longer:
-        there = placed(short.problem, hypothesis.stepper, length, substeps, shorter=short) or short
-        fit = partial(
-            fit_windows, there.problem, hypothesis.stepper, length, substeps=substeps, settings=WINDOW_SETTINGS
-        )
+        there = placed(short.problem, simulator, length, shorter=short) or short
+        fit = partial(fit_windows, there.problem, simulator, length, settings=WINDOW_SETTINGS)
         ended = reduce(_window_by_window, (fit(shorter=there), fit(shorter=short), fit()))
         if ended is not None:
             found.append(ended)

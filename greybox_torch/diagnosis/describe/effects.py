@@ -142,8 +142,8 @@ def _profiles(
     study: Study, state: SearchState, model: AugmentedModel, attachment: Attachment, site: Port
 ) -> tuple[Profile, ...]:
     hypothesis = state.current
-    energy = explained_energy(state.without.get(attachment.prefix, state.plain), hypothesis, study.substeps)
-    local = local_signals(model, attachment, hypothesis.fits[0], hypothesis.stepper, study.substeps)
+    energy = explained_energy(state.without.get(attachment.prefix, state.plain), hypothesis)
+    local = local_signals(model, attachment, hypothesis.fits[0], hypothesis.simulator)
     units = study.surroundings[attachment.port].units
     wanted = attachment.mechanism.signals() or tuple(site.signals)[:1]
     return tuple(

@@ -14,29 +14,27 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.model import Signals
-from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.simulator import Simulator
 
 BINS = 24
 POINTS = 201
 
 
-def explained_energy(before: Hypothesis, after: Hypothesis, substeps: int) -> np.ndarray:
+def explained_energy(before: Hypothesis, after: Hypothesis) -> np.ndarray:
     """Per sample of the records (N,), how much less squared error ``after`` leaves than ``before``, on the shortest windows."""
-    return _squared_errors(before.fits[0], before.stepper, substeps) - _squared_errors(
-        after.fits[0], after.stepper, substeps
-    )
+    return _squared_errors(before.fits[0], before.simulator) - _squared_errors(after.fits[0], after.simulator)
 
 
-def _squared_errors(fit: WindowFit, stepper: Stepper, substeps: int) -> np.ndarray:
-    errors = window_errors(fit, stepper, substeps) * fit.problem.weights[:, None]
+def _squared_errors(fit: WindowFit, simulator: Simulator) -> np.ndarray:
+    errors = window_errors(fit, simulator) * fit.problem.weights[:, None]
     return np.nansum(errors**2, axis=0)
 
 
 def local_signals(
-    model: AugmentedModel, attachment: Attachment, fit: WindowFit, stepper: Stepper, substeps: int
+    model: AugmentedModel, attachment: Attachment, fit: WindowFit, simulator: Simulator
 ) -> dict[str, np.ndarray]:
     """The signals that an effect depends on, along the estimation records (N,)."""
-    problem, states = fit.problem, states_along(fit, stepper, substeps)
+    problem, states = fit.problem, states_along(fit, simulator)
     x = Signals("state", {s.name: torch.as_tensor(states[:, i]) for i, s in enumerate(model.states)})
     records = problem.driving_records
     u = Signals("input", {s.name: torch.as_tensor(records.u[i]) for i, s in enumerate(model.inputs)})

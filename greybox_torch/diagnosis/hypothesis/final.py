@@ -52,7 +52,7 @@ class Final:
         return dict(zip(self.problem.free_names, map(float, both), strict=False))
 
 
-def finish(hypothesis: Hypothesis, substeps: int, *, device: str = "cpu") -> Final:
+def finish(hypothesis: Hypothesis) -> Final:
     """Fit whole records by simulation error, from the values of every window length and from the card's; the best of the results.
 
     Where the effects of a hypothesis leave noise alone over windows, what a free run leaves beyond it is a slow disturbance, and the errors
@@ -61,7 +61,7 @@ def finish(hypothesis: Hypothesis, substeps: int, *, device: str = "cpu") -> Fin
     Where no whole record can be simulated, the values of the longest windows stand.
     """
     problems = [from_windows(fit) for fit in reversed(hypothesis.fits)]
-    runs = whole_runs(hypothesis, [*problems, _from_the_card(hypothesis)], substeps, device=device)
+    runs = whole_runs(hypothesis, [*problems, _from_the_card(hypothesis)])
     begun = side_by_side(partial(_descended, run, run.start, BEGINNING) for run in runs)
     best, cost = None, np.inf
     for run, optimum in zip(runs, begun, strict=True):

@@ -17,7 +17,7 @@ from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.side_by_side import side_by_side
-from greybox_torch.simulation.stepper import Stepper, make_stepper
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 
 FACTORS = (1, 4, 16)
 """Window lengths as multiples of the shortest, a 64th of the longest record: short windows forgive a wrong trajectory, long ones show
@@ -36,11 +36,14 @@ POLISH_SETTINGS = Settings(iterations=60, tolerance=1e-5, trials=6)
 
 @dataclass(frozen=True, eq=False)
 class Hypothesis:
-    """A model with some effects attached, fitted: its problem, stepper, and window fits from short to long. Equal only to itself."""
+    """A model with some effects attached, fitted. Equal only to itself.
+
+    With its simulator, which has tangents for the free parameters, and its window fits from short to long.
+    """
 
     effects: tuple[Attachment, ...]
     model: GreyBoxModel
-    stepper: Stepper
+    simulator: Simulator
     fits: tuple[WindowFit, ...]
     floor: float
     """Mean squared weighted error below which nothing matters: 10⁻⁵ of the outputs' spread."""
@@ -80,13 +83,12 @@ def hypothesis(
     surroundings: Mapping[str, Surroundings],
     starts: Sequence[Mapping[str, float]],
     *,
-    substeps: int,
+    options: SimulationOptions,
     at: Sequence[int] | None = None,
     shorter: WindowFit | None = None,
     settings: Settings = WINDOW_SETTINGS,
-    stepper: Stepper | None = None,
+    simulator: Simulator | None = None,
     frozen: frozenset[str] = frozenset(),
-    device: str = "cpu",
 ) -> Hypothesis | None:
     """Fit ``base`` with ``effects`` attached, on windows of every length, from each of several start values; None where none simulates.
 
@@ -96,23 +98,24 @@ def hypothesis(
         starts: parameter values by name, of the base and of the effects.
         at: window lengths; by default :func:`lengths`.
         shorter: a fit on shorter windows that the start states are taken from.
-        stepper: one made for this model and these ``frozen`` parameters before.
+        options: of the simulator, where none is given.
+        simulator: one made for this model and these ``frozen`` parameters before.
         frozen: parameters that are to keep their start values.
     """
     model = augmented(base, effects, surroundings)
     problems = [without_free(problem_for(base, model, start), frozen) for start in starts]
-    stepper = stepper or make_stepper(model, problems[0].free_names, device=device)
+    simulator = simulator or Simulator.of(model, problems[0].free_names, options)
     fits: list[WindowFit] = []
     for length in at or lengths(base):
         trials = _distinct([*([fits[-1].problem] if fits else []), *problems])
-        fit = _best_fit(trials, stepper, length, shorter, substeps, settings)
+        fit = _best_fit(trials, simulator, length, shorter, settings)
         if fit is None:
             return None
         if fits and reaches_noise(base, fits[-1]) and not reaches_noise(base, fit):
-            fit = _states_first(fit, fits, stepper, length, substeps, settings)
+            fit = _states_first(fit, fits, simulator, length, settings)
         fits.append(fit)
         shorter = fit
-    return Hypothesis(tuple(effects), model, stepper, tuple(fits), _floor(base), frozen)
+    return Hypothesis(tuple(effects), model, simulator, tuple(fits), _floor(base), frozen)
 
 
 def without_free(problem: Problem, names: Collection[str]) -> Problem:
@@ -132,23 +135,22 @@ def _floor(base: Problem) -> float:
 
 def _best_fit(
     trials: Sequence[Problem],
-    stepper: Stepper,
+    simulator: Simulator,
     length: int,
     shorter: WindowFit | None,
-    substeps: int,
     settings: Settings,
 ) -> WindowFit | None:
-    begin = partial(fit_windows, stepper=stepper, length=length, shorter=shorter, substeps=substeps)
+    begin = partial(fit_windows, simulator=simulator, length=length, shorter=shorter)
     begun = side_by_side(partial(begin, t, settings=FIRST_SETTINGS) for t in trials)
     found = sorted((fit for fit in begun if fit is not None), key=lambda f: f.mean_square)
     if not found:
         return None
-    ended = side_by_side(partial(continued, fit, stepper, length, substeps, settings) for fit in _apart(found))
+    ended = side_by_side(partial(continued, fit, simulator, length, settings) for fit in _apart(found))
     return min(ended, key=lambda f: f.mean_square)
 
 
 def _states_first(
-    fit: WindowFit, fits: Sequence[WindowFit], stepper: Stepper, length: int, substeps: int, settings: Settings
+    fit: WindowFit, fits: Sequence[WindowFit], simulator: Simulator, length: int, settings: Settings
 ) -> WindowFit:
     """``fit``, or a better one from the parameters that reached the noise on shorter windows, start states along those found first.
 
@@ -157,12 +159,10 @@ def _states_first(
     problem = fits[-1].problem
     fixed = replace(problem, free=np.zeros_like(problem.free))
     for shorter in fits:
-        begun = fit_windows(fixed, stepper, length, shorter=shorter, substeps=substeps, settings=settings)
-        again = begun and fit_windows(
-            problem, stepper, length, starts=begun.starts, substeps=substeps, settings=settings
-        )
+        begun = fit_windows(fixed, simulator, length, shorter=shorter, settings=settings)
+        again = begun and fit_windows(problem, simulator, length, starts=begun.starts, settings=settings)
         if again is not None:
-            fit = min(fit, continued(again, stepper, length, substeps, settings), key=lambda f: f.mean_square)
+            fit = min(fit, continued(again, simulator, length, settings), key=lambda f: f.mean_square)
     return fit
 
 
@@ -178,11 +178,11 @@ def _apart(found: Sequence[WindowFit]) -> list[WindowFit]:
     return [best, *rivals[:1]]
 
 
-def continued(fit: WindowFit, stepper: Stepper, length: int, substeps: int, settings: Settings) -> WindowFit:
+def continued(fit: WindowFit, simulator: Simulator, length: int, settings: Settings) -> WindowFit:
     """The fit carried on to the end; where states are carried, in turns with bringing those along anew, while that gains anything."""
     for _ in range(MOST_TURNS):
-        starts = carried_starts(fit.problem, stepper, fit.windows, fit.starts, substeps)
-        again = fit_windows(fit.problem, stepper, length, starts=starts, substeps=substeps, settings=settings)
+        starts = carried_starts(fit.problem, simulator, fit.windows, fit.starts)
+        again = fit_windows(fit.problem, simulator, length, starts=starts, settings=settings)
         if again is None or again.mean_square > fit.mean_square:
             break
         gained, fit = again.mean_square < (1 - TURN_GAIN) * fit.mean_square, again

@@ -14,23 +14,20 @@ from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.simulation.side_by_side import side_by_side
-from greybox_torch.simulation.stepper import Stepper, make_stepper
 
 
-def whole_runs(
-    hypothesis: Hypothesis, problems: Sequence[Problem], substeps: int, *, device: str = "cpu"
-) -> list[FreeRun]:
+def whole_runs(hypothesis: Hypothesis, problems: Sequence[Problem]) -> list[FreeRun]:
     """Free runs of whole records at ``problems``, which are the hypothesis's but for the values of parameters and start states.
 
     The heights of free curves stay as the windows have them, where they are held small: what the records do not determine must not
     run away.
     """
     shrunk = [p.name for p in hypothesis.model.declared_parameters if p.shrunk]
-    stepper: Stepper = hypothesis.stepper
+    simulator = hypothesis.simulator
     if shrunk:
         own = [n for n in hypothesis.problem.free_names if n not in shrunk]
-        stepper = make_stepper(hypothesis.model, own, device=device)
-    return [FreeRun(without_free(p, shrunk), stepper, substeps) for p in problems]
+        simulator = simulator.for_model(hypothesis.model, own)
+    return [FreeRun(without_free(p, shrunk), simulator) for p in problems]
 
 
 def from_windows(fit: WindowFit) -> Problem:

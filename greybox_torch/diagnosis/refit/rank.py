@@ -24,7 +24,8 @@ from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.simulation.side_by_side import side_by_side
-from greybox_torch.simulation.stepper import Stepper, cut, make_stepper
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import cut
 
 FINALISTS = 3
 """Hypotheses that are fitted at all window lengths, after a first round at the middle one."""
@@ -83,34 +84,32 @@ def rank(
     found: Sequence[Candidate],
     surroundings: Mapping[str, Surroundings],
     *,
-    substeps: int,
-    device: str = "cpu",
     progress: Callable[[str], None] = lambda text: None,
 ) -> list[RankedCandidate]:
     """Refit every leader on top of ``current`` and rank them, best first."""
     frozen = frozenset(
         p.name for p in current.model.declared_parameters if p.shrunk
     )  # heights of a curve: many, and good already
-    steppers = _compiled(base, current, found, surroundings, frozen, device)
+    simulators = _compiled(base, current, found, surroundings, frozen)
     at = lengths(base)
     middle = at[min(1, len(at) - 1) :][:1]
-    refit = partial(hypothesis, base, surroundings=surroundings, substeps=substeps, frozen=frozen, device=device)
+    refit = partial(hypothesis, base, surroundings=surroundings, frozen=frozen, options=current.simulator.options)
 
-    def tried(leader: Candidate, stepper: Stepper) -> Hypothesis | None:
+    def tried(leader: Candidate, simulator: Simulator) -> Hypothesis | None:
         progress(f"refitting {leader.attachment.prefix}")
         effects = (*current.effects, leader.attachment)
-        own = {"at": middle, "shorter": current.fits[0], "settings": TRIAL_SETTINGS, "stepper": stepper}
+        own = {"at": middle, "shorter": current.fits[0], "settings": TRIAL_SETTINGS, "simulator": simulator}
         return refit(effects, starts=leader.starts[:TRIAL_STARTS], **own)
 
-    def in_full(leader: Candidate, before: Hypothesis, stepper: Stepper) -> RankedCandidate | None:
+    def in_full(leader: Candidate, before: Hypothesis, simulator: Simulator) -> RankedCandidate | None:
         progress(f"refitting {leader.attachment.prefix} in full")
         starts = [before.values(), *leader.starts[:TRIAL_STARTS]]
-        fitted = refit(before.effects, starts=starts, shorter=current.fits[0], stepper=stepper)
+        fitted = refit(before.effects, starts=starts, shorter=current.fits[0], simulator=simulator)
         return None if fitted is None else judged(leader, current, fitted)
 
-    pairs = list(zip(found, steppers, strict=True))
+    pairs = list(zip(found, simulators, strict=True))
     trials = zip(side_by_side(partial(tried, *pair) for pair in pairs), pairs, strict=True)
-    first = [(trial.score, leader, trial, stepper) for trial, (leader, stepper) in trials if trial is not None]
+    first = [(trial.score, leader, trial, simulator) for trial, (leader, simulator) in trials if trial is not None]
     at_middle = [f for f in current.fits if f.windows.steps == cut(base.records, middle[0]).steps]
     hopeless = score_of(at_middle, current.floor) + HOPELESS
     first = sorted((entry for entry in first if entry[0] < hopeless), key=lambda entry: entry[0])
@@ -153,9 +152,6 @@ def polished(
     fitted: Hypothesis,
     surroundings: Mapping[str, Surroundings],
     starts: Sequence[Mapping[str, float]] = (),
-    *,
-    substeps: int,
-    device: str = "cpu",
 ) -> Hypothesis:
     """``fitted`` refitted to convergence, also from further start values; the better of the two."""
     again = hypothesis(
@@ -163,18 +159,17 @@ def polished(
         fitted.effects,
         surroundings,
         [fitted.values(), *starts],
-        substeps=substeps,
         shorter=fitted.fits[0],
         settings=POLISH_SETTINGS,
-        stepper=None if fitted.frozen else fitted.stepper,
-        device=device,
+        simulator=None if fitted.frozen else fitted.simulator,
+        options=fitted.simulator.options,
     )
     return fitted if again is None or again.score > fitted.score else again
 
 
 def _finalists(
-    first: list[tuple[float, Candidate, Hypothesis, Stepper]],
-) -> list[tuple[float, Candidate, Hypothesis, Stepper]]:
+    first: list[tuple[float, Candidate, Hypothesis, Simulator]],
+) -> list[tuple[float, Candidate, Hypothesis, Simulator]]:
     """The best few, the best few named ones and what ties with the best of those, what they generalise, and the best curve."""
     named = [e for e in first if not e[1].unknown]
     chosen = first[:FINALISTS]
@@ -195,12 +190,11 @@ def _compiled(
     found: Sequence[Candidate],
     surroundings: Mapping[str, Surroundings],
     frozen: frozenset[str],
-    device: str,
-) -> list[Stepper]:
-    """Steppers of all shortlist, compiled side by side."""
+) -> list[Simulator]:
+    """Simulators of the whole shortlist, compiled side by side."""
 
-    def build(leader: Candidate) -> Stepper:
+    def build(leader: Candidate) -> Simulator:
         model = augmented(base, (*current.effects, leader.attachment), surroundings)
-        return make_stepper(model, without_free(problem_for(base, model, {}), frozen).free_names, device=device)
+        return current.simulator.for_model(model, without_free(problem_for(base, model, {}), frozen).free_names)
 
     return side_by_side(partial(build, leader) for leader in found)

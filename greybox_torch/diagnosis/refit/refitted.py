@@ -21,8 +21,7 @@ def refitted(
         effects,
         study.surroundings,
         [start.values(), {**start.values(), **study.card}, *starts],
-        substeps=study.substeps,
+        options=study.options,
         shorter=start.fits[0],
         settings=POLISH_SETTINGS,
-        device=study.device,
     )

@@ -16,9 +16,7 @@ from greybox_torch.diagnosis.hypothesis.whole_records import coloured, from_wind
 from greybox_torch.diagnosis.refit.rank import MOST_TIED, TIE, RankedCandidate
 
 
-def rank_by_likelihood(
-    ranked: Sequence[RankedCandidate], substeps: int, *, device: str = "cpu"
-) -> list[RankedCandidate]:
+def rank_by_likelihood(ranked: Sequence[RankedCandidate]) -> list[RankedCandidate]:
     """``ranked`` with the named ones that tie at the noise in the order of their likelihood, less a price for every parameter.
 
     The price is half the logarithm of the number of samples. One whose free run is far from what its windows promise (a machine that is
@@ -34,7 +32,7 @@ def rank_by_likelihood(
     tied = [r for r in named if r.fitted.score < best.fitted.score + TIE][:MOST_TIED]
     if len({r.leader.attachment.prefix for r in tied}) < 2:
         return list(ranked)
-    costs = [_cost(r, substeps, device) for r in tied]
+    costs = [_cost(r) for r in tied]
     within = min(costs) + 0.5 * TIE * samples
     weighed = {id(r): replace(r, cost=cost) for r, cost in zip(tied, costs, strict=True) if cost <= within}
     price = 0.5 * float(np.log(samples))
@@ -42,6 +40,6 @@ def rank_by_likelihood(
     return [next(in_turn) if id(r) in weighed else r for r in ranked]
 
 
-def _cost(tied: RankedCandidate, substeps: int, device: str) -> float:
-    found = coloured(whole_runs(tied.fitted, [from_windows(tied.fitted.fits[-1])], substeps, device=device))
+def _cost(tied: RankedCandidate) -> float:
+    found = coloured(whole_runs(tied.fitted, [from_windows(tied.fitted.fits[-1])]))
     return np.inf if found is None else found[1].cost

@@ -21,6 +21,7 @@ from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.ports import driving_body
 from greybox_torch.simulation.side_by_side import side_by_side
+from greybox_torch.simulation.simulator import SimulationOptions
 
 LEAST_PERIODS = 5.0
 """Periods within the travel from which an effect is seen to repeat; anything slow could otherwise pass for periodic."""
@@ -39,8 +40,7 @@ def scan_orders(
     free_names: Sequence[str],
     fits: Sequence[WindowFit],
     *,
-    substeps: int,
-    device: str = "cpu",
+    options: SimulationOptions,
     peaks: int = 2,
 ) -> list[float]:
     """The most promising orders (periods per unit of position) of a periodic effect at the first body.
@@ -53,13 +53,13 @@ def scan_orders(
 
     def screen(family: type[Mechanism]) -> Screen:
         attachments = [Attachment(body.name, family(), position=body.name)] * BATCH
-        return Screen.of(base, accepted, attachments, surroundings, free_names, device=device)
+        return Screen.of(base, accepted, attachments, surroundings, free_names, options)
 
     around = surroundings[body.name]
     grids = [(fit, grid) for fit in fits if len(grid := _grid(around, fit)) >= 4]
     screens = side_by_side(partial(screen, family) for family in FAMILIES) if grids else []
     pairs = [(one, fit, grid) for fit, grid in grids for one in screens]
-    peaks_of = side_by_side(partial(_peaks, *pair, substeps, peaks) for pair in pairs)
+    peaks_of = side_by_side(partial(_peaks, *pair, peaks) for pair in pairs)
     orders = []
     for fit, _ in grids:
         own = [peak for (_, of, _), some in zip(pairs, peaks_of, strict=True) if of is fit for peak in some]
@@ -67,12 +67,12 @@ def scan_orders(
     return distinct_orders(orders)
 
 
-def _peaks(screen: Screen, fitted: WindowFit, grid: np.ndarray, substeps: int, count: int) -> list[tuple[float, float]]:
+def _peaks(screen: Screen, fitted: WindowFit, grid: np.ndarray, count: int) -> list[tuple[float, float]]:
     """The highest peaks over a grid of orders: shares explained, and orders."""
-    starts = _at_orders(screen, grid[:BATCH]).starts(fitted, substeps)  # an order changes no memory
-    scores = np.concatenate([_incoherent(screen, fitted, part, substeps, starts) for part in _batches(grid)])
+    starts = _at_orders(screen, grid[:BATCH]).starts(fitted)  # an order changes no memory
+    scores = np.concatenate([_incoherent(screen, fitted, part, starts) for part in _batches(grid)])
     step = float(grid[1] - grid[0])
-    return [_refined(screen, fitted, float(grid[k]), step, substeps, starts) for k in _highest(scores, count)]
+    return [_refined(screen, fitted, float(grid[k]), step, starts) for k in _highest(scores, count)]
 
 
 def distinct_orders(orders: Iterable[float]) -> list[float]:
@@ -103,9 +103,9 @@ def _at_orders(screen: Screen, orders: np.ndarray) -> Screen:
     return screen.with_probes([{"order": float(order)} for order in filled])
 
 
-def _incoherent(screen: Screen, fitted: WindowFit, orders: np.ndarray, substeps: int, starts: np.ndarray) -> np.ndarray:
+def _incoherent(screen: Screen, fitted: WindowFit, orders: np.ndarray, starts: np.ndarray) -> np.ndarray:
     """Share of the residual explained when every window has its own amplitude and phase."""
-    projected = _at_orders(screen, orders).projected(fitted, substeps, starts)
+    projected = _at_orders(screen, orders).projected(fitted, starts)
     first = len(screen.free_names) + 2 * np.arange(len(orders))
     inner, right = projected.blocks(np.stack([first, first + 1], axis=1))
     trace = np.trace(inner, axis1=2, axis2=3)
@@ -114,15 +114,13 @@ def _incoherent(screen: Screen, fitted: WindowFit, orders: np.ndarray, substeps:
     return explained / max(projected.energy(), 1e-300)
 
 
-def _refined(
-    screen: Screen, fitted: WindowFit, order: float, step: float, substeps: int, starts: np.ndarray
-) -> tuple[float, float]:
+def _refined(screen: Screen, fitted: WindowFit, order: float, step: float, starts: np.ndarray) -> tuple[float, float]:
     """The best coherent share near ``order``, and the order where it is."""
     best = (-np.inf, order)
     width = step
     for _ in range(3):
         orders = np.linspace(max(best[1] - width, 1e-3), best[1] + width, BATCH)
-        looks = _at_orders(screen, orders).look(fitted, substeps, starts)
+        looks = _at_orders(screen, orders).look(fitted, starts)
         k = int(np.argmax([look.explained for look in looks]))
         best = (looks[k].explained, float(orders[k]))
         width = 2.5 * width / BATCH

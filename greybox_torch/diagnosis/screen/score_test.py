@@ -22,7 +22,8 @@ from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Probe, Surroundings
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.packed_normals import PackedNormals
-from greybox_torch.simulation.stepper import Probes, Stepper, make_stepper
+from greybox_torch.simulation.passes import Pass, Probes
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Screen:
     accepted: tuple[Attachment, ...]
     looks: tuple[tuple[Attachment, Probe], ...]
     model: AugmentedModel
-    stepper: Stepper
+    simulator: Simulator
     directions: tuple[tuple[str, ...], ...]
     free_names: tuple[str, ...]
 
@@ -58,8 +59,7 @@ class Screen:
         attachments: Sequence[Attachment],
         surroundings: Mapping[str, Surroundings],
         free_names: Sequence[str],
-        *,
-        device: str = "cpu",
+        options: SimulationOptions,
     ) -> Screen:
         """Prepare the screen of ``attachments``."""
         looks, labelled = [], []
@@ -72,8 +72,8 @@ class Screen:
             tuple(f"{a.prefix}.{d}" for d in probe.directions) for a, (_, probe) in zip(labelled, looks, strict=True)
         )
         zero = [name for group in directions for name in group]
-        stepper = make_stepper(model, [*free_names, *zero], at_zero=zero, device=device)
-        return Screen(base, tuple(accepted), tuple(looks), model, stepper, directions, tuple(free_names))
+        simulator = Simulator.of(model, [*free_names, *zero], options, at_zero=zero)
+        return Screen(base, tuple(accepted), tuple(looks), model, simulator, directions, tuple(free_names))
 
     @property
     def probes(self) -> Probes:
@@ -90,13 +90,13 @@ class Screen:
             numbers |= dict.fromkeys(group, 0.0)
         return np.array([numbers.get(p.name, p.value) for p in self.model.declared_parameters])
 
-    def look(self, fitted: WindowFit, substeps: int, starts: np.ndarray | None = None) -> list[ScreenScore]:
+    def look(self, fitted: WindowFit, starts: np.ndarray | None = None) -> list[ScreenScore]:
         """Score every probe on windows whose parameters and start states were fitted.
 
         Args:
             starts: what :meth:`starts` gave for the same windows, where only the probes' values have changed since.
         """
-        total = self.projected(fitted, substeps, starts).total()
+        total = self.projected(fitted, starts).total()
         n_p = len(self.free_names)
         hold = _hold(fitted, n_p)
         base = np.arange(n_p)
@@ -115,28 +115,29 @@ class Screen:
         looks = tuple((a, replace(p, values={**p.values, **v})) for (a, p), v in zip(self.looks, values, strict=True))
         return replace(self, looks=looks)
 
-    def projected(self, fitted: WindowFit, substeps: int, starts: np.ndarray | None = None) -> Projected:
+    def projected(self, fitted: WindowFit, starts: np.ndarray | None = None) -> Projected:
         """Normal matrices of [parameters, probes, residual] with the window start states projected out; ``starts`` as in :meth:`look`."""
         problem, windows = fitted.problem, fitted.windows
         values = self.values(problem)
-        starts = self.starts(fitted, substeps) if starts is None else starts
+        starts = self.starts(fitted) if starts is None else starts
         free = self._places(fitted)[~fitted.problem.carried]
         eye = np.broadcast_to(np.eye(starts.shape[1])[free], (len(windows.start), len(free), starts.shape[1]))
-        run = self.stepper.run(
+        run = self.simulator.run(
             self.model.prepared(problem.records, values),
-            windows,
-            values,
-            starts,
-            tangents=True,
-            start_directions=eye,
-            substeps=substeps,
-            weights=problem.weights,
-            probes=self.probes,
+            Pass(
+                windows,
+                values,
+                starts,
+                tangents=True,
+                start_directions=eye,
+                weights=problem.weights,
+                probes=self.probes,
+            ),
         )
         assert run.packed is not None
         return Projected.of(run.packed, len(self.free_names), len(free))
 
-    def starts(self, fitted: WindowFit, substeps: int) -> np.ndarray:
+    def starts(self, fitted: WindowFit) -> np.ndarray:
         """Window starts of the screen's model: the fitted ones, memories carried along from window to window."""
         values = self.values(fitted.problem)
         own = self._places(fitted)
@@ -148,7 +149,7 @@ class Screen:
         starts[:, own] = fitted.starts
         starts = self.model.begun(starts, problem.driving_records, fitted.windows.start, values)
         carried = ~np.isin(np.arange(starts.shape[1]), own)
-        return carried_starts(replace(problem, carried=carried), self.stepper, fitted.windows, starts, substeps)
+        return carried_starts(replace(problem, carried=carried), self.simulator, fitted.windows, starts)
 
     def _places(self, fitted: WindowFit) -> np.ndarray:
         """Where the fitted model's states stand among those of the screen's model, which adds some before memories and some behind."""

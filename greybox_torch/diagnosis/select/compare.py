@@ -64,4 +64,4 @@ def _front(ranked: Sequence[RankedCandidate]) -> list[RankedCandidate]:
 
 def _polished(study: Study, fitted: Hypothesis, starts: Sequence[dict[str, float]]) -> Hypothesis:
     study.working_on(f"polishing {' + '.join(e.prefix for e in fitted.effects) or 'the model as it stands'}")
-    return polished(study.problem, fitted, study.surroundings, starts, substeps=study.substeps, device=study.device)
+    return polished(study.problem, fitted, study.surroundings, starts)

@@ -26,10 +26,9 @@ def with_finer_curve(study: Study, state: SearchState) -> Stage[SearchState]:
             (*drawn.effects[:-1], attachment),
             study.surroundings,
             [values],
-            substeps=study.substeps,
+            options=study.options,
             shorter=drawn.fits[0],
             settings=WINDOW_SETTINGS,
-            device=study.device,
         )
         if fitted is None or fitted.score > drawn.score - LEAST_GAIN:
             break

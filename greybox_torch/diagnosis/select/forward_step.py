@@ -56,7 +56,7 @@ def take_best(
     """End a step: compare what was refitted, and take the best if it pays; a free curve is then drawn more finely."""
     compared = compare(study, state.current, screened, ranked)
     state = with_better_fit(state, compared.parent)
-    in_turn = rank_by_likelihood(compared.ranked, study.substeps, device=study.device)
+    in_turn = rank_by_likelihood(compared.ranked)
     paying = [r for r in in_turn if r.gain > least_gain(r.fitted) and r.significance > LEAST_SIGNIFICANCE]
     paying = [r for r in paying if degenerate(r.leader.attachment, study.surroundings, r.fitted.values()) is None]
     if little_is_left(study, state):
@@ -112,8 +112,6 @@ def _refits(study: Study, state: SearchState, found: Sequence[Candidate]) -> lis
         state.current,
         found,
         study.surroundings,
-        substeps=study.substeps,
-        device=study.device,
         progress=study.working_on,
     )
 

@@ -34,9 +34,9 @@ def screen_scores(study: Study, state: SearchState, *, curves: bool, fine: bool)
         [a for a in offered if not _is_there(a, at.effects)],
         study.surroundings,
         at.problem.free_names,
-        device=study.device,
+        study.options,
     )
-    return tuple(tuple(scores) for scores in side_by_side(partial(screen.look, fit, study.substeps) for fit in at.fits))
+    return tuple(tuple(scores) for scores in side_by_side(partial(screen.look, fit) for fit in at.fits))
 
 
 def _is_there(offered: Attachment, effects: tuple[Attachment, ...]) -> bool:
@@ -60,8 +60,7 @@ def _offered(study: Study, state: SearchState, curves: bool) -> list[Attachment]
         study.surroundings,
         at.problem.free_names,
         over[:2],
-        substeps=study.substeps,
-        device=study.device,
+        options=study.options,
     )
     orders = distinct_orders([*scanned, *orders_before(state)])
     return [

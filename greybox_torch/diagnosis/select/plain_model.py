@@ -24,9 +24,7 @@ def fit_plain_model(study: Study) -> tuple[Study, SearchState]:
     """
     study.report("refitting the model as it stands")
     model = study.problem.model
-    plain = hypothesis(
-        study.problem, (), {}, [study.card], substeps=study.substeps, settings=POLISH_SETTINGS, device=study.device
-    )
+    plain = hypothesis(study.problem, (), {}, [study.card], options=study.options, settings=POLISH_SETTINGS)
     if plain is None:
         raise NumericalError(
             f"simulating {model.title}: the simulation overflows even over windows of a 64th of the record; "
@@ -34,7 +32,7 @@ def fit_plain_model(study: Study) -> tuple[Study, SearchState]:
         )
     # Over windows, not along the free run: that runs through a stop that the model lacks, and away with a bias.
     over = plain.fits[min(1, len(plain.fits) - 1)]
-    visited = states_along(over, plain.stepper, study.substeps)
+    visited = states_along(over, plain.simulator)
     study = replace(
         study,
         shifts=shifted_states(model, plain.problem),
@@ -49,7 +47,7 @@ def weighted_by_noise(study: Study, state: SearchState) -> Study:
     A noisy sensor must not drown an exact one. This is the maximum-likelihood weighting where the outputs' noises are independent, their
     sizes estimated from a first fit.
     """
-    errors = window_errors(state.plain.fits[0], state.plain.stepper, study.substeps)
+    errors = window_errors(state.plain.fits[0], state.plain.simulator)
     spread = np.nanstd(study.problem.records.y, axis=1)
     weights = 1.0 / np.sqrt(np.nanmean(errors**2, axis=1) + (1e-4 * spread) ** 2 + 1e-300)
     return replace(study, problem=replace(study.problem, weights=weights))

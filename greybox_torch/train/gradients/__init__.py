@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.train.gradients.adjoint import AdjointGradient
 from greybox_torch.train.gradients.loss import Batch, Loss, SequenceGradient
 from greybox_torch.train.gradients.recomputation import RecomputationGradient
@@ -14,22 +14,20 @@ GRADIENTS = ("tangents", "recomputation", "odeint_adjoint")
 """Forward sensitivities of the stepper; backpropagation through its steps, these computed again on the way back; the adjoint equation."""
 
 
-def make_gradient(
-    name: str, problem: Problem, stepper: Stepper, *, substeps: int = 1, device: str = "cpu"
-) -> SequenceGradient:
+def make_gradient(name: str, problem: Problem, simulator: Simulator) -> SequenceGradient:
     """The gradient called ``name`` of the free parameters of ``problem``.
 
     Args:
-        stepper: of the problem's model, with tangents for its free parameters; only ``tangents`` uses it.
+        simulator: of the problem's model, with tangents for its free parameters; only ``tangents`` uses these, the others its options.
 
     Raises:
         UserError: there is no gradient of that name.
     """
     check_gradient(name)
     if name == "tangents":
-        return TangentsGradient(problem, stepper, substeps)
+        return TangentsGradient(problem, simulator)
     made = RecomputationGradient if name == "recomputation" else AdjointGradient
-    return made(problem, substeps, device)
+    return made(problem, simulator.options)
 
 
 def check_gradient(name: str) -> None:

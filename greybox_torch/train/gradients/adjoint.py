@@ -12,6 +12,7 @@ import torch
 
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.simulation.odeint import solve
+from greybox_torch.simulation.simulator import DEFAULT, SimulationOptions
 from greybox_torch.train.gradients.loss import Batch, Loss, squared_errors
 
 
@@ -23,15 +24,14 @@ class AdjointGradient:
     """
 
     problem: Problem
-    substeps: int = 1
-    device: str = "cpu"
+    options: SimulationOptions = DEFAULT
 
     def __call__(self, values: np.ndarray, batch: Batch) -> Loss:
-        p = torch.tensor(values, dtype=torch.float64, device=self.device, requires_grad=True)
-        x0 = torch.as_tensor(np.ascontiguousarray(batch.starts.T), device=self.device)
+        p = torch.tensor(values, dtype=torch.float64, device=self.options.device, requires_grad=True)
+        x0 = torch.as_tensor(np.ascontiguousarray(batch.starts.T), device=self.options.device)
         model = self.problem.model
         records = model.prepared(batch.records, values)
-        y = solve(model, records, batch.windows, x0, values=p, adjoint=True, substeps=self.substeps)
+        y = solve(model, records, batch.windows, x0, values=p, adjoint=True, substeps=self.options.substeps)
         energy = squared_errors(y, batch, self.problem.weights)
         energy.backward()
         assert p.grad is not None

@@ -9,7 +9,7 @@ import numpy as np
 import torch
 
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import Windows
+from greybox_torch.simulation.windows import Windows
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from torch.utils.checkpoint import checkpoint
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.model import Signals
 from greybox_torch.simulation.eager import runge_kutta_step
+from greybox_torch.simulation.simulator import DEFAULT, SimulationOptions
 from greybox_torch.train.gradients.loss import Batch, Loss, squared_errors
 
 
@@ -31,17 +32,16 @@ class RecomputationGradient:
     """
 
     problem: Problem
-    substeps: int = 1
-    device: str = "cpu"
+    options: SimulationOptions = DEFAULT
     chunk: int | None = None
 
     def __call__(self, values: np.ndarray, batch: Batch) -> Loss:
-        p = torch.tensor(values, dtype=torch.float64, device=self.device, requires_grad=True)
-        inputs = _Inputs(self.problem.model.prepared(batch.records, values), batch, self.device)
-        x = torch.as_tensor(np.ascontiguousarray(batch.starts.T), device=self.device)
+        p = torch.tensor(values, dtype=torch.float64, device=self.options.device, requires_grad=True)
+        inputs = _Inputs(self.problem.model.prepared(batch.records, values), batch, self.options.device)
+        x = torch.as_tensor(np.ascontiguousarray(batch.starts.T), device=self.options.device)
         steps = batch.windows.steps
         chunk = self.chunk if self.chunk is not None else max(1, isqrt(steps))
-        energy = torch.zeros((), dtype=torch.float64, device=self.device)
+        energy = torch.zeros((), dtype=torch.float64, device=self.options.device)
         for first in range(0, steps, chunk or steps):
             stretch = (batch, inputs, first, min(first + (chunk or steps), steps))
             if chunk:  # reentrant: the other kind holds on to what it computed again, and takes three times as long
@@ -62,8 +62,15 @@ class RecomputationGradient:
         for n in range(first, end):
             u0, u1, dt = inputs.at(n)
             outputs.append(self.problem.model.measured(x, u0, named))
-            for m in range(self.substeps):
-                step = runge_kutta_step(rates, u0, u1, dt / self.substeps, m / self.substeps, (m + 1) / self.substeps)
+            for m in range(self.options.substeps):
+                step = runge_kutta_step(
+                    rates,
+                    u0,
+                    u1,
+                    dt / self.options.substeps,
+                    m / self.options.substeps,
+                    (m + 1) / self.options.substeps,
+                )
                 x = step(x, u0, p)
         return x, squared_errors(torch.stack(outputs, dim=1), batch, self.problem.weights, first)
 

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulation.stepper import Stepper
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.train.gradients.loss import Batch, Loss
 
 
@@ -20,8 +21,7 @@ class TangentsGradient:
     """See :class:`greybox_torch.train.gradients.loss.SequenceGradient`. The gradient is exact for the steps that are made."""
 
     problem: Problem
-    stepper: Stepper
-    substeps: int = 1
+    simulator: Simulator
 
     def __call__(self, values: np.ndarray, batch: Batch) -> Loss:
         total = self.normal(values, batch)
@@ -29,14 +29,9 @@ class TangentsGradient:
 
     def normal(self, values: np.ndarray, batch: Batch) -> np.ndarray:
         """[J e]ᵀ[J e] (d + 1, d + 1) of the outputs' sensitivities to the free parameters and the weighted errors."""
-        run = self.stepper.run(
+        run = self.simulator.run(
             self.problem.model.prepared(batch.records, values),
-            batch.windows,
-            values,
-            batch.starts,
-            tangents=True,
-            substeps=self.substeps,
-            weights=self.problem.weights,
+            Pass(batch.windows, values, batch.starts, tangents=True, weights=self.problem.weights),
         )
         assert run.normal is not None
         return run.normal.sum(axis=0)

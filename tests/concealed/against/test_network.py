@@ -9,12 +9,13 @@ import numpy as np
 from experiments.concealed.against.network import force_scale, network_model
 from experiments.concealed.against.plain import Plain
 from greybox_torch.estimate.problem import problem_for
-from greybox_torch.simulation.stepper import make_stepper, whole_records
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import whole_records
 
 
 def with_network(plain: Plain, width: int = 3):
-    still = make_stepper(plain.problem.model, ())
-    model = network_model(plain.problem.model, plain.problem, still, width, substeps=1, seed=1)
+    model = network_model(plain.problem, plain.simulator, width, seed=1)
     return model, problem_for(plain.problem, model, {})
 
 
@@ -22,7 +23,7 @@ def test_untrained_it_is_the_plain_model(tuned: Callable[[str], Plain]) -> None:
     plain = tuned("drag")
     model, problem = with_network(plain)
     runs = [
-        make_stepper(p.model, ()).run(p.driving_records, whole_records(p.records), p.values, p.initial).y
+        Simulator.of(p.model, ()).run(p.driving_records, Pass(whole_records(p.records), p.values, p.initial)).y
         for p in (plain.problem, problem)
     ]
     np.testing.assert_array_equal(*runs)
@@ -34,16 +35,16 @@ def test_its_sensitivities_are_those_of_finite_differences(tuned: Callable[[str]
     rng = np.random.default_rng(0)
     values = problem.values + np.where(problem.free, 0.1 * rng.standard_normal(len(problem.values)), 0.0)
     names = problem.free_names
-    stepper, records = make_stepper(model, names), problem.records.part([slice(0, 60)], ["part"])
+    simulator, records = Simulator.of(model, names), problem.records.part([slice(0, 60)], ["part"])
     windows = whole_records(records)
-    run = stepper.run(records, windows, values, problem.initial, tangents=True)
+    run = simulator.run(records, Pass(windows, values, problem.initial, tangents=True))
     assert run.dy is not None
     for k, name in enumerate(names):
         moved = []
         for step in (1e-6, -1e-6):
             there = values.copy()
             there[problem.names.index(name)] += step
-            moved.append(stepper.run(records, windows, there, problem.initial).y)
+            moved.append(simulator.run(records, Pass(windows, there, problem.initial)).y)
         np.testing.assert_allclose(run.dy[..., k], (moved[0] - moved[1]) / 2e-6, rtol=1e-4, atol=1e-6, err_msg=name)
 
 

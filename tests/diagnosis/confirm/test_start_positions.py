@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.hypothesis.fit import augmented
 from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.estimate.problem import problem_for
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
-from greybox_torch.simulation.stepper import make_stepper
+from greybox_torch.simulation.simulator import Simulator
 
 BEGINS = 0.4
 """Position at which the simulated motor begins, rad."""
@@ -28,7 +28,7 @@ def restated(search, effect, **values):
         **{f"{effect.prefix}.{n}": v for n, v in values.items()},
     }
     problem = problem_for(search.problem, model, known)
-    return replace(problem, free=np.zeros_like(problem.free)), make_stepper(model, (), device="cpu")
+    return replace(problem, free=np.zeros_like(problem.free)), Simulator.of(model)
 
 
 @pytest.mark.parametrize("samples", [2000, 2020])  # of the second, the last window is longer than the others
@@ -37,8 +37,8 @@ def test_position_is_found_along_a_period(motor_data, motor, begun, samples) -> 
     search = begun(motor_data(samples, torque=lambda q, v: 0.03 * np.cos(order * q + phase)), motor)
     ripple = attach(motor, "rotor", TorqueRipple(order))
     size = {"a": 0.03 * np.cos(phase), "b": -0.03 * np.sin(phase), "order": order}
-    problem, stepper = restated(search, ripple, **size)
-    fit = placed(problem, stepper, 31, 1)
+    problem, simulator = restated(search, ripple, **size)
+    fit = placed(problem, simulator, 31)
     assert fit is not None
     found = fit.problem.initial[0, 1]
     period = 2 * np.pi / order
@@ -48,8 +48,8 @@ def test_position_is_found_along_a_period(motor_data, motor, begun, samples) -> 
 
 def test_without_a_position_it_is_a_fit_of_the_windows(motor_data, motor, begun) -> None:
     search = begun(motor_data(torque=lambda q, v: 0.05), motor)
-    problem, stepper = restated(search, attach(motor, "rotor", ConstantBias()), bias=0.05)
-    fit = placed(problem, stepper, 31, 1)
+    problem, simulator = restated(search, attach(motor, "rotor", ConstantBias()), bias=0.05)
+    fit = placed(problem, simulator, 31)
     assert fit is not None and fit.problem.initial.shape == (1, 1)
     assert np.sqrt(fit.mean_square) == pytest.approx(0.02, rel=0.1)
 

@@ -9,7 +9,7 @@ from greybox_torch.diagnosis.confirm.held_out import timelines
 from greybox_torch.diagnosis.describe.effects import where
 from greybox_torch.diagnosis.verdict import Profile, Timeline
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.stepper import cut
+from greybox_torch.simulation.windows import cut
 
 STEP = 0.5
 

@@ -39,7 +39,7 @@ def test_the_card_has_the_machine_and_the_windows_have_the_effect(search) -> Non
 
 
 def test_where_windows_led_astray_the_card_is_a_beginning(search) -> None:
-    right, astray = finish(search.current, 1), finish(lost(search.current, "J"), 1)
+    right, astray = finish(search.current), finish(lost(search.current, "J"))
     assert astray.uncertainty is not None
     assert np.allclose(astray.problem.values, right.problem.values, rtol=1e-3)
 
@@ -52,7 +52,7 @@ def test_drift_beside_an_effect_does_not_bend_the_machine(motor_data, motor, beg
     assert drifting is not None and noise_over_windows(drifting)
     loud = replace(drifting, fits=tuple(replace(f, mean_square=9.0 * f.mean_square) for f in drifting.fits))
     true = np.array([0.02, 0.05])
-    weighed, plain = (finish(h, 1) for h in (drifting, loud))
+    weighed, plain = (finish(h) for h in (drifting, loud))
     away = [np.abs([f.values()[n] for n in ("J", "b")] / true - 1.0).max() for f in (weighed, plain)]
     assert away[0] < 0.5 * away[1]
     assert weighed.uncertainty is not None and plain.uncertainty is not None

@@ -46,7 +46,7 @@ def names(found: list[RankedCandidate]) -> list[str]:
 
 
 def costing(monkeypatch, **costs: float) -> None:
-    monkeypatch.setattr(ties, "_cost", lambda r, substeps, device: costs[r.leader.attachment.mechanism.name])
+    monkeypatch.setattr(ties, "_cost", lambda r: costs[r.leader.attachment.mechanism.name])
 
 
 @pytest.mark.parametrize(("gravity", "first"), [(98.0, "constant_bias"), (90.0, "gravity")])
@@ -54,7 +54,7 @@ def test_a_parameter_more_must_be_worth_its_price(monkeypatch, ranked, gravity, 
     """Seen: a gain of 1.02 called gravity, whose second parameter took up a drift."""
     costing(monkeypatch, constant_bias=100.0, gravity=gravity)
     order = [ranked(Gravity(), 0.996, 2), ranked(ConstantBias(), 1.0)]
-    found = rank_by_likelihood(order, 1)
+    found = rank_by_likelihood(order)
     assert names(found)[0] == first
     assert {r.cost for r in found} == {100.0, gravity}
 
@@ -62,22 +62,18 @@ def test_a_parameter_more_must_be_worth_its_price(monkeypatch, ranked, gravity, 
 def test_what_does_not_tie_keeps_its_place_and_so_do_curves_and_what_goes_astray(monkeypatch, ranked) -> None:
     costing(monkeypatch, constant_bias=100.0, gravity=1e6, torque_ripple=0.0)
     curve, worse = ranked(Unknown("speed"), 0.99, 14), ranked(TorqueRipple(), 1.2, 3)
-    found = rank_by_likelihood([curve, ranked(Gravity(), 0.996, 2), ranked(ConstantBias(), 1.0), worse], 1)
+    found = rank_by_likelihood([curve, ranked(Gravity(), 0.996, 2), ranked(ConstantBias(), 1.0), worse])
     assert names(found) == ["unknown", "gravity", "constant_bias", "torque_ripple"]
     assert [r.cost for r in found] == [None, None, 100.0, None]
     costing(monkeypatch, constant_bias=100.0, gravity=120.0)
-    found = rank_by_likelihood([curve, ranked(Gravity(), 0.996, 2), ranked(ConstantBias(), 1.0), worse], 1)
+    found = rank_by_likelihood([curve, ranked(Gravity(), 0.996, 2), ranked(ConstantBias(), 1.0), worse])
     assert names(found) == ["unknown", "constant_bias", "gravity", "torque_ripple"]
 
 
 def test_above_the_noise_and_alone_nothing_is_weighed(ranked) -> None:
     loud = [ranked(Gravity(), 3.0, 2), ranked(ConstantBias(), 3.0)]
     alone = [ranked(Gravity(), 1.0, 2)]
-    assert (
-        rank_by_likelihood(loud, 1) == loud
-        and rank_by_likelihood(alone, 1) == alone
-        and rank_by_likelihood([], 1) == []
-    )
+    assert rank_by_likelihood(loud) == loud and rank_by_likelihood(alone) == alone and rank_by_likelihood([]) == []
 
 
 def test_the_probability_is_shared_by_likelihood(ranked) -> None:
@@ -96,6 +92,6 @@ def test_one_law_by_two_names_is_equally_likely_on_a_machine_that_drifts(motor_d
         fitted = search.refitted((attachment,), search.plain)
         assert fitted is not None
         laws.append(judged(Candidate(attachment, (), 0.5), search.plain, fitted))
-    one, other = rank_by_likelihood(laws, 1)
+    one, other = rank_by_likelihood(laws)
     assert one.cost is not None and other.cost == pytest.approx(one.cost, abs=0.5)
     assert shared(one, [one, other])[0] == pytest.approx(CEILING / 2, abs=0.05)

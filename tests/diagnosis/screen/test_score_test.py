@@ -19,12 +19,12 @@ def screen(dead_zone_search) -> Screen:
         *candidates(search.problem.model, search.shifts, search.surroundings, flexible=False),
         *candidates(search.problem.model, search.shifts, search.surroundings, flexible=True),
     ]
-    return Screen.of(search.problem.model, (), offered, search.surroundings, search.problem.free_names)
+    return Screen.of(search.problem.model, (), offered, search.surroundings, search.problem.free_names, search.options)
 
 
 @pytest.fixture(scope="module")
 def looks(dead_zone_search, screen) -> list[list[ScreenScore]]:
-    return [screen.look(fit, 1) for fit in dead_zone_search.plain.fits]
+    return [screen.look(fit) for fit in dead_zone_search.plain.fits]
 
 
 def test_the_effect_that_is_there_explains_most(looks) -> None:
@@ -64,7 +64,7 @@ def test_size_of_the_effect_is_near_the_truth(looks) -> None:
 
 def test_no_effect_no_share(motor_data, motor, begun, screen) -> None:
     clean = begun(motor_data(), motor)
-    explained = [look.explained for fit in clean.plain.fits[:1] for look in screen.look(fit, 1)]
+    explained = [look.explained for fit in clean.plain.fits[:1] for look in screen.look(fit)]
     assert max(explained) < 0.02
 
 
@@ -76,5 +76,5 @@ def test_memories_of_accepted_effects_are_not_taken_for_positions(motor_data, mo
     fitted = search.refitted((lag,), search.current, [{"actuator.input_lag.T": 0.045}])
     assert fitted is not None
     offered = [attach(motor, "rotor", TorqueRipple(7.0))]
-    screen = Screen.of(motor, (lag,), offered, search.surroundings, fitted.problem.free_names)
-    assert max(look.explained for look in screen.look(fitted.fits[0], 1)) > 0.5
+    screen = Screen.of(motor, (lag,), offered, search.surroundings, fitted.problem.free_names, search.options)
+    assert max(look.explained for look in screen.look(fitted.fits[0])) > 0.5

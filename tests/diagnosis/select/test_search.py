@@ -30,7 +30,7 @@ def ranked(motor, begun, motor_data):
 
     def make(mechanism, energies: np.ndarray) -> RankedCandidate:
         fits = tuple(replace(fit, energies=energies, mean_square=float(energies.mean())) for fit in search.plain.fits)
-        fitted = Hypothesis((), search.plain.model, search.plain.stepper, fits, 1e-12)
+        fitted = Hypothesis((), search.plain.model, search.plain.simulator, fits, 1e-12)
         gain = search.plain.score - fitted.score
         return RankedCandidate(Candidate(attach(motor, "rotor", mechanism), (), 0.5), fitted, gain, 10.0)
 

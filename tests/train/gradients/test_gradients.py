@@ -9,7 +9,8 @@ import pytest
 
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulation.stepper import Windows, make_stepper
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
+from greybox_torch.simulation.windows import Windows
 from greybox_torch.train.gradients import GRADIENTS, Batch, make_gradient
 from greybox_torch.train.gradients.recomputation import RecomputationGradient
 
@@ -38,7 +39,8 @@ def difference(gradient, values: np.ndarray, batch: Batch, direction: np.ndarray
 @pytest.mark.parametrize("substeps", [1, 2])
 @pytest.mark.parametrize("name", GRADIENTS)
 def test_against_differences(name: str, substeps: int, problem, batch) -> None:
-    gradient = make_gradient(name, problem, make_stepper(problem.model, problem.free_names), substeps=substeps)
+    simulator = Simulator.of(problem.model, problem.free_names, SimulationOptions(substeps=substeps))
+    gradient = make_gradient(name, problem, simulator)
     found = gradient(problem.values, batch)
     assert found.slope.shape == (len(problem.free_names),)
     tolerance = 1e-3 if name == "odeint_adjoint" else 1e-7  # the adjoint is not of the steps but of the solution
@@ -52,9 +54,9 @@ def test_against_differences(name: str, substeps: int, problem, batch) -> None:
 
 
 def test_against_one_another(problem, batch) -> None:
-    stepper = make_stepper(problem.model, problem.free_names)
+    simulator = Simulator.of(problem.model, problem.free_names)
     tangents, recomputation, adjoint = (
-        make_gradient(name, problem, stepper)(problem.values, batch) for name in GRADIENTS
+        make_gradient(name, problem, simulator)(problem.values, batch) for name in GRADIENTS
     )
     assert recomputation.energy == pytest.approx(tangents.energy, rel=1e-12)
     np.testing.assert_allclose(recomputation.slope, tangents.slope, rtol=1e-9, atol=1e-10)
@@ -74,11 +76,11 @@ def test_recomputation_changes_nothing(chunk: int, problem, batch) -> None:
 def test_straight_lines_between_samples(name: str, problem, batch) -> None:
     foh = replace(problem, records=replace(problem.records, hold="foh"))
     other = replace(batch, records=replace(batch.records, hold="foh"))
-    stepper = make_stepper(problem.model, problem.free_names)
-    found = make_gradient(name, foh, stepper)(problem.values, other)
-    exact = make_gradient("tangents", foh, stepper)(problem.values, other)
+    simulator = Simulator.of(problem.model, problem.free_names)
+    found = make_gradient(name, foh, simulator)(problem.values, other)
+    exact = make_gradient("tangents", foh, simulator)(problem.values, other)
     assert found.energy == pytest.approx(exact.energy, rel=1e-4)
-    assert abs(exact.energy / make_gradient(name, problem, stepper)(problem.values, batch).energy - 1) > 1e-6
+    assert abs(exact.energy / make_gradient(name, problem, simulator)(problem.values, batch).energy - 1) > 1e-6
 
 
 def test_samples_that_count(batch) -> None:
@@ -90,10 +92,10 @@ def test_overflow_is_a_value(name: str, problem, batch) -> None:
     values = problem.values.copy()
     values[problem.names.index("J")] = 1e-30
     with np.errstate(all="ignore"):
-        found = make_gradient(name, problem, make_stepper(problem.model, problem.free_names))(values, batch)
+        found = make_gradient(name, problem, Simulator.of(problem.model, problem.free_names))(values, batch)
     assert not found.finite
 
 
 def test_unknown_gradient(problem) -> None:
     with pytest.raises(UserError, match=r'--gradient tangent: unknown \(did you mean "tangents"\?\); expected one of'):
-        make_gradient("tangent", problem, make_stepper(problem.model, ()))
+        make_gradient("tangent", problem, Simulator.of(problem.model, ()))
