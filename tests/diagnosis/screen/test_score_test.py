@@ -19,7 +19,7 @@ def screen(dead_zone_search) -> Screen:
         *candidates(search.problem.model, search.shifts, search.surroundings, flexible=False),
         *candidates(search.problem.model, search.shifts, search.surroundings, flexible=True),
     ]
-    return Screen.of(search.problem.model, (), offered, search.surroundings, search.problem.free_names, search.options)
+    return Screen.of(search.problem.model, (), offered, search.surroundings, search.problem.free_names, search.study.options)
 
 
 @pytest.fixture(scope="module")
@@ -76,5 +76,5 @@ def test_memories_of_accepted_effects_are_not_taken_for_positions(motor_data, mo
     fitted = search.refitted((lag,), search.current, [{"actuator.input_lag.T": 0.045}])
     assert fitted is not None
     offered = [attach(motor, "rotor", TorqueRipple(7.0))]
-    screen = Screen.of(motor, (lag,), offered, search.surroundings, fitted.problem.free_names, search.options)
+    screen = Screen.of(motor, (lag,), offered, search.surroundings, fitted.problem.free_names, search.study.options)
     assert max(look.explained for look in screen.look(fitted.fits[0])) > 0.5

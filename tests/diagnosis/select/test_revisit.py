@@ -133,7 +133,7 @@ def test_frozen_parameters_keep_their_values_and_are_free_again_when_polished(de
     heights = [f"actuator.unknown.w_{k}" for k in range(6)]
     start = {**search.plain.values(), **dict.fromkeys(heights, 0.1)}
     frozen = hypothesis(
-        search.problem, (curve,), search.surroundings, [start], options=search.options, frozen=frozenset(heights)
+        search.problem, (curve,), search.surroundings, [start], options=search.study.options, frozen=frozenset(heights)
     )
     assert frozen is not None
     assert [frozen.values()[n] for n in heights] == [0.1] * 6
@@ -209,7 +209,7 @@ def test_a_law_hands_its_force_to_the_curve_beside_it(motor_data, motor, begun) 
         "rotor.quadratic_drag.c": 0.004,
         **{f"{curve.prefix}.w_{k}": 0.0 for k in range(12)},
     }
-    both = hypothesis(search.problem, (drag, curve), search.surroundings, [start], options=search.options)
+    both = hypothesis(search.problem, (drag, curve), search.surroundings, [start], options=search.study.options)
     assert both is not None
     alone = absorbed(both, drag, search.surroundings)
     assert alone is not None and not any(n.startswith(drag.prefix) for n in alone)
@@ -218,20 +218,20 @@ def test_a_law_hands_its_force_to_the_curve_beside_it(motor_data, motor, begun) 
         (curve,),
         search.surroundings,
         [alone],
-        options=search.options,
+        options=search.study.options,
         frozen=frozenset(n for n in alone if "w_" in n),
     )
     assert handed is not None and handed.score < both.score + 0.05 < search.plain.score - 0.5
     assert absorbed(both, curve, search.surroundings) is None
     bias = attach(motor, "rotor", ConstantBias())
-    beside = hypothesis(search.problem, (bias, curve), search.surroundings, [start], options=search.options)
+    beside = hypothesis(search.problem, (bias, curve), search.surroundings, [start], options=search.study.options)
     assert beside is not None
     assert absorbed(beside, bias, search.surroundings) is not None  # a constant is a curve of any signal
     warm = attach(motor, "rotor", FrictionWarmup())
-    later = hypothesis(search.problem, (warm, curve), search.surroundings, [start], options=search.options)
+    later = hypothesis(search.problem, (warm, curve), search.surroundings, [start], options=search.study.options)
     assert later is not None and absorbed(later, warm, search.surroundings) is None  # of time as well
     at_position = attach(motor, "rotor", Unknown("position", 12))
-    elsewhere = hypothesis(search.problem, (drag, at_position), search.surroundings, [start], options=search.options)
+    elsewhere = hypothesis(search.problem, (drag, at_position), search.surroundings, [start], options=search.study.options)
     assert elsewhere is not None and absorbed(elsewhere, drag, search.surroundings) is None
 
 
@@ -240,13 +240,13 @@ def test_a_finer_curve_begins_as_the_one_it_refines(motor_data, motor, begun, fa
     search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v)), motor)
     curve = attach(motor, "rotor", Unknown("speed", 8, factor))
     start = search.plain.values() | {f"{curve.prefix}.w_{k}": 0.01 * (k - 4) for k in range(8)}
-    drawn = hypothesis(search.problem, (curve,), search.surroundings, [start], options=search.options)
+    drawn = hypothesis(search.problem, (curve,), search.surroundings, [start], options=search.study.options)
     assert drawn is not None
     attachment, values = finer(drawn, curve, search.surroundings)
     assert sum(n.startswith(f"{curve.prefix}.w_") for n in values) == 16
     frozen = frozenset(n for n in values if "w_" in n)
     same = hypothesis(
-        search.problem, (attachment,), search.surroundings, [values], options=search.options, frozen=frozen
+        search.problem, (attachment,), search.surroundings, [values], options=search.study.options, frozen=frozen
     )
     assert same is not None and same.score < drawn.score + 0.02
 
