@@ -19,7 +19,9 @@ def screen(dead_zone_search) -> Screen:
         *candidates(search.problem.model, search.shifts, search.surroundings, flexible=False),
         *candidates(search.problem.model, search.shifts, search.surroundings, flexible=True),
     ]
-    return Screen.of(search.problem.model, (), offered, search.surroundings, search.problem.free_names, search.study.options)
+    return Screen.of(
+        search.problem.model, (), offered, search.surroundings, search.problem.free_names, search.study.options
+    )
 
 
 @pytest.fixture(scope="module")

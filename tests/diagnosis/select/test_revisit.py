@@ -231,7 +231,9 @@ def test_a_law_hands_its_force_to_the_curve_beside_it(motor_data, motor, begun) 
     later = hypothesis(search.problem, (warm, curve), search.surroundings, [start], options=search.study.options)
     assert later is not None and absorbed(later, warm, search.surroundings) is None  # of time as well
     at_position = attach(motor, "rotor", Unknown("position", 12))
-    elsewhere = hypothesis(search.problem, (drag, at_position), search.surroundings, [start], options=search.study.options)
+    elsewhere = hypothesis(
+        search.problem, (drag, at_position), search.surroundings, [start], options=search.study.options
+    )
     assert elsewhere is not None and absorbed(elsewhere, drag, search.surroundings) is None
 
 
