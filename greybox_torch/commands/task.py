@@ -13,7 +13,6 @@ from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulation.simulator import SimulationOptions
 from greybox_torch.systems import BUILT_IN, load_model
 
 
