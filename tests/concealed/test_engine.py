@@ -133,3 +133,21 @@ def test_an_effect_that_no_machine_of_the_family_has_is_said(
     with pytest.raises(SystemExit):
         generate.main([str(tmp_path), "--family", "mujoco", "--effects", "rust"])
     assert "no machine of mujoco has rust; there are none, cart_dry" in capsys.readouterr().err
+
+
+def test_a_simulation_that_is_lost_is_not_a_number_and_leaves_no_log(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from experiments.concealed.engine.describe import document, inertial, joint, motors
+
+    monkeypatch.chdir(tmp_path)
+    wheel = joint("wheel", "hinge", "0 0 1", {}, damping=0.0) + inertial(1.0, "0 0 0", (1e-6,) * 3)
+    xml = document(f"<body>{wheel}</body>", motors(("wheel",), {}), {}, step=5e-4)
+    pushed = np.zeros((60, 1))
+    pushed[20:] = 1e9
+    feedback = engine.Feedback(pushed, np.zeros((60, 1)), (0,), np.zeros(1), np.zeros(1))
+    silent = engine.Sensing((0,), np.zeros((60, 1)), np.zeros((60, 1)), np.zeros(1))
+    found = engine.run(xml, feedback, silent, disturbance=np.zeros(60), start=np.zeros(1), sample_time=0.002)
+    assert np.isfinite(found.outputs[:20]).all()
+    assert np.isnan(found.outputs[-1]).all()  # MuJoCo starts anew from zero
+    assert not list(tmp_path.iterdir())

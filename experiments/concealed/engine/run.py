@@ -55,10 +55,12 @@ def run(
 ) -> Experiment:
     """Simulate from the positions `start`, at rest. `disturbance` (samples,) acts at the first joint; commands act `delay` s late.
 
-    Raises ImportError where mujoco is not installed.
+    From where the simulation is lost (MuJoCo starts anew there) everything is NaN. Raises ImportError where mujoco is not installed.
     """
     import mujoco
 
+    mujoco.set_mju_user_warning(_not_to_a_file)
+    lost = (mujoco.mjtWarning.mjWARN_BADQPOS, mujoco.mjtWarning.mjWARN_BADQVEL, mujoco.mjtWarning.mjWARN_BADQACC)
     model = mujoco.MjModel.from_xml_string(xml)
     data: Any = mujoco.MjData(model)
     data.qpos[:] = start
@@ -86,10 +88,14 @@ def run(
             if count:
                 data.ctrl[:] = command[max(k - late, 0)]
                 mujoco.mj_step(model, data, nstep=count)
-        if not np.isfinite(data.qpos).all() or data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
+        if any(data.warning[kind].number for kind in lost):
             outputs[k:], command[k:], states[k:] = np.nan, np.nan, np.nan
             break
     return Experiment(command, outputs, states)
+
+
+def _not_to_a_file(text: str) -> None:
+    """MuJoCo's warnings: a run that is lost is NaN, which says it; the log file in the working folder is not wanted."""
 
 
 def _read(shown: Array, resolution: Array) -> Array:
