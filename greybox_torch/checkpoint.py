@@ -92,8 +92,8 @@ def load_checkpoint(path: str | PathLike[str]) -> Checkpoint:
     """
     tensors, card = _halves(Path(path))
     for half, other in ((tensors, card), (card, tensors)):
-        if not half.is_file():
-            what = f"its other half {other} is there" if other.is_file() else "nor is its other half"
+        if not _is_there(half):
+            what = f"its other half {other} is there" if _is_there(other) else "nor is its other half"
             raise UserError(f"checkpoint {half}: no such file ({what}); expected {tensors.name} and {card.name}")
     content = read_checkpoint_card(card)
     return Checkpoint(
@@ -135,6 +135,14 @@ def _number(tensors: Path, name: str, held: np.ndarray) -> float:
     if not np.isfinite(held):
         raise UserError(f"checkpoint {tensors}, tensor {name}: found {held}, expected a finite number")
     return float(held)
+
+
+def _is_there(half: Path) -> bool:
+    """Whether there is anything at all; a name that no file can have has nothing."""
+    try:
+        return half.exists()
+    except (OSError, ValueError):
+        return False
 
 
 def checkpoint_name(path: Path) -> str:

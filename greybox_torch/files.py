@@ -13,6 +13,14 @@ from typing import Any
 from greybox_torch.errors import UserError
 
 
+def absolute(path: Path) -> Path:
+    """`path` from the root of the file system on, links followed as far as they lead anywhere."""
+    try:
+        return path.resolve()
+    except (OSError, RuntimeError, ValueError):  # a loop of links, a name that no file can have
+        return path.absolute()
+
+
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """A temporary path to write to, in the folder of `path`, which replaces `path` once the block ends without an
@@ -37,6 +45,13 @@ def replacing(path: Path) -> Iterator[Path]:
             temporary.unlink(missing_ok=True)
 
 
+def _is_folder(path: Path) -> bool:
+    try:
+        return path.is_dir()
+    except OSError:  # a name that is too long; writing will say so
+        return False
+
+
 def write_text(path: Path, text: str) -> None:
     """Writes `text` to `path` as UTF-8, whole or not at all. Raises UserError where it cannot be written."""
     with replacing(path) as temporary:
@@ -47,7 +62,7 @@ def write_all(contents: Mapping[Path, str | bytes]) -> None:
     """Writes files that belong together: all of them, or none. Text is encoded as UTF-8. Raises UserError where one cannot be written."""
     with ExitStack() as together:
         for path, content in contents.items():
-            if path.is_dir():
+            if _is_folder(path):
                 raise UserError(f"{path}: cannot be written: it is a folder; expected a place for a file")
             temporary = together.enter_context(replacing(path))
             temporary.write_bytes(content.encode() if isinstance(content, str) else content)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from typing import Any
 
 import typer
 from typer.core import TyperGroup
 
+from greybox_torch.commands.options import json_alone
 from greybox_torch.errors import ArgumentError, NumericalError, UserError
 
 
@@ -14,8 +16,10 @@ class Commands(TyperGroup):
     """Exit codes, in one place: 2 the user's input is at fault, 3 the numbers failed, 130 interrupted."""
 
     def invoke(self, ctx: Any) -> Any:
+        given = [*ctx._protected_args, *ctx.args]
         try:
-            return super().invoke(ctx)
+            with json_alone() if "--json" in given else nullcontext():
+                return super().invoke(ctx)
         except ArgumentError as error:
             raise _stop(f"error: {error.for_option()}", 2) from None
         except UserError as error:

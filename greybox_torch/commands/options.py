@@ -3,14 +3,33 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stdout
+from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TextIO
+
+from greybox_torch.files import absolute
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from greybox_torch.api.result import Result
+
+
+_STANDARD_OUTPUT: ContextVar[TextIO | None] = ContextVar("standard output", default=None)
+
+
+@contextmanager
+def json_alone() -> Iterator[None]:
+    """While the block runs, standard output is for the JSON of `print_json`: what a model prints goes to standard error."""
+    before = _STANDARD_OUTPUT.set(sys.stdout)
+    try:
+        with redirect_stdout(sys.stderr):
+            yield
+    finally:
+        _STANDARD_OUTPUT.reset(before)
 
 
 @dataclass(frozen=True)
@@ -26,7 +45,7 @@ class Options:
 
     def folder(self, dataset: Path) -> Path:
         """Where to write results: --out, or results/<name of the folder that holds the data card>."""
-        return self.out if self.out is not None else Path("results") / dataset.resolve().parent.name
+        return self.out if self.out is not None else Path("results") / absolute(dataset).parent.name
 
     def finish(self, result: Result, folder: Path) -> None:
         """Saves the result, all of it or nothing, and prints it."""
@@ -51,4 +70,4 @@ class Options:
     def print_json(self, text: str) -> None:
         """Prints the machine-readable result on standard output where --json asks for it."""
         if self.json:
-            sys.stdout.write(text)
+            (_STANDARD_OUTPUT.get() or sys.stdout).write(text)

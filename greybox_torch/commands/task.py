@@ -53,6 +53,9 @@ def load_task(dataset: Path, options: Options) -> Task:
 
 def check_folder(folder: Path) -> None:
     """Raises UserError where results could not be written to ``folder`` because a file is in the way."""
-    nearest = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+    try:
+        nearest = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+    except OSError as error:
+        raise UserError(f"--out {folder}: cannot be written: {error.strerror}; expected a folder for results") from None
     if not nearest.is_dir():
         raise UserError(f"--out {folder}: {nearest} is a file; expected a folder for results")

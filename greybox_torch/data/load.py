@@ -20,6 +20,7 @@ from greybox_torch.data.recording import Channel, Recording
 from greybox_torch.data.source import Read, Source, source_of
 from greybox_torch.data.units import conversion, slip
 from greybox_torch.errors import UserError
+from greybox_torch.files import absolute
 
 
 def load_dataset(path: str | PathLike[str]) -> DataSet:
@@ -35,7 +36,7 @@ def load_dataset(path: str | PathLike[str]) -> DataSet:
     return DataSet(
         [_read_recording(path, card, experiment, read) for experiment in card.experiment],
         hold=card.hold,
-        name=card.name or path.resolve().parent.name or "recordings",
+        name=card.name or absolute(path).parent.name or "recordings",
         path=path,
         channels={name: Channel(name, entry.unit) for name, entry in card.channels.items()},
         model=_absolute_model(card.model.name, path),
@@ -91,7 +92,8 @@ def _time(
     """Time stamps (N,) and the median step, in seconds."""
     if card.time is None or clock is None:
         step = card.sample_time or 1.0
-        time = np.arange(start, stop, dtype=np.float64) * step
+        with np.errstate(over="ignore"):
+            time = np.arange(start, stop, dtype=np.float64) * step
         if not np.isfinite(time[-1]) or time[-1] <= time[0]:
             raise UserError(
                 f"{path}: sample_time: {step:g} s makes times that are no numbers; expected seconds between samples"
@@ -185,4 +187,4 @@ def _absolute_model(name: str | None, path: Path) -> str | None:
     file, colon, model_class = name.rpartition(":")
     if not file.endswith(".py"):
         return name
-    return f"{(path.parent / file).resolve()}{colon}{model_class}"
+    return f"{absolute((path.parent / file).parent) / Path(file).name}{colon}{model_class}"

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from greybox_torch.errors import UserError
+
+
+def _is_finite(value: Any) -> bool:
+    try:
+        return not isinstance(value, str) and math.isfinite(value)
+    except (TypeError, ValueError, OverflowError):
+        return False
 
 
 @dataclass(frozen=True)
@@ -23,7 +31,7 @@ class State:
     description: str = ""
 
     def __post_init__(self) -> None:
-        if isinstance(self.initial, str) and self.initial != "measured":
+        if self.initial != "measured" and not _is_finite(self.initial):
             raise UserError(f"State '{self.name}': initial is {self.initial!r}, expected a number or 'measured'")
 
 
@@ -64,6 +72,8 @@ class Parameter:
     """Held weakly towards zero: of curves that fit alike, the smaller one is meant, and physics is preferred."""
 
     def __post_init__(self) -> None:
+        if not _is_finite(self.value) and self.value == self.value:
+            raise UserError(f"Parameter '{self.name}': value is {self.value!r}, expected a finite number")
         low, high = self.bounds
         if not low < high:
             raise UserError(f"Parameter '{self.name}': lower bound {low:g} is not below upper bound {high:g}")

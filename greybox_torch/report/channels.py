@@ -10,28 +10,34 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from greybox_torch.data import Channel, DataSet, Recording
-from greybox_torch.report.style import STYLE, dots_within, with_unit
+from greybox_torch.report.style import MOST_PANELS, STYLE, dots_within, shown_of, with_unit
 
 _MOST_COLUMNS = 3
+_MOST_CHANNELS = 24
 
 
 def plot_channels(data: DataSet) -> Figure:
     """An experiment a column, a channel a row; after three experiments the columns go on in another band of rows.
 
     The channels of an experiment share the time axis, in seconds. A channel has the same vertical axis, in its unit,
-    in all experiments. Missing samples leave a gap in the curve and a red mark at the foot of it.
+    in all experiments. Of very many channels or experiments the figure shows the first, and says so. Missing samples leave a gap in
+    the curve and a red mark at the foot of it.
     """
-    channels = list(data.channels.values())
-    columns = min(len(data.recordings), _MOST_COLUMNS)
-    bands = -(-len(data.recordings) // columns)
+    channels = list(data.channels.values())[:_MOST_CHANNELS]
+    recordings = data.recordings[: max(MOST_PANELS // len(channels), 1)]
+    columns = min(len(recordings), _MOST_COLUMNS)
+    bands = -(-len(recordings) // columns)
     size = (max(8.0, 4.5 * columns), 0.8 + bands * (0.6 + 1.8 * len(channels)))
     dots_per_inch = dots_within(size[1])
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=size, dpi=dots_per_inch, layout="constrained")
-        figure.suptitle(data.name, fontweight="bold")
+        left_out = shown_of("channels", len(channels), len(data.channels)) + shown_of(
+            "experiments", len(recordings), len(data.recordings)
+        )
+        figure.suptitle(data.name + left_out, fontweight="bold")
         grid = figure.add_gridspec(bands * len(channels), columns)
         same_channel: dict[str, Axes] = {}
-        for index, recording in enumerate(data.recordings):
+        for index, recording in enumerate(recordings):
             band, column = divmod(index, columns)
             top = None
             for row, channel in enumerate(channels):

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
 from greybox_torch.data import Channel, Recording
-from greybox_torch.report.style import STYLE, dots_within, with_unit
+from greybox_torch.report.style import MOST_PANELS, STYLE, dots_within, with_unit
 
 Panel = tuple[Recording, Mapping[str, np.ndarray], Mapping[str, str]]
 """A recording, the outputs (N, n_y) by the model's name, and what to say of each model."""
@@ -30,7 +30,8 @@ def plot_comparison(
 
 
 def plot_comparisons(panels: Sequence[Panel], outputs: list[Channel]) -> Figure:
-    """One experiment below the other, each as :func:`plot_comparison` draws it."""
+    """One experiment below the other, each as :func:`plot_comparison` draws it; of very many the first."""
+    panels = panels[: max(MOST_PANELS // (4 * len(outputs)), 1)]
     with mpl.rc_context(STYLE):
         height = (0.6 + 4.4 * len(outputs)) * len(panels)
         figure = Figure(figsize=(11, height), dpi=dots_within(height), layout="constrained")

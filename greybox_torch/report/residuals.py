@@ -10,12 +10,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from greybox_torch.estimate.residuals import Correlation, Residuals
-from greybox_torch.report.style import STYLE, dots_within, with_unit
+from greybox_torch.report.style import MOST_PANELS, STYLE, dots_within, shown_of, with_unit
 
 
 def plot_residuals(rows: Sequence[Residuals], title: str) -> Figure:
-    """A row for each output of each experiment; the band is what 99 % of the values keep within if nothing is missing."""
+    """A row for each output of each experiment; the band is what 99 % of the values keep within if nothing is missing.
+
+    Of very many rows the figure shows the first, and says so.
+    """
     columns = 2 + max(len(row.inputs) for row in rows)
+    title += shown_of("rows", min(len(rows), MOST_PANELS // 3), len(rows))
+    rows = rows[: MOST_PANELS // 3]
     height = 0.7 + 2.3 * len(rows)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(4.0 * columns, height), dpi=dots_within(height), layout="constrained")

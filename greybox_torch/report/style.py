@@ -22,3 +22,12 @@ def dots_within(height: float) -> float:
 def with_unit(name: str, unit: str) -> str:
     """A label for an axis."""
     return f"{name} [{unit}]" if unit else name
+
+
+MOST_PANELS = 72
+"""Panels that one figure shows. What a layout of many hundreds would take is hours, and nobody could read it."""
+
+
+def shown_of(what: str, shown: int, there: int) -> str:
+    """Ends a title: how many of something the figure shows; empty where that is all."""
+    return "" if shown == there else f" (the first {shown} of {there} {what})"

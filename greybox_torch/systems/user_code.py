@@ -13,6 +13,7 @@ from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
 
 from greybox_torch.errors import UserError
+from greybox_torch.files import absolute
 
 
 @contextmanager
@@ -45,9 +46,8 @@ def line_in(file: Path, error: BaseException) -> str:
     """`, line N` with the last line of `file` on the way to the error; empty where there is none."""
     if isinstance(error, SyntaxError) and error.lineno:
         return f", line {error.lineno}"
-    lines = [
-        f.lineno for f in traceback.extract_tb(error.__traceback__) if Path(f.filename).resolve() == file.resolve()
-    ]
+    own = absolute(file)
+    lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if absolute(Path(f.filename)) == own]
     return f", line {lines[-1]}" if lines else ""
 
 

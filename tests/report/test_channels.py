@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from greybox_torch.data import load_dataset
+from greybox_torch.data import DataSet, Recording, load_dataset
 from greybox_torch.report.channels import plot_channels
 
 
@@ -32,3 +32,13 @@ def test_more_experiments_than_columns(bench: Path, edit: Callable[[Path, str, s
     assert len(figure.axes) == 2 * 5
     columns = {round(axes.get_position().x0, 3) for axes in figure.axes}
     assert len(columns) == 3
+
+
+def test_very_many_of_both_are_told_and_not_drawn() -> None:
+    run = {f"c{k}": np.arange(12.0) for k in range(60)}
+    data = DataSet(
+        [Recording.from_arrays(f"run {k}", run, sample_time=0.1, role="validation") for k in range(40)], name="Many"
+    )
+    figure = plot_channels(data)
+    assert len(figure.axes) == 72
+    assert figure.get_suptitle() == "Many (the first 24 of 60 channels) (the first 3 of 40 experiments)"

@@ -220,6 +220,8 @@ class UnreadableRow(Exception):
 
 def _said(error: csv.Error) -> str:
     text = str(error)
-    if "unexpected end" in text or "field larger" in text:
+    if "field larger" in text:
+        return "a cell of more than 131072 characters, or a quotation mark that is opened here and not closed"
+    if "unexpected end" in text:
         return "a quotation mark is opened here and not closed"
     return text

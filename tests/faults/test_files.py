@@ -1,0 +1,135 @@
+"""Faults in recordings, in places where files are expected, and on the command line."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.faults.conftest import CSV
+
+Answer = Callable[..., str]
+
+LINES = CSV.splitlines()
+
+
+def line(number: int, text: str) -> str:
+    """The recording with another text in a line, which counts from 1."""
+    return "\n".join([*LINES[: number - 1], text, *LINES[number:]]) + "\n"
+
+
+RECORDINGS = [
+    ("", 'no column "u"; found none'),
+    ("u,y\n", "has 0 samples; expected at least 10"),
+    ("\n".join(LINES[:10]), "has 9 samples; expected at least 10"),
+    ("u\n1\n2\n", 'no column "y"; found u'),
+    ("u,u,y\n1,2,3\n", 'line 1: 2 columns are named "u"'),
+    (line(5, "1"), "line 5: found 1 cell(s), expected 2"),
+    (line(5, "1,2,3"), "line 5: found 3 cell(s), expected 2"),
+    (line(5, "abc,1"), 'line 5, column "u": found "abc", expected a number'),
+    (line(5, "1_000,1"), 'line 5, column "u": found "1_000"'),
+    (line(5, "\u0661,1"), 'line 5, column "u": found "\u0661"'),
+    (line(5, "0x1F,1"), 'line 5, column "u": found "0x1F"'),
+    (line(5, "1 000,1"), 'line 5, column "u": found "1 000"'),
+    (line(5, "1e5000,1"), 'line 5, column "u", sample 3 (the first is 0): found inf'),
+    (line(5, "-inf,1"), "found -inf, expected a finite number"),
+    (line(5, "1e150,1"), "found 1e+150, expected a number of at most 1e+100"),
+    (line(5, "N/A,1"), 'found "N/A"'),
+    (line(5, '"1,1'), "line 5: not comma-separated values: a quotation mark is opened here and not closed"),
+    (line(5, "1," + "9" * 200_000), "a cell of more than 131072 characters"),
+    (line(5, "=1+1,1"), 'found "=1+1"'),
+    (line(2, "V,deg/s"), 'column "y" in "deg/s", the card says "rad/s"'),
+    ("u,y\n" + ",1\n" * 80, 'channel "voltage": all 80 samples are missing'),
+    ("u;y\n" + "1,5;2.5\n" * 80, 'found "2.5", expected a number'),
+    ("{}", 'no column "u"'),
+    ("\x89PNG\r\n\x1a\n" + "\x00" * 100, 'no column "u"'),
+    ("<html><body>404</body></html>", 'no column "u"'),
+    ("u,y\n" + "a,b\n" * 5, 'found "a"'),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("content", "message"), RECORDINGS, ids=range(len(RECORDINGS)))
+def test_recording(spoilt: Path, answer: Answer, content: str, message: str) -> None:
+    (spoilt / "a.csv").write_text(content)
+    answer("inspect", "dataset.toml", message=message)
+
+
+STAMPS = [
+    ("0.03", "0.02", "found 0.02 s after 0.02 s"),
+    ("0.03", "0.01", "found 0.01 s after 0.02 s"),
+    ("0.03", "", "the time stamp is missing"),
+    ("0.03", "nan", "the time stamp is missing"),
+    ("0.03", "inf", "found inf"),
+    ("0.03", "soon", 'found "soon"'),
+    ("0.00", "1e101", "found 1e+101"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "message"), STAMPS)
+def test_time_stamps(spoilt: Path, answer: Answer, old: str, new: str, message: str) -> None:
+    rows = [f"{new if f'{0.01 * k:.2f}' == old else f'{0.01 * k:.2f}'},{row}" for k, row in enumerate(LINES[1:])]
+    (spoilt / "a.csv").write_text("\n".join(["t,u,y", *rows]) + "\n")
+    card = spoilt / "dataset.toml"
+    card.write_text(card.read_text().replace("sample_time = 0.01", 'time = "t"'))
+    answer("inspect", "dataset.toml", message=message)
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [("dataset.toml", "dataset.toml"), ("a.csv", "a.csv"), ("my_motor.py", "my_motor.py")],
+)
+def test_what_is_no_file(spoilt: Path, answer: Answer, name: str, expected: str) -> None:
+    (spoilt / name).unlink()
+    answer("inspect", "dataset.toml", message="no such file")
+    (spoilt / name).symlink_to(name)
+    answer("inspect", "dataset.toml", message="Too many levels of symbolic links")
+    (spoilt / name).unlink()
+    os.mkfifo(spoilt / name)
+    answer("inspect", "dataset.toml", message=f"{expected}: is a pipe")
+    (spoilt / name).unlink()
+    (spoilt / name).symlink_to("/dev/zero")
+    answer("inspect", "dataset.toml", message=f"{expected}: is a device")
+    (spoilt / name).unlink()
+    (spoilt / name).mkdir()
+    answer("inspect", "dataset.toml", message=expected)
+
+
+COMMANDS = [
+    (["inspect", "nowhere.toml"], "nowhere.toml: no such file"),
+    (["inspect", "nowhere.toml"], "expected a data card"),
+    (["inspect", "."], "Is a directory"),
+    (["inspect", "a\0b.toml"], "embedded null byte"),
+    (["inspect", "x" * 400], "File name too long"),
+    (["inspect", "dataset.toml", "--model", "nowhere.py:Motor"], "nowhere.py: no such file"),
+    (["inspect", "dataset.toml", "--model", "robot"], "model 'robot' is unknown"),
+    (["inspect", "dataset.toml", "--model", "a.csv:Motor"], "is unknown"),
+    (["inspect", "dataset.toml", "--model", "robot_arm"], "robot_arm"),
+    (["inspect", "dataset.toml", "--out", "a.csv"], "a.csv"),
+    (["inspect", "dataset.toml", "--out", "a.csv/inside"], "a.csv"),
+    (["inspect", "dataset.toml", "--out", "a\0b"], "embedded null byte"),
+    (["inspect", "dataset.toml", "--out", "x" * 400], "cannot be written"),
+    (["simulate", "dataset.toml", "--device", "quantum"], "quantum"),
+    (["simulate", "dataset.toml", "--device", "cuda:99"], "cuda:99"),
+    (["simulate", "dataset.toml", "--precision", "half"], "half"),
+    (["simulate", "dataset.toml", "--seed", "-1"], "--seed"),
+    (["simulate", "dataset.toml", "--seed", "x"], "--seed"),
+    (["fit", "dataset.toml", "--starts", "0"], "--starts"),
+    (["fit", "dataset.toml", "--profile", "mass"], "mass"),
+    (["residuals", "dataset.toml", "--checkpoint", ""], "not the name of a file"),
+    (["diagnose", "dataset.toml", "--time-limit", "0"], "--time-limit"),
+    (["train", "dataset.toml", "--net", "magic"], "magic"),
+    (["train", "dataset.toml", "--port", "gear"], "gear"),
+    (["train", "dataset.toml", "--resume"], "no such file"),
+    (["explode"], "No such command"),
+    (["inspect"], "Missing argument"),
+    (["inspect", "dataset.toml", "--colour"], "No such option"),
+]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"), COMMANDS, ids=[" ".join(c[0])[:60].replace("\0", "0") for c in COMMANDS]
+)
+def test_command_line(answer: Answer, arguments: list[str], message: str) -> None:
+    answer(*arguments, message=message)
