@@ -19,6 +19,7 @@ class InputLag(Mechanism):
 
     name = "input_lag"
     kinds = ("actuator",)
+    natural = ("T.lower",)
     needs = ("input",)
     fades = True
     explanation = "The input acts through a first-order lag (current loop, valve)."

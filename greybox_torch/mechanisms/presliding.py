@@ -17,6 +17,7 @@ class PreslidingHysteresis(Mechanism):
 
     name = "presliding_hysteresis"
     kinds = ("body",)
+    natural = ("z_0.lower",)
     needs = ("speed",)
     generalises = ("coulomb_friction",)
     includes = generalises

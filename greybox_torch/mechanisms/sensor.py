@@ -16,6 +16,7 @@ class SensorLag(Mechanism):
 
     name = "sensor_lag"
     kinds = ("sensor",)
+    natural = ("T.lower",)
     needs = ("output",)
     fades = True
     explanation = "The output is recorded through a first-order lag (filter, sensor dynamics)."
@@ -50,6 +51,7 @@ class OutputDelay(Mechanism):
 
     name = "output_delay"
     kinds = ("sensor",)
+    natural = ("T.lower",)
     needs = ("output",)
     fades = True
     twins = ("input_delay",)

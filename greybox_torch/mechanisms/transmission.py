@@ -81,7 +81,7 @@ class HystereticSpring(Mechanism):
     name = "hysteretic_spring"
     kinds = ("coupling",)
     needs = ("rate",)
-    natural = ("sharpness",)
+    natural = ("sharpness", "z_0.lower")
     explanation = "The coupling remembers: loading and unloading follow different curves (micro-slip, rubber)."
     source = "R. Bouc, 1967; Y.-K. Wen, J. Eng. Mech. 102(2), 1976; M. Ruderman, F. Hoffmann, T. Bertram, IEEE TIE 56(10), 2009"
     experiment = "slow loading and unloading between several limits"
@@ -125,6 +125,7 @@ class NonlinearDamping(Mechanism):
 
     name = "nonlinear_damping"
     kinds = ("coupling",)
+    natural = ("r_0.lower",)
     needs = ("rate",)
     explanation = (
         "The coupling's damping is not proportional to the rate of deflection, or differs between the two directions."

@@ -56,9 +56,11 @@ def take_best(
     """End a step: compare what was refitted, and take the best if it pays; a free curve is then drawn more finely."""
     compared = compare(study, state.current, screened, ranked)
     state = with_better_fit(state, compared.parent)
-    in_turn = rank_by_likelihood(compared.ranked)
+    sound = [
+        r for r in compared.ranked if degenerate(r.leader.attachment, study.surroundings, r.fitted.values()) is None
+    ]
+    in_turn = rank_by_likelihood(sound)
     paying = [r for r in in_turn if r.gain > least_gain(r.fitted) and r.significance > LEAST_SIGNIFICANCE]
-    paying = [r for r in paying if degenerate(r.leader.attachment, study.surroundings, r.fitted.values()) is None]
     if little_is_left(study, state):
         paying = [r for r in paying if completes(r.fitted)]
     taken = chosen(
