@@ -19,10 +19,14 @@ _KNOWN: WeakKeyDictionary[GreyBoxModel, dict[str, str]] = WeakKeyDictionary()
 
 
 def sensed_states(model: GreyBoxModel) -> dict[str, str]:
-    """By state, the name of the output that shows it: the one of the same name, or one that is equal to it at every point."""
-    if model not in _KNOWN:
-        _KNOWN[model] = _found(model)
-    return _KNOWN[model]
+    """By state, the name of the output that shows it: the one of the same name, or one that is equal to it at every point.
+
+    Of a model with effects it is the plain one that tells: what a sensor adds does not make it another sensor.
+    """
+    plain = model.plain
+    if plain not in _KNOWN:
+        _KNOWN[plain] = _found(plain)
+    return _KNOWN[plain]
 
 
 def _found(model: GreyBoxModel) -> dict[str, str]:
