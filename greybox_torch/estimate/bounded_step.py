@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from greybox_torch.linear_algebra import least_squares
+
 
 def bounded_step(matrix: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """The step s (n,) that minimises ½ sᵀ M s − rᵀ s within ``low`` ≤ s ≤ ``high``, for a positive definite ``matrix`` M (n, n).
@@ -34,7 +36,7 @@ def _with_held(matrix: np.ndarray, right: np.ndarray, step: np.ndarray, held: np
     result, free = step.copy(), ~held
     if free.any():
         wanted = right[free] - matrix[np.ix_(free, held)] @ step[held]
-        result[free] = np.linalg.lstsq(matrix[np.ix_(free, free)], wanted, rcond=1e-14)[0]
+        result[free] = least_squares(matrix[np.ix_(free, free)], wanted, rcond=1e-14)
     return result
 
 

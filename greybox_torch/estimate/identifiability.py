@@ -19,6 +19,7 @@ from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.identifiability_sentences import Direction, sentence
 from greybox_torch.estimate.information import FLAT, Information, echelon
 from greybox_torch.estimate.levenberg_marquardt import Quadratic
+from greybox_torch.linear_algebra import eigh, pseudo_inverse
 
 PROMINENT = 0.3
 """Part of a weak direction's largest relative change from which a parameter is named."""
@@ -134,7 +135,7 @@ def _weak(view: Information, here: Quadratic[None], held: set[int]) -> list[Unid
     """
     kept = np.setdiff1d(np.arange(len(view.z)), sorted(held))
     scale = view.scale[kept]
-    inverse = np.linalg.pinv(
+    inverse = pseudo_inverse(
         view.hessian[np.ix_(kept, kept)] * np.outer(scale, scale), rcond=FLAT[view.precision], hermitian=True
     )
     inverse *= np.outer(scale, scale)
@@ -144,7 +145,7 @@ def _weak(view: Information, here: Quadratic[None], held: set[int]) -> list[Unid
     own = np.flatnonzero((kept < view.run.n_parameters) & (view.z[kept] != 0))
     value = view.z[kept[own]]
     spread = variance * inverse[np.ix_(own, own)] / np.outer(value, value)
-    values, vectors = np.linalg.eigh(spread)
+    values, vectors = eigh(spread)
     names, found = _names(view.run), []
     for row in echelon(vectors[:, values > 1.0].T, PROMINENT):
         members = np.flatnonzero(row)

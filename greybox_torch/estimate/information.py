@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.estimate.free_run import FreeRun
+from greybox_torch.linear_algebra import eigenvalues, eigh
 
 FLAT = {"double": 1e-11, "single": 1e-5}
 """Curvature, relative to the largest in unknowns of unit diagonal, that rounding alone accounts for."""
@@ -51,7 +52,7 @@ class Information:
         """Changes (d,) of two unknowns or more that together do not change the outputs, each of as few as can be."""
         kept = np.setdiff1d(np.arange(len(self.z)), self.unmoved())
         scale = self.scale[kept]
-        values, vectors = np.linalg.eigh(self.hessian[np.ix_(kept, kept)] * np.outer(scale, scale))
+        values, vectors = eigh(self.hessian[np.ix_(kept, kept)] * np.outer(scale, scale))
         null = vectors[:, values < FLAT[self.precision] * values.max(initial=0.0)].T
         found = []
         for row in echelon(null):
@@ -68,7 +69,7 @@ class Information:
     def is_flat_within(self, members: np.ndarray) -> bool:
         """Whether some change of the ``members`` alone leaves the outputs as they are."""
         scale = self.scale[members]
-        values = np.linalg.eigvalsh(self.hessian[np.ix_(members, members)] * np.outer(scale, scale))
+        values = eigenvalues(self.hessian[np.ix_(members, members)] * np.outer(scale, scale))
         return values[0] <= 10 * FLAT[self.precision] * values[-1]
 
 

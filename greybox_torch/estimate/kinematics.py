@@ -15,6 +15,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import torch
 
+from greybox_torch.linear_algebra import least_squares, pseudo_inverse, solve
 from greybox_torch.model import GreyBoxModel, Signals
 from greybox_torch.model.sensed_states import sensed_states
 from greybox_torch.simulation.records import Records
@@ -101,7 +102,7 @@ def _found(model: GreyBoxModel) -> Kinematics | None:
         return None
     rows = []
     for i, output in shown:
-        found = np.linalg.lstsq(signals, rates[i], rcond=None)[0]
+        found = least_squares(signals, rates[i])
         exact = np.abs(signals @ found - rates[i]).max() <= EXACT * max(float(np.abs(rates[i]).max()), 1e-300)
         found = np.where(np.abs(found) > EXACT, found, 0.0)
         if exact and found[hidden].any():
@@ -109,7 +110,7 @@ def _found(model: GreyBoxModel) -> Kinematics | None:
     if not rows:
         return None
     table, n_x = np.array([found for _, found in rows]), len(model.states)
-    inverse = np.linalg.pinv(table[:, hidden], rcond=1e-8)
+    inverse = pseudo_inverse(table[:, hidden], rcond=1e-8)
     determined = np.abs(inverse @ table[:, hidden] - np.eye(len(hidden))).max(axis=1) < 1e-6
     return Kinematics(
         outputs=np.array([output for output, _ in rows]),
@@ -154,5 +155,5 @@ def _slopes(records: Records, output: int, samples: np.ndarray, half: int) -> np
     right = np.einsum("wsi,ws->wi", powers, np.where(weight > 0, y, 0.0))
     known = weight.sum(axis=1) >= FEWEST
     normal[~known] = np.eye(3)
-    found = np.linalg.solve(normal, right[..., None])[:, 1, 0] / scale
+    found = solve(normal, right[..., None])[:, 1, 0] / scale
     return np.where(known, found, np.nan)

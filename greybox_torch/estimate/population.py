@@ -8,6 +8,7 @@ import numpy as np
 
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.linear_algebra import solve
 from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.simulator import Simulator
@@ -162,7 +163,7 @@ def _steps(
     each = np.arange(z.shape[1])
     matrix[:, each, each] = np.where(held, 1.0, 1.0 + damping[:, None])
     right = np.where(held, 0.0, -gradient * scale)
-    return scale * np.linalg.solve(matrix, right[..., None])[..., 0]
+    return scale * solve(matrix, right[..., None])[..., 0]
 
 
 def _gain(

@@ -19,6 +19,7 @@ from greybox_torch.errors import ArgumentError, did_you_mean
 from greybox_torch.estimate.fit import FitResult
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimise
+from greybox_torch.linear_algebra import least_squares
 from greybox_torch.simulation.simulator import Simulator
 
 LEVEL = 0.95
@@ -218,7 +219,7 @@ def _predicted(at: Optimum[None], index: int, value: float) -> np.ndarray:
     matrix = hessian[np.ix_(others, others)] / np.outer(scale, scale)
     pull = hessian[others, index] * (value - at.point[index]) / scale
     result = at.point.copy()
-    result[others] -= np.linalg.lstsq(matrix, pull, rcond=1e-6)[0] / scale
+    result[others] -= least_squares(matrix, pull, rcond=1e-6) / scale
     result[index] = value
     return result
 

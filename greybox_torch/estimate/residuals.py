@@ -12,6 +12,7 @@ import numpy as np
 from scipy.signal import correlate
 
 from greybox_torch.data import Channel, Recording
+from greybox_torch.linear_algebra import least_squares
 
 LAGS = 25
 ORDER = 50
@@ -128,7 +129,7 @@ def _new(signal: np.ndarray) -> np.ndarray:
     known = ~np.isnan(rows).any(axis=1)
     past, present = rows[known, :-1], rows[known, -1]
     if len(present) > order:
-        new = present - past @ np.linalg.lstsq(past, present, rcond=None)[0]
+        new = present - past @ least_squares(past, present)
         result[np.flatnonzero(known) + order] = new if new.std() > LEAST_NEW * present.std() else 0.0
     return result
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.estimate.free_run import FreeRun
+from greybox_torch.linear_algebra import eigh
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ def _without_leverage(stretches: np.ndarray, root: np.ndarray) -> np.ndarray:
     A start state matters to few stretches; those follow it so closely that their errors say little about its scatter.
     """
     pull = root.T @ stretches[:, :-1, :-1] @ root
-    values, vectors = np.linalg.eigh(pull)
+    values, vectors = eigh(pull)
     freed = np.einsum("crk,ck,csk->crs", vectors, 1.0 / np.sqrt(np.maximum(1.0 - values, 1e-3)), vectors)
     return np.einsum("crs,cs->cr", freed, stretches[:, :-1, -1] @ root)
 
@@ -104,7 +105,7 @@ def _root_of_inverse(hessian: np.ndarray) -> tuple[np.ndarray, tuple[int, ...]]:
     """R (d, r) with R Rᵀ the inverse in the directions of curvature, and the unknowns that take part in one of no curvature."""
     diagonal = np.diag(hessian)
     scale = np.where(diagonal > 0, 1.0 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)), 0.0)
-    values, vectors = np.linalg.eigh(hessian * scale[:, None] * scale[None, :])
+    values, vectors = eigh(hessian * scale[:, None] * scale[None, :])
     flat = values < 1e-12 * values.max(initial=1e-300)
     involved = set(np.flatnonzero((np.abs(vectors[:, flat]) > 0.1).any(axis=1))) | set(np.flatnonzero(diagonal <= 0))
     root = scale[:, None] * vectors[:, ~flat] / np.sqrt(values[~flat])

@@ -8,6 +8,7 @@ import numpy as np
 
 from greybox_torch.estimate.bounded_step import bounded_step
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.linear_algebra import solve
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,7 @@ def stepped(
     diagonal = np.einsum("wii->wi", here.hss)
     floor = 1e-12 * diagonal.max()
     damped = here.hss + np.eye(diagonal.shape[1]) * (damping * (diagonal + floor))[:, :, None]
-    solved = np.linalg.solve(damped, np.concatenate([here.hsp, here.gs[..., None]], axis=2))
+    solved = solve(damped, np.concatenate([here.hsp, here.gs[..., None]], axis=2))
     back, own = solved[..., :-1], solved[..., -1]
     matrix = here.hpp - np.einsum("wsp,wsq->pq", here.hsp, back)
     right = -(here.gp - np.einsum("wsp,ws->p", here.hsp, own))

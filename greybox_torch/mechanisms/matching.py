@@ -9,6 +9,7 @@ import numpy as np
 import torch
 from scipy.optimize import least_squares
 
+from greybox_torch.linear_algebra import least_squares as linear_least_squares
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 from greybox_torch.model import Signals
@@ -81,7 +82,7 @@ def _trials(
     root, total = np.sqrt(weight), max(float((weight * force**2).sum()), 1e-300)
     for probe in law.probes(around):
         columns = np.stack([force_column(law, around, signals, probe, name) for name in probe.directions], axis=1)
-        size = np.linalg.lstsq(columns * root[:, None], force * root, rcond=1e-10)[0]
+        size = linear_least_squares(columns * root[:, None], force * root, rcond=1e-10)
         size = np.array([np.clip(v, *bounds[n]) for n, v in zip(probe.directions, size, strict=True)])
         share = 1.0 - float((weight * (force - columns @ size) ** 2).sum()) / total
         results.append(

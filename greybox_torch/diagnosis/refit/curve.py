@@ -10,6 +10,7 @@ import torch
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.screen.shortlist import Candidate
+from greybox_torch.linear_algebra import least_squares
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.matching import force_column, kinematic_laws, matching_laws, worth_a_refit
@@ -91,7 +92,7 @@ def _heights(curve: Attachment, around: Surroundings, grid: torch.Tensor, force:
     unknown, probe = curve.mechanism, curve.mechanism.probes(around)[0]
     assert isinstance(unknown, Unknown)
     columns = [force_column(unknown, around, {unknown.signal: grid}, probe, name) for name in probe.directions]
-    heights = np.linalg.lstsq(np.stack(columns, axis=1), force, rcond=1e-6)[0]
+    heights = least_squares(np.stack(columns, axis=1), force, rcond=1e-6)
     return {f"{curve.prefix}.{n}": float(h) for n, h in zip(probe.directions, heights, strict=True)}
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.screen.score_test import Screen
 from greybox_torch.estimate.window_fit import WindowFit
+from greybox_torch.linear_algebra import solve
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
@@ -110,7 +111,7 @@ def _incoherent(screen: Screen, fitted: WindowFit, orders: np.ndarray, starts: n
     inner, right = projected.blocks(np.stack([first, first + 1], axis=1))
     trace = np.trace(inner, axis1=2, axis2=3)
     inner = inner + (1e-6 * trace + 1e-300)[..., None, None] * np.eye(2)
-    explained = (right * np.linalg.solve(inner, right[..., None])[..., 0]).sum(axis=(0, 2))
+    explained = (right * solve(inner, right[..., None])[..., 0]).sum(axis=(0, 2))
     return explained / max(projected.energy(), 1e-300)
 
 

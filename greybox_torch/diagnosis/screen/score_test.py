@@ -17,6 +17,7 @@ import numpy as np
 
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, carried_starts
+from greybox_torch.linear_algebra import cholesky, solve
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Probe, Surroundings
@@ -178,9 +179,9 @@ class Projected:
         own = rows[:, :, d : d + n_base]
         diagonal = np.einsum("wii->wi", own)
         least = 1e-12 * diagonal.max() + 1e-300  # windows that failed are all zero
-        lower = np.linalg.cholesky(own + np.eye(n_base) * (1e-9 * diagonal + least)[:, :, None])
+        lower = cholesky(own + np.eye(n_base) * (1e-9 * diagonal + least)[:, :, None])
         keep = np.append(np.arange(d), d + n_base)
-        return Projected(packed, np.linalg.solve(lower, rows[:, :, keep]), keep)
+        return Projected(packed, solve(lower, rows[:, :, keep]), keep)
 
     def total(self) -> np.ndarray:
         """The sum (d, d) over all windows."""
@@ -225,7 +226,7 @@ def _solve(matrix: np.ndarray, unknown: np.ndarray, hold: np.ndarray) -> np.ndar
     diagonal = np.diag(inner)
     scale = np.where(diagonal > 0, 1.0 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)), 0.0)
     scaled = inner * scale[:, None] * scale[None, :] + 1e-9 * np.eye(len(scale))
-    return scale * np.linalg.solve(scaled, matrix[unknown, -1] * scale)
+    return scale * solve(scaled, matrix[unknown, -1] * scale)
 
 
 def _energy(matrix: np.ndarray, unknown: np.ndarray, size: np.ndarray) -> float:

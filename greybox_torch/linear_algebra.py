@@ -1,0 +1,92 @@
+"""Dense linear algebra that always answers: where LAPACK gives up, the answer is that of the nearest problem that it solves.
+
+A drive at exact standstill, a channel that does not move or a window whose simulation overflows make matrices that are singular or not
+finite. None of these is a reason to end a search: what cannot be determined moves by nothing.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+RIDGE = 1e-12
+"""Share of the largest diagonal entry that is added where a matrix cannot be factored."""
+
+
+def solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """The solution of M x = r, for one matrix (n, n) or a stack of them (…, n, n), as :func:`numpy.linalg.solve`.
+
+    Of a singular matrix, the solution of smallest norm in the sense of least squares; entries that are not finite count as zero.
+    """
+    try:
+        found = np.linalg.solve(matrix, right)
+        if np.isfinite(found).all():
+            return found
+    except np.linalg.LinAlgError:
+        pass
+    sound = np.nan_to_num(matrix, posinf=0.0, neginf=0.0)
+    vector = right.ndim == matrix.ndim - 1
+    target = np.nan_to_num(right[..., None] if vector else right, posinf=0.0, neginf=0.0)
+    found = pseudo_inverse(sound) @ target
+    return found[..., 0] if vector else found
+
+
+def least_squares(columns: np.ndarray, target: np.ndarray, rcond: float | None = None) -> np.ndarray:
+    """The x of smallest norm that minimises ‖A x − b‖, as the first result of :func:`numpy.linalg.lstsq`; zeros for what is not finite."""
+    try:
+        found = np.linalg.lstsq(columns, target, rcond=rcond)[0]
+        if np.isfinite(found).all():
+            return found
+    except np.linalg.LinAlgError:
+        pass
+    sound = np.nan_to_num(columns, posinf=0.0, neginf=0.0)
+    return solve(sound.T @ sound + _ridge(sound.T @ sound), sound.T @ np.nan_to_num(target, posinf=0.0, neginf=0.0))
+
+
+def eigh(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Eigenvalues, ascending, and eigenvectors of a symmetric matrix (n, n), as :func:`numpy.linalg.eigh`."""
+    try:
+        values, vectors = np.linalg.eigh(matrix)
+        if np.isfinite(values).all():
+            return values, vectors
+    except np.linalg.LinAlgError:
+        pass
+    sound = np.nan_to_num(matrix, posinf=0.0, neginf=0.0)
+    values, vectors = np.linalg.eigh(0.5 * (sound + sound.T) + _ridge(sound))
+    return values, vectors
+
+
+def eigenvalues(matrix: np.ndarray) -> np.ndarray:
+    """Eigenvalues of a symmetric matrix (n, n), ascending, as :func:`numpy.linalg.eigvalsh`."""
+    try:
+        values = np.linalg.eigvalsh(matrix)
+        if np.isfinite(values).all():
+            return values
+    except np.linalg.LinAlgError:
+        pass
+    return eigh(matrix)[0]
+
+
+def cholesky(matrix: np.ndarray) -> np.ndarray:
+    """The lower factor of positive definite matrices (…, n, n); a ridge is added to those that are not."""
+    try:
+        return np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        sound = np.nan_to_num(matrix, posinf=0.0, neginf=0.0)
+        values, vectors = np.linalg.eigh(0.5 * (sound + np.swapaxes(sound, -1, -2)))
+        least = np.maximum(RIDGE * values[..., -1:], 1e-300)
+        lifted = (vectors * np.maximum(values, least)[..., None, :]) @ np.swapaxes(vectors, -1, -2)
+        return np.linalg.cholesky(lifted + _ridge(lifted))
+
+
+def pseudo_inverse(matrix: np.ndarray, rcond: float = RIDGE, *, hermitian: bool = False) -> np.ndarray:
+    """The pseudo-inverse of (…, m, n), as :func:`numpy.linalg.pinv`; zeros where there is none."""
+    try:
+        return np.linalg.pinv(matrix, rcond=rcond, hermitian=hermitian)
+    except np.linalg.LinAlgError:
+        return np.zeros(np.swapaxes(matrix, -1, -2).shape)
+
+
+def _ridge(matrix: np.ndarray) -> np.ndarray:
+    """A multiple of the identity that is small beside the largest diagonal entry."""
+    largest = np.abs(np.diagonal(matrix, axis1=-2, axis2=-1)).max(axis=-1, initial=0.0)
+    return (RIDGE * largest + 1e-300)[..., None, None] * np.eye(matrix.shape[-1])

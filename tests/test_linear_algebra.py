@@ -1,0 +1,49 @@
+"""Dense solves answer as numpy does where that answers, and with something finite where it does not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from greybox_torch.linear_algebra import cholesky, eigh, least_squares, solve
+
+MATRIX = np.array([[4.0, 1.0], [1.0, 3.0]])
+RIGHT = np.array([1.0, 2.0])
+ANY = st.floats(allow_nan=True, allow_infinity=True, width=64)
+
+
+def test_sound_problems_are_solved_as_by_numpy_to_the_last_digit() -> None:
+    np.testing.assert_array_equal(solve(MATRIX, RIGHT), np.linalg.solve(MATRIX, RIGHT))
+    stack, rights = np.stack([MATRIX, 2 * MATRIX]), np.ones((2, 2, 3))
+    np.testing.assert_array_equal(solve(stack, rights), np.linalg.solve(stack, rights))
+    np.testing.assert_array_equal(least_squares(MATRIX, RIGHT), np.linalg.lstsq(MATRIX, RIGHT, rcond=None)[0])
+    np.testing.assert_array_equal(cholesky(MATRIX), np.linalg.cholesky(MATRIX))
+    np.testing.assert_array_equal(eigh(MATRIX)[0], np.linalg.eigh(MATRIX)[0])
+
+
+def test_what_a_singular_matrix_does_not_determine_does_not_move() -> None:
+    singular = np.array([[2.0, 0.0], [0.0, 0.0]])
+    np.testing.assert_allclose(solve(singular, np.array([4.0, 0.0])), [2.0, 0.0])
+    np.testing.assert_allclose(solve(singular[None], np.array([[[4.0], [0.0]]])), [[[2.0], [0.0]]])
+
+
+def test_a_matrix_that_is_not_definite_gets_a_factor_near_to_it() -> None:
+    almost = np.array([[1.0, 1.0], [1.0, 1.0]]) - 1e-14 * np.eye(2)
+    lower = cholesky(almost)
+    np.testing.assert_allclose(lower @ lower.T, almost, atol=1e-6)
+
+
+@given(arrays(float, (3, 3), elements=ANY), arrays(float, 3, elements=ANY))
+def test_the_answer_is_finite_whatever_is_asked(matrix, right) -> None:
+    with np.errstate(all="ignore"):
+        assert np.isfinite(least_squares(np.clip(matrix, -1e100, 1e100), np.clip(right, -1e100, 1e100))).all()
+        assert np.isfinite(solve(np.clip(matrix, -1e100, 1e100), np.clip(right, -1e100, 1e100))).all()
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_eigenvalues_of_a_matrix_that_is_not_finite(value) -> None:
+    values, vectors = eigh(np.array([[1.0, value], [value, 2.0]]))
+    assert np.isfinite(values).all() and np.isfinite(vectors).all()
