@@ -60,7 +60,7 @@ def stepped(
 ) -> tuple[Problem, np.ndarray, float]:
     """The damped Gauss-Newton step within bounds, window starts eliminated, and how much it should lower the cost."""
     diagonal = np.einsum("wii->wi", here.hss)
-    floor = 1e-12 * diagonal.max()
+    floor = 1e-12 * diagonal.max(initial=0.0)  # a model whose states are all carried has no open ones
     damped = here.hss + np.eye(diagonal.shape[1]) * (damping * (diagonal + floor))[:, :, None]
     solved = solve(damped, np.concatenate([here.hsp, here.gs[..., None]], axis=2))
     back, own = solved[..., :-1], solved[..., -1]
