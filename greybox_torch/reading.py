@@ -103,5 +103,5 @@ def _check_regular(shown: str, mode: int, expected: str) -> None:
 def _shown(path: Path) -> str:
     """A path as text that a terminal can show, shortened where it is endless."""
     text = str(path)
-    text = text if text.isprintable() else ascii(text)
+    text = text if text.isprintable() else ascii(text)[1:-1]
     return text if len(text) <= 300 else f"{text[:150]}…{text[-100:]}"

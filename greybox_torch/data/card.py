@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 
-from greybox_torch.data.card_channels import ChannelEntry, Entry, ExperimentEntry, Finite, Text, TimeEntry
+from greybox_torch.data.card_channels import ChannelEntry, Entry, ExperimentEntry, Finite, Text, TimeEntry, printable
 from greybox_torch.data.card_errors import describe
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.reading import read_toml
@@ -91,6 +91,8 @@ class Card(Entry):
     @field_validator("channels")
     @classmethod
     def _time_is_not_a_channel(cls, channels: dict[str, ChannelEntry]) -> dict[str, ChannelEntry]:
+        for name in channels:
+            printable(name)
         if TIME in channels:
             raise ValueError(
                 f'"{TIME}" cannot name a channel; time stamps are named at the top of the card: time = "…"'

@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validator, model_validator
 
 from greybox_torch.data.expression import Expression, parse_expression
 
-Text = Annotated[str, Field(min_length=1)]
+_CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f]")
+
+
+def printable(text: str) -> str:
+    """Raises ValueError where a name has line breaks or other control characters, which no table or message could show."""
+    if _CONTROL.search(text):
+        raise ValueError(f"found {text!a}, expected text without control characters")
+    return text
+
+
+Text = Annotated[str, Field(min_length=1), AfterValidator(printable)]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 

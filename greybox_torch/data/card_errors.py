@@ -45,10 +45,15 @@ _EXPECTED_AT = {
 
 def describe(path: Path, error: ValidationError, content: dict[str, Any], card: type[BaseModel]) -> str:
     """One message: the file, and for everything that is wrong the field, what was found and what is expected."""
-    problems = [_problem(details, content, card) for details in error.errors()]
+    problems = [_shown(_problem(details, content, card)) for details in error.errors()]
     if len(problems) == 1:
         return f"{path}: {problems[0]}"
     return f"{path}: {len(problems)} problems:\n" + "\n".join(f"  {problem}" for problem in problems)
+
+
+def _shown(text: str) -> str:
+    """A message that quotes names of the card, which may hold anything."""
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
 
 
 def _problem(details: Any, content: dict[str, Any], card: type[BaseModel]) -> str:

@@ -79,6 +79,8 @@ def minimise(
     here = evaluate(point)
     if here is None:
         return None
+    if not point.size:
+        return Optimum(point, here, 0, 1, Termination.nothing_free)
     evaluations, growth, damping = 1, 2.0, settings.damping
     diagonal = _diagonal(here.hessian, None)
     for iteration in range(1, settings.iterations + 1):

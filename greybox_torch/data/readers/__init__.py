@@ -77,6 +77,10 @@ def read_table(path: Path, columns: Collection[str]) -> Table:
 
     Raises UserError as the readers do, and for whatever else the library behind a reader raises: a damaged file has ways of its own.
     """
+    if "\0" in str(path):
+        raise UserError(
+            f"{ascii(str(path))[1:-1]}: cannot be the name of a file: embedded null byte; expected a recording"
+        )
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise UserError(f'{path}: no reader for files ending in "{path.suffix}"; expected one of {", ".join(READERS)}')

@@ -19,6 +19,7 @@ SEGMENT = 8192
 
 PER_DECADE = 40
 """Values that a decade of frequency is drawn with."""
+_FEWEST = 8  # samples of a segment that a spectrum is made of
 
 
 @dataclass(frozen=True)
@@ -54,16 +55,18 @@ class Spectrum:
 
 
 def spectra(verdict: Verdict) -> list[Spectra]:
-    """Averaged over the validation experiments of an output that share a sample time."""
+    """Averaged over the validation experiments of an output that share a sample time, but for those too short for a spectrum."""
     groups: dict[tuple[str, float], list[Trace]] = {}
     for trace in validation_traces(verdict):
+        if len(trace.time) < _FEWEST:
+            continue
         step = float(np.median(np.diff(trace.time)))
         groups.setdefault((trace.output, float(f"{step:.3g}")), []).append(trace)
     return [_averaged(traces, step, bool(verdict.effects)) for (_, step), traces in groups.items()]
 
 
 def _averaged(traces: list[Trace], step: float, mismatch: bool) -> Spectra:
-    segment = min(SEGMENT, max(8, min(len(t.time) for t in traces) // 4))
+    segment = min(SEGMENT, max(_FEWEST, min(len(t.time) for t in traces) // 4))
     weights = np.array([len(t.time) for t in traces], dtype=float)
     total: dict[str, np.ndarray] = {}
     frequency = np.zeros(0)
