@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import os
-import random
 import struct
-import tempfile
 import tracemalloc
 import zipfile
 import zlib
@@ -16,9 +14,6 @@ import h5py
 import numpy as np
 import pyarrow as pa
 import pytest
-import scipy.io
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 from pyarrow import parquet
 
 from greybox_torch.data.readers import READERS, read_table
@@ -206,69 +201,3 @@ def test_what_is_no_file(tmp_path: Path, suffix: str) -> None:
         read_table(tmp_path / ("x" * 300 + suffix), ("u",))
     with pytest.raises(UserError, match="cannot be the name of a file"):
         read_table(tmp_path / f"a\0b{suffix}", ("u",))
-
-
-def sound_files() -> dict[str, bytes]:
-    """A small sound file of every format, to damage."""
-    u = np.arange(30.0)
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "a.csv").write_text("u;v\n" + "".join(f"{v:g};1\n" for v in u))
-        (folder / "a.json").write_text('{"u": [' + ", ".join(f"{v:g}" for v in u) + "]}")
-        (folder / "a.jsonl").write_text("".join(f'{{"u": {v:g}}}\n' for v in u))
-        np.savez_compressed(folder / "a.npz", u=u)
-        np.savez(folder / "b.npz", u=u)
-        scipy.io.savemat(folder / "a.mat", {"s": {"x": 1.0}, "u": u}, do_compression=True)
-        scipy.io.savemat(folder / "b.mat", {"s": {"x": 1.0}, "u": u})
-        scipy.io.savemat(folder / "c.mat", {"u": u}, format="4")
-        parquet.write_table(pa.table({"u": u}), folder / "a.parquet")
-        with h5(folder / "a.h5") as file:
-            file["u"] = u
-        with h5(folder / "d.mat") as file:
-            file.create_dataset("u", data=u, compression="gzip").attrs["MATLAB_class"] = np.bytes_("double")
-        return {path.name: path.read_bytes() for path in folder.iterdir()}
-
-
-SOUND = sound_files()
-
-
-@pytest.fixture(scope="module")
-def fast_folder() -> Iterator[Path]:
-    """A folder in memory where there is one: writing thousands of files to a disk takes longer than reading them."""
-    memory = Path("/dev/shm")
-    with tempfile.TemporaryDirectory(dir=memory if os.access(memory, os.W_OK) else None) as folder:
-        yield Path(folder)
-
-
-def damaged(content: bytes, draw: random.Random) -> bytes:
-    """The content with one to four bytes, lengths or ends of it changed."""
-    held = bytearray(content)
-    for _ in range(draw.randint(1, 4)):
-        place = draw.randrange(len(held) + 1)
-        match draw.randrange(4):
-            case 0:
-                held[place : place + 1] = draw.randbytes(draw.randrange(3))
-            case 1 if draw.random() < 0.2:
-                del held[place:]
-            case 2:
-                held[place : place + 4] = struct.pack("<i", draw.choice([-1, 0, 1, 2**31 - 1, draw.randrange(2**31)]))
-            case _:
-                held[place:place] = draw.randbytes(draw.randint(1, 20))
-    return bytes(held)
-
-
-@given(seed=st.integers(0, 2**32), name=st.sampled_from(sorted(SOUND)))
-@settings(max_examples=300, suppress_health_check=list(HealthCheck))
-def test_damage_of_any_kind_is_told_or_harmless(fast_folder: Path, seed: int, name: str) -> None:
-    """Twenty damaged files an example."""
-    draw, path = random.Random(seed), fast_folder / name
-    for _ in range(20):
-        path.write_bytes(damaged(SOUND[name], draw))
-        try:
-            found = read_table(path, ("u",)).columns["u"]
-        except UserError as error:
-            assert str(error).startswith(str(path))
-            assert "\n" not in str(error)
-        else:
-            assert found.dtype == np.float64
-            assert found.ndim == 1
