@@ -1,6 +1,6 @@
 """The figure of the README: the demo's recordings, measured, re-tuned and with the effect that was found.
 
-    python -m experiments.demo_figure docs/demo.png
+python -m experiments.demo_figure docs/demo.png
 """
 
 from __future__ import annotations

@@ -102,9 +102,13 @@ class Judgement:
         return _scored(started, self.recordings, simulator)
 
     def _times_noise(self, comparison: Comparison) -> np.ndarray:
+        """Root mean square errors in units of the noise, by experiment (E,), over the outputs whose noise is known; NaN where none is."""
         errors = np.array([s.rmse for s in comparison.scores]).reshape(len(self.recordings), -1)
-        ratios = errors**2 / np.maximum(output_floors(self.problem), 1e-300)
-        return np.sqrt(np.nanmean(np.where(np.isfinite(output_floors(self.problem)), ratios, np.nan), axis=1))
+        floors = output_floors(self.problem)
+        known = np.isfinite(floors)
+        ratios = np.where(known, errors**2 / np.where(known, np.maximum(floors, 1e-300), 1.0), 0.0)
+        count = known.sum(axis=1)
+        return np.sqrt(np.where(count > 0, ratios.sum(axis=1) / np.maximum(count, 1), np.nan))
 
     def _judged(self, comparison: Comparison) -> Comparison:
         """The validation experiments alone, where there are any."""

@@ -14,19 +14,23 @@ from greybox_torch.diagnosis.screen.score_test import ScreenScore, _sound
 from greybox_torch.diagnosis.screen.shortlist import CAUTIOUS, Candidate, shortlist
 from greybox_torch.diagnosis.select.choice import chosen, simplest
 from greybox_torch.diagnosis.select.forward_step import substantial
+from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.estimate.window_fit import WindowFit
-from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
+from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction, ViscousFriction
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Body
 from greybox_torch.simulation.packed_normals import PackedNormals
 
 WINDOWS = 40
 
+LOUD = 0.3
+"""Noise beside which the motion is smooth, so that the recordings tell how much of it there is."""
 
-@pytest.fixture
-def ranked(motor, begun, motor_data):
-    """Makes a ranked hypothesis whose windows have given energies."""
-    search = begun(motor_data(), motor)
+
+@pytest.fixture(params=[0.02])
+def ranked(motor, begun, motor_data, request):
+    """Makes a ranked hypothesis whose windows have given energies; the parameter is the noise of the recordings."""
+    search = begun(motor_data(noise=request.param), motor)
 
     def make(mechanism, energies: np.ndarray) -> RankedCandidate:
         fits = tuple(replace(fit, energies=energies, mean_square=float(energies.mean())) for fit in search.plain.fits)
@@ -109,3 +113,25 @@ def test_what_a_law_lacks_is_not_a_curve_of_its_own(dead_zone_search, ranked) ->
     assert not substantial(
         state, replace(enough, gain=0.09)
     )  # within the margin it would give way to names, or to nothing
+
+
+@pytest.mark.parametrize("ranked", [LOUD], indirect=True)
+def test_the_simpler_law_is_meant_where_the_richer_one_removes_little_more_of_the_whole(ranked) -> None:
+    """Much more than chance, and yet a crumb beside the mismatch: unless with it noise alone is left."""
+    spread = np.random.default_rng(0).uniform(0.9, 1.1, WINDOWS)
+    plain, simple = ranked(ViscousFriction(), 100 * spread), ranked(CoulombFriction(), 1.0 * spread)
+    crumb, complete = ranked(StribeckFriction(), 0.5 * spread), ranked(StribeckFriction(), LOUD**2 * spread)
+    assert simplest([crumb, simple], plain.fitted, 0.02) is simple
+    assert simplest([crumb, simple], plain.fitted, 0.001) is crumb
+    assert simplest([complete, simple], plain.fitted, 0.02) is complete
+
+
+@pytest.mark.parametrize("ranked", [LOUD], indirect=True)
+def test_what_is_left_is_counted_beyond_the_noise(ranked) -> None:
+    plain, half, noise = (ranked(ViscousFriction(), np.full(WINDOWS, e)).fitted for e in (10.0, 5.0, 0.9 * LOUD**2))
+    assert remaining_share(plain, half) == pytest.approx(0.5, rel=1e-2)
+    assert remaining_share(plain, noise) == 0.0
+    assert completes(noise) and not completes(half)
+    assert (
+        remaining_share(noise, noise) == 1.0
+    )  # where the plain model leaves noise alone there is no mismatch to have a share of

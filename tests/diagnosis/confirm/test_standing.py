@@ -1,0 +1,63 @@
+"""How large effects are, and from which size they are findings."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
+from greybox_torch.diagnosis.confirm.standing import least_size, sizes
+
+
+@pytest.fixture
+def fits(motor, begun, motor_data):
+    """Fits of the motor at every window length, with a given mean squared error."""
+    found = begun(motor_data(), motor)
+
+    def make(error: float):
+        return tuple(
+            replace(
+                fit,
+                energies=np.full(
+                    len(fit.energies), error * np.sum(~np.isnan(fit.problem.records.y)) / len(fit.energies)
+                ),
+            )
+            for fit in found.plain.fits
+        )
+
+    return make
+
+
+def test_the_size_is_what_leaving_out_brings_back_of_the_mismatch_beyond_the_noise(fits) -> None:
+    """Noise 0.02: a mean square of 4e-4 is nobody's."""
+    assert size(fits(1.0), fits(0.5), fits(4e-4)) == pytest.approx(0.5, rel=1e-2)
+    assert size(fits(1.0), fits(0.004), fits(4e-4)) == pytest.approx(0.0036, rel=2e-2)
+
+
+def test_a_model_that_does_not_simulate_without_it_leaves_the_whole(fits) -> None:
+    assert size(fits(1.0), (), fits(4e-4)) == 1.0
+
+
+def test_what_held_out_experiments_do_not_exercise_is_measured_where_it_was_found(dead_zone_search, fits) -> None:
+    found = dead_zone_search
+    state = replace(found.state, without={"rotor.x": found.plain})
+    idle, seen = Gain(0.0, 1e-4, size=0.0), Gain(0.3, 1e-3, size=0.25)
+    assert sizes(found.study, state, {"rotor.x": seen}) == {"rotor.x": 0.25}
+    assert sizes(found.study, state, {"rotor.x": idle})["rotor.x"] == pytest.approx(0.0, abs=1e-9)
+    assert set(sizes(found.study, state, {})) == {"rotor.x"}
+
+
+def test_small_effects_are_findings_only_where_noise_alone_is_left(motor, begun, motor_data) -> None:
+    data = motor_data()
+    found = begun(data, motor)
+    others = HeldOut(data, found.problem, found.study.options.substeps)
+    settings = found.study.settings
+    assert least_size(found.study, found.state, others) == settings.least_size_at_noise
+    wrong = motor_data(acting=lambda v: np.sign(v) * np.maximum(np.abs(v) - 1.0, 0.0))
+    missing = begun(wrong, motor)
+    assert (
+        least_size(missing.study, missing.state, HeldOut(wrong, missing.problem, missing.study.options.substeps))
+        == settings.least_size
+    )
