@@ -19,6 +19,7 @@ from greybox_torch.diagnosis.describe.left import what_is_left
 from greybox_torch.diagnosis.describe.ranking import ranking
 from greybox_torch.diagnosis.describe.residual_tests import detect
 from greybox_torch.diagnosis.findings import Findings, find, find_with_more
+from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
 from greybox_torch.diagnosis.hypothesis.noise import FAR_ABOVE_NOISE, floor_known, times_noise
 from greybox_torch.diagnosis.select.posterior import confidence, of_a_stopped_search
 from greybox_torch.diagnosis.select.state import SearchState
@@ -151,8 +152,11 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
 def _unexplained(study: Study, state: SearchState, others: HeldOut | None, judged: Judgement) -> float | None:
     """How many times the noise the model's error is on the worst experiment, if that is too much for badly determined friction.
 
-    By windows and by free runs: where either shows hardly more than noise, nothing says that anything is missing.
+    By windows and by free runs: where either shows hardly more than noise, nothing says that anything is missing. Nor where the error is
+    less than simulations of one machine differ by.
     """
+    if mismatch_share(state.plain) < study.settings.least_mismatch:
+        return None
     errors = [times_noise(study.problem, state.plain)] if floor_known(study.problem) else []
     if others is not None and floor_known(others.problem):
         errors += list(others.times_noise(state.plain))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
+from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
 from greybox_torch.diagnosis.hypothesis.noise import ABOVE_NOISE, floor_known, only_noise, times_noise
 from greybox_torch.diagnosis.select.choice import CURVE_MARGIN, alone_at_noise
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
@@ -42,6 +43,8 @@ def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> St
 
 def _done(study: Study, state: SearchState) -> bool:
     """Whether noise alone is left, or so little that no effect can be a finding and none could be seen to complete the model."""
+    if mismatch_share(state.plain) < study.settings.least_mismatch:
+        return True
     hidden = little_is_left(study, state) and not floor_known(study.problem)
     return hidden or only_noise(study.problem, state.current)
 

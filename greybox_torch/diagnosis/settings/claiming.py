@@ -35,6 +35,12 @@ class ConfirmationSettings:
         "Gain below which, either way, the experiments do not exercise an effect: they cannot take it back.",
         unit=HELD_OUT_SHARE,
     )
+    least_mismatch: float = share(
+        3e-4,
+        "Error of the plain model beyond the noise below which nothing is looked for: simulations of one machine differ by as much.",
+        unit="share of the outputs' spread (root mean square)",
+        chosen_by="the difference between simulators of first and of fourth order at usual steps",
+    )
     least_size: float = share(
         0.02,
         "Size from which an effect is a finding: the part of the plain model's held-out mismatch that leaving it out brings back. "

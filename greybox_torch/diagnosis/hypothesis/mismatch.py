@@ -1,0 +1,18 @@
+"""How large the mismatch of a model is beside the motion itself."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.noise import noise_floor
+
+
+def mismatch_share(fitted: Hypothesis) -> float:
+    """Root mean square error beyond the noise, in units of the outputs' spread: the largest over the window lengths."""
+    shares = []
+    for fit in fitted.fits:
+        spread = np.nanstd(fit.problem.records.y, axis=1) * fit.problem.weights
+        whole = max(float(np.mean(spread**2)), 1e-300)
+        shares.append(np.sqrt(max(fit.mean_square - noise_floor(fit.problem), 0.0) / whole))
+    return float(max(shares))
