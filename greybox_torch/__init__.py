@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from greybox_torch.api.inspect import InspectionResult, inspect
     from greybox_torch.api.residuals import ResidualResult, residuals
     from greybox_torch.api.simulate import SimulationResult, simulate
+    from greybox_torch.api.train import train
+    from greybox_torch.api.train_result import TrainingResult
     from greybox_torch.checkpoint import Checkpoint, load_checkpoint
     from greybox_torch.data import DataSet, Recording, load_dataset
     from greybox_torch.data.readers import register_reader, unregister_reader
@@ -41,7 +43,7 @@ if TYPE_CHECKING:
     from greybox_torch.report.sections.order import register_section, unregister_section
     from greybox_torch.restored import SavedModel, load, load_saved_model
     from greybox_torch.systems import load_model
-    from greybox_torch.train import TrainingSettings, explain, fit_physics, train_hybrid
+    from greybox_torch.training import TrainingSettings, explain, fit_physics, train_hybrid
 
 __version__ = "0.1.0"
 
@@ -75,6 +77,7 @@ __all__ = [
     "State",
     "Surroundings",
     "Table",
+    "TrainingResult",
     "TrainingSettings",
     "UserError",
     "compare",
@@ -96,6 +99,7 @@ __all__ = [
     "register_section",
     "residuals",
     "simulate",
+    "train",
     "train_hybrid",
     "unregister",
     "unregister_reader",
@@ -132,14 +136,15 @@ _HOME_OF = {
     "State": "greybox_torch.model",
     "Surroundings": "greybox_torch.mechanisms.mechanism",
     "Table": "greybox_torch.data.readers.table",
-    "TrainingSettings": "greybox_torch.train",
+    "TrainingResult": "greybox_torch.api.train_result",
+    "TrainingSettings": "greybox_torch.training",
     "UserError": "greybox_torch.errors",
     "compare": "greybox_torch.api.compare",
     "diagnose": "greybox_torch.api.diagnose",
     "evaluate": "greybox_torch.evaluation",
-    "explain": "greybox_torch.train",
+    "explain": "greybox_torch.training",
     "fit": "greybox_torch.api.fit",
-    "fit_physics": "greybox_torch.train",
+    "fit_physics": "greybox_torch.training",
     "inspect": "greybox_torch.api.inspect",
     "load": "greybox_torch.restored",
     "load_checkpoint": "greybox_torch.checkpoint",
@@ -153,7 +158,8 @@ _HOME_OF = {
     "register_section": "greybox_torch.report.sections.order",
     "residuals": "greybox_torch.api.residuals",
     "simulate": "greybox_torch.api.simulate",
-    "train_hybrid": "greybox_torch.train",
+    "train": "greybox_torch.api.train",
+    "train_hybrid": "greybox_torch.training",
     "unregister": "greybox_torch.mechanisms.library",
     "unregister_reader": "greybox_torch.data.readers",
     "unregister_section": "greybox_torch.report.sections.order",

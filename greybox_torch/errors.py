@@ -29,6 +29,7 @@ class ArgumentError(UserError):
         argument: its name.
         found: what was given.
         problem: what is expected, or why that cannot be.
+        option: the name of the option, where it is not the argument's.
 
     Example:
         >>> str(ArgumentError("time_limit", -1, "expected a number above 0"))
@@ -37,14 +38,15 @@ class ArgumentError(UserError):
         '--time-limit -1: expected a number above 0'
     """
 
-    def __init__(self, argument: str, found: object, problem: str) -> None:
+    def __init__(self, argument: str, found: object, problem: str, option: str | None = None) -> None:
         shown = str(found) if isinstance(found, Kind) else repr(found)
         super().__init__(f"{argument}: found {shown}, {problem}")
         self.argument, self.found, self.problem = argument, found, problem
+        self.option = option or argument.replace("_", "-")
 
     def for_option(self) -> str:
         """The message with the option's name in place of the argument's."""
-        return f"--{self.argument.replace('_', '-')} {self.found}: {self.problem}"
+        return f"--{self.option} {self.found}: {self.problem}"
 
 
 class NumericalError(GreyboxError):

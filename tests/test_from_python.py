@@ -194,15 +194,51 @@ def test_rows_become_a_data_frame(data: gt.DataSet) -> None:
     assert list(table["experiment"]) == ["Steps", "More steps", "Sweep"]
 
 
+def test_train(folder: Path, data: gt.DataSet) -> None:
+    model, options = Motor(), ("--net", "residual", "--port", "actuator", "--units", "4", "--epochs", "5")
+    settings = gt.TrainingSettings(epochs=5)
+    found = gt.train(model, data, net="residual", port="actuator", network={"units": 4}, settings=settings)
+    assert numbers(found.to_dict()) == numbers(told(folder, "train", *options))
+    assert found.parameters["actuator.residual_net.out_0"].unit == "V" and model.held_values() == {}
+    assert found.model.held_values() == {row["name"]: row["value"] for row in found.parameter_rows}
+    assert found.explanation is not None and found.explanation.term is not None and found.named is not None
+    by_model = {(row["model"], row["experiment"]): row["fit"] for row in found.scores}
+    compared = gt.compare(data, {"augmented": found, "named": found.named})
+    for row in compared.scores:
+        assert row["fit"] == pytest.approx(by_model[row["model"], row["experiment"]], abs=1e-6)
+    assert found.force(input=np.array([2.0])).shape == (1,) and isinstance(found.plot_learned(), Figure)
+    files = {f"{name}.{kind}" for name in ("model", "named") for kind in ("json", "safetensors")}
+    check_shown(found, folder / "saved", {"train.json", "learned.png", *files})
+    assert gt.load(folder / "saved" / "named").values() == found.named.values()
+
+
+def test_a_training_that_explains_nothing(folder: Path, data: gt.DataSet) -> None:
+    """Trained from the values that the model holds, on the very start values that a fit of it has."""
+    model = Motor()
+    model.set_values({"J": 0.02, "b": 0.05})
+    options = {"net": "residual", "port": "actuator", "network": {"units": 2}}
+    found = gt.train(model, data, settings=gt.TrainingSettings(epochs=1), explain=False, **options)
+    assert (found.explanation, found.named, found.plot_learned()) == (None, None, None)
+    start = [row["fit"] for row in found.scores if row["model"] == "start"]
+    assert start == [row["fit"] for row in gt.simulate(model, data).scores]
+    check_shown(found, folder / "saved", {"train.json", "model.json", "model.safetensors"})
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
+        (lambda m, d: gt.train(m, d, net="fiction"), "net: found 'fiction', unknown (did you mean \"friction\"?); expected"),
+        (lambda m, d: gt.train(m, d, port="rotary"), "port: found 'rotary', model Motor has no such port"),
+        (lambda m, d: gt.train(m, d, signals="speed"), "signals: found 'speed', expected a list of names, such as [\"speed\"]"),
+        (lambda m, d: gt.train(m, d, ensemble=0), "ensemble: found 0, expected a whole number from 1 to 1000"),
+        (lambda m, d: gt.train(m, d, resume=True), "resume: found True, expected a snapshot to take the training up from"),
+        (lambda m, d: gt.train(m, d, settings=None), "settings: found None, expected TrainingSettings(…)"),
         (lambda m, d: gt.diagnose(m, d, time_limit=-1), "time_limit: found -1, expected a number above 0"),
         (lambda m, d: gt.diagnose(m, d, settings={}), "settings: found an object of type dict, expected DiagnosisSettings(…)"),
         (lambda m, d: gt.fit(m, d, starts=0), "starts: found 0, expected a whole number from 1 to 4096"),
         (lambda m, d: gt.fit(m, d, seed=-1), "seed: found -1, expected a whole number from 0 to 4294967295"),
-        (lambda m, d: gt.fit(m, d, profiles="J"), "profile: found 'J', expected a list of names, such as [\"J\"]"),
-        (lambda m, d: gt.fit(m, d, profiles=["k"]), "profile: found 'k', this parameter is fixed; expected one of"),
+        (lambda m, d: gt.fit(m, d, profiles="J"), "profiles: found 'J', expected a list of names, such as [\"J\"]"),
+        (lambda m, d: gt.fit(m, d, profiles=["k"]), "profiles: found 'k', this parameter is fixed; expected one of"),
         (lambda m, d: gt.simulate(Motor, d), "model: found the class Motor, expected an object of it: Motor()"),
         (lambda m, d: gt.simulate("robot_arm", d), "model: found an object of type str, expected a model, or the result"),
         (lambda m, d: gt.simulate(m, "card.toml"), "data: found an object of type str, expected a DataSet"),

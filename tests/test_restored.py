@@ -28,7 +28,7 @@ from greybox_torch.mechanisms.stored import attachment_json
 from greybox_torch.model import Signals
 from greybox_torch.restored import load_beside, load_saved_model
 from greybox_torch.systems import load_model
-from greybox_torch.train.hybrid import attach_network, make_network
+from greybox_torch.training.hybrid import attach_network, make_network
 
 Make = Callable[..., Path]
 

@@ -18,7 +18,7 @@ from greybox_torch.estimate.comparison import Score
 from greybox_torch.estimate.metrics import fit_percent, root_mean_square
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.train import Physics, Trained
+from greybox_torch.training import Physics, Trained
 
 MODELS = {
     "published": "physics with the card's values",

@@ -7,7 +7,7 @@ from typing import Any
 
 from greybox_torch import Coupling, DataSet, GreyBoxModel, TrainingSettings, UserError, train_hybrid
 from greybox_torch.model.ports import driving_body
-from greybox_torch.train import Physics, Trained
+from greybox_torch.training import Physics, Trained
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ import numpy as np
 
 from experiments.concealed.catalogue.arm import CATALOGUE
 from greybox_torch import TrainingSettings, load_dataset, load_model, train_hybrid
-from greybox_torch.train import Trained
+from greybox_torch.training import Trained
 
 VISITED = 0.98
 """Share of the samples of the estimation experiment that lie within the speeds compared."""

@@ -15,7 +15,7 @@ import time
 import numpy as np
 
 from experiments.gradients.task import make_task, make_way, true_slope
-from greybox_torch.train.gradients import Batch, SequenceGradient
+from greybox_torch.training.gradients import Batch, SequenceGradient
 
 
 def measure(way: str, length: int, windows: int, units: int, repeats: int) -> dict[str, float]:

@@ -16,10 +16,10 @@ from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.systems import RobotArm
-from greybox_torch.train.gradients import Batch, SequenceGradient
-from greybox_torch.train.gradients.adjoint import AdjointGradient
-from greybox_torch.train.gradients.recomputation import RecomputationGradient
-from greybox_torch.train.gradients.tangents import TangentsGradient
+from greybox_torch.training.gradients import Batch, SequenceGradient
+from greybox_torch.training.gradients.adjoint import AdjointGradient
+from greybox_torch.training.gradients.recomputation import RecomputationGradient
+from greybox_torch.training.gradients.tangents import TangentsGradient
 
 KEPT = "backpropagation"
 WAYS = ("tangents", "recomputation", KEPT, "odeint_adjoint")

@@ -69,7 +69,7 @@ def fit(
     starts = None if starts is None else check_whole("starts", starts, 1, MOST_STARTS)
     check_estimation(check_data(data))
     problem = make_problem(data, given, data.estimation())
-    names = check_names("profile", profiles)
+    names = check_names("profiles", profiles)
     check_profiled(names, problem.free_names, problem.names, given.title)
     simulator = simulator_for(problem, SimulationOptions(device, precision))
     weaknesses = _at_start(problem, simulator)

@@ -99,9 +99,9 @@ def check_profiled(names: Iterable[str], free: Iterable[str], declared: Iterable
     for name in names:
         if name not in declared:
             problem = f"model {title} has no parameter of that name{did_you_mean(name, declared)}; {expected}"
-            raise ArgumentError("profile", name, problem)
+            raise ArgumentError("profiles", name, problem, option="profile")
         if name not in free:
-            raise ArgumentError("profile", name, f"this parameter is fixed; {expected}")
+            raise ArgumentError("profiles", name, f"this parameter is fixed; {expected}", option="profile")
 
 
 def profile(found: FitResult, simulator: Simulator, name: str, *, settings: Settings = SETTINGS) -> Profile:

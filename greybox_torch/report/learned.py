@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from greybox_torch.mechanisms.matching import law_force
 from greybox_torch.report.style import STYLE, dots_within, with_unit
-from greybox_torch.train import Explanation, Trained
-from greybox_torch.train.learned_force import SignalCurve
+from greybox_torch.training import Explanation, Trained
+from greybox_torch.training.learned_force import SignalCurve
 
 LAW_COLOURS = ("#c8553d", "#6a7f3f", "#8a5fa8")
 

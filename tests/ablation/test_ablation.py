@@ -24,7 +24,7 @@ from greybox_torch.mechanisms.stored import attachment_json
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.systems import RobotArm, load_model
-from greybox_torch.train.physics import training_problem
+from greybox_torch.training.physics import training_problem
 
 OPTIONS = ("--quick", "--seeds", "2", "--networks", "residual:actuator:input")
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner, Result
 
+import greybox_torch as gt
 from greybox_torch.checkpoint import Checkpoint, save_checkpoint
 from greybox_torch.cli import app
 
@@ -196,20 +197,25 @@ def test_checkpoint_of_a_model_that_has_moved(motor_folder: Make) -> None:
     lost = saved(folder, "lost", model="/gone/since/my_engine.py:Engine", title="Engine")
     result = greybox("compare", folder, lost)
     assert result.exit_code == 2
-    assert "/gone/since/my_engine.py: no such file" in result.stderr
+    assert "lost: is of the model Engine in /gone/since/my_engine.py:Engine, not of Motor" in result.stderr
 
 
-def test_checkpoint_of_another_structure(motor_folder: Make, edit: Edit) -> None:
-    """A checkpoint brings its own model, to which the card's parameters do not apply."""
+def test_checkpoint_of_another_structure(motor_folder: Make) -> None:
+    """A model file is run where the user names it, not on a checkpoint's word; the card's parameters do not apply to it."""
     folder = motor_folder()
     text = (folder / "my_motor.py").read_text()
     text = text.replace("class Motor", "class Lag").replace('"J"', '"T"').replace("/ p.J", "/ p.T")
-    (folder / "lag.py").write_text(text)
-    values = {"T": 0.02, "k": 0.1, "b": 0.05}
-    path = saved(folder, "lag", model=f"{folder.resolve()}/lag.py:Lag", title="Lag", values=values)
-    found = of("compare", folder, path)
-    assert found["models"][1]["model"].endswith("lag.py:Lag")
-    assert min(row["fit"] for row in found["models"][1]["fit"]) > 95
+    (folder / "lag.py").write_text(f"open({str(folder / 'was_run')!r}, 'w').close()\n{text}")
+    file = f"{folder.resolve()}/lag.py:Lag"
+    path = saved(folder, "lag", model=file, title="Lag", values={"T": 0.02, "k": 0.1, "b": 0.05})
+    result = greybox("compare", folder, path)
+    assert result.exit_code == 2
+    assert "a model file is run only where you name it yourself" in result.stderr
+    assert not (folder / "was_run").exists()
+    data = gt.load_dataset(folder / "dataset.toml")
+    start, lag = gt.load_model(str(data.model)), gt.load(path, file)
+    rows = [row for row in gt.compare(data, {"start": start, "lag": lag}).scores if row["model"] == "lag"]
+    assert len(rows) == 3 and min(row["fit"] for row in rows) > 95
 
 
 @pytest.mark.parametrize(

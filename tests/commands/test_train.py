@@ -118,7 +118,7 @@ def test_summary(motor_folder: Make) -> None:
         (("--port", "rotary"), "--port rotary: model Motor has no such port"),
         (("--signals", "speed,load"), "--signals load: there is no such signal at rotor"),
         (("--gradient", "adjoint"), "--gradient adjoint: unknown"),
-        (("--resume",), "--resume: "),
+        (("--resume",), "training.safetensors: no such file"),
         (("--units", "0"), ""),
         (("--epochs", "0"), ""),
     ],

@@ -99,9 +99,9 @@ def test_what_only_ratios_determine_is_open(machines: Path, motor_speed: Any, da
     [
         (
             "gian",
-            r"profile: found 'gian', model Motor has no parameter of that name \(did you mean \"gain\"\?\); expected .*: J, b",
+            r"profiles: found 'gian', model Motor has no parameter of that name \(did you mean \"gain\"\?\); expected .*: J, b",
         ),
-        ("k", r"profile: found 'k', this parameter is fixed; expected one of the free parameters: J, b"),
+        ("k", r"profiles: found 'k', this parameter is fixed; expected one of the free parameters: J, b"),
     ],
 )
 def test_names_that_cannot_be_profiled(name: str, expected: str) -> None:

@@ -1,0 +1,96 @@
+"""What a trained network stands for: as JSON and on the console."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.console import Console
+from rich.text import Text
+
+from greybox_torch.api.fit_json import parameters_json
+from greybox_torch.mechanisms.matching import LEAST_MATCH
+from greybox_torch.report.tables import print_table
+from greybox_torch.training import Explanation, Trained
+from greybox_torch.training.learned_force import SignalCurve
+from greybox_torch.training.named_term import NamedTerm
+
+
+def explanation_json(found: Trained, explained: Explanation) -> dict[str, Any]:
+    """Curves with their band, shares per signal, every law compared, the laws put in the network's place, and the recommendation."""
+    force_unit = found.hybrid.surroundings[found.hybrid.network.port].force_unit
+    result: dict[str, Any] = {
+        "sentence": explained.sentence,
+        "drop_network": explained.term is not None,
+        "band": band(explained),
+        "members": explained.members,
+        "curves": [_curve_json(curve, force_unit) for curve in explained.curves],
+        "matches": [{"mechanism": m.law.name, "share": m.share, "parameters": m.values} for m in explained.matches],
+        "terms": [_term_json(term) for term in explained.terms],
+    }
+    if explained.term is not None and explained.result is not None:
+        start = f"{explained.term.attachment.prefix}."
+        own = {n: entry for n, entry in parameters_json(explained.result).items() if n.startswith(start)}
+        result["term"] = {**_term_json(explained.term), "parameters": own, "mse": explained.result.mse}
+    return result
+
+
+def band(explained: Explanation) -> str:
+    """What the band is from, in words."""
+    own = "covariance of the parameters, the larger of the plain and the sandwich one, the penalty counted as knowledge"
+    return own if explained.members < 2 else f"{own}; and the differences of {explained.members} seeds"
+
+
+def print_explanation(console: Console, explained: Explanation) -> None:
+    """The recommendation, which signals count, and the laws compared."""
+    console.print(Text(f"\n{explained.sentence}", style="bold"), soft_wrap=True)
+    if not explained.curves:
+        return
+    shares = ", ".join(f"{curve.signal} {100 * curve.share:.0f} %" for curve in explained.curves)
+    console.print(Text(f"Share of the learned force that each signal alone explains: {shares}"), soft_wrap=True)
+    rows = [_row(term) for term in explained.terms]
+    refitted = {term.attachment.mechanism.name for term in explained.terms}
+    others = [m for m in explained.matches if m.law.name not in refitted][:3]
+    rows += [
+        [
+            m.law.name,
+            f"{100 * max(m.share, 0.0):.0f} %",
+            "",
+            f"matches less than {LEAST_MATCH:g}" if m.share <= LEAST_MATCH else "",
+        ]
+        for m in others
+    ]
+    if rows:
+        print_table(
+            console,
+            ["law in the\nnetwork's place", "of the curve\nmatched", "held-out error\nto the network's", ""],
+            rows,
+        )
+
+
+def _row(term: NamedTerm) -> list[str]:
+    matched = "" if term.match is None else f"{100 * term.match:.0f} %"
+    values = ", ".join(f"{name} {value:.4g}" for name, value in term.parameters.items())
+    return [term.attachment.mechanism.name, matched, f"{100 * term.lost:+.1f} %", values]
+
+
+def _curve_json(curve: SignalCurve, force_unit: str) -> dict[str, Any]:
+    return {
+        "signal": curve.signal,
+        "unit": curve.unit,
+        "share": curve.share,
+        "values": curve.values.tolist(),
+        "force": curve.force.tolist(),
+        "std": curve.deviation.tolist(),
+        "force_unit": force_unit,
+    }
+
+
+def _term_json(term: NamedTerm) -> dict[str, Any]:
+    return {
+        "port": term.attachment.port,
+        "mechanism": term.attachment.mechanism.name,
+        "match": term.match,
+        "held_out": term.held_out,
+        "lost": term.lost,
+        "parameters": term.parameters,
+    }

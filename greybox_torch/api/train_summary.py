@@ -1,0 +1,69 @@
+"""A training on the console."""
+
+from __future__ import annotations
+
+from rich.console import Console
+from rich.text import Text
+
+from greybox_torch.api.scores import Scores, print_scores, print_substeps
+from greybox_torch.api.train_explained import print_explanation
+from greybox_torch.data import DataSet
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.report.tables import print_table
+from greybox_torch.training import Explanation, Trained
+
+
+def print_training(
+    console: Console, data: DataSet, model: GreyBoxModel, found: Trained, scores: Scores, explained: Explanation | None
+) -> None:
+    """What the network is and what it adds, how the physics moved, and fit and error of every experiment before and after."""
+    network = found.hybrid.network
+    console.print(Text(f"{data.name}: {model.title}", style="bold"))
+    console.print(Text(f"\n{training_sentence(found)}", style="bold"), soft_wrap=True)
+    options = ", ".join(f"{k} {_told(v)}" for k, v in network.mechanism.options().items())
+    console.print(Text(f"{network.mechanism.name} at {network.port}: {options}"), soft_wrap=True)
+    columns, rows = parameter_table(found)
+    print_table(console, columns, rows, prose=["description"])
+    _print_choices(console, found)
+    if explained is not None:
+        print_explanation(console, explained)
+    print_substeps(console, found.result.substeps)
+    console.print()
+    print_scores(console, data, scores)
+    console.print(Text(f"{found.seconds:.1f} s, {len(found.history)} epochs, seed {found.settings.seed}"))
+
+
+def training_sentence(found: Trained) -> str:
+    """What the network adds to the physics."""
+    network = found.hybrid.network
+    if found.physics_chosen:
+        return f"A network at {network.port} predicts the held-out stretches no better than the physics alone: it is left at zero."
+    return (
+        f"With a network at {network.port} the mean squared error of the estimation experiments falls from "
+        f"{found.physics.mse:.4g} to {found.result.mse:.4g}."
+    )
+
+
+def _told(value: object) -> str:
+    if isinstance(value, tuple):
+        return "/".join(map(str, value))
+    return {True: "yes", False: "no"}.get(value, str(value)) if isinstance(value, bool) else str(value)
+
+
+def parameter_table(found: Trained) -> tuple[list[str], list[list[str | float]]]:
+    """Headings and rows of the physical parameters, alone and beside the network."""
+    physics, hybrid = found.physics.problem, found.result.problem
+    rows: list[list[str | float]] = []
+    for k, declared in enumerate(physics.model.declared_parameters):
+        kept = "estimated" if hybrid.free[k] else "fixed"
+        numbers = [float(physics.values[k]), float(hybrid.values[k])]
+        rows.append([declared.name, declared.description, declared.unit, *numbers, kept])
+    return ["name", "description", "unit", "physics\nalone", "beside the\nnetwork", ""], rows
+
+
+def _print_choices(console: Console, found: Trained) -> None:
+    rows = []
+    for choice in found.polished.choices:
+        name = "physics alone" if choice.weight is None else f"penalty {choice.weight:g}"
+        rows.append([name, choice.held_out, "chosen" if choice is found.polished.chosen else ""])
+    print_table(console, ["free run on the held-out stretches", "mean squared error", ""], rows)

@@ -1,0 +1,156 @@
+"""What a trained network stands for: its curve with a band, which signals it depends on, and the named law that could replace it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+
+from greybox_torch.errors import UserError
+from greybox_torch.estimate.fit import FitResult
+from greybox_torch.estimate.shifted_states import shifted_state
+from greybox_torch.mechanisms.attachment import Attachment, attach
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.matching import Match, kinematic_laws, matching_laws, worth_a_refit
+from greybox_torch.model import Coupling
+from greybox_torch.training.hybrid import port_named
+from greybox_torch.training.learned_force import LearnedForce, SignalCurve, curves_of, force_at, learned_force
+from greybox_torch.training.named_term import NamedTerm, on_all_samples, refitted_term
+from greybox_torch.training.polish import WORTH
+from greybox_torch.training.trained import Trained
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What the network stands for; empty where it was left at zero.
+
+    ``curves`` over each of its signals, with their shares; ``members`` how many trainings the band is from: of one it is the parameters'
+    covariance alone, of several what they differ by is added. ``matches`` compares every law of the library that depends on these
+    signals alone with the learned force; ``terms`` are the best of them in the network's place, best on held-out stretches first.
+    ``term`` is the one that makes the network needless, estimated on all samples as ``result``; None where none does.
+    """
+
+    curves: tuple[SignalCurve, ...] = ()
+    members: int = 1
+    matches: tuple[Match, ...] = ()
+    terms: tuple[NamedTerm, ...] = ()
+    term: NamedTerm | None = None
+    result: FitResult | None = None
+
+    @property
+    def sentence(self) -> str:
+        """What to do with the network, in a sentence."""
+        if not self.curves:
+            return "There is nothing to explain: the network was left at zero."
+        if self.term is not None:
+            return (
+                f"{self.term.attachment.prefix} does what the network does: its mean squared error on the held-out stretches is "
+                f"{_told(self.term.lost)}. "
+                "Drop the network."
+            )
+        if self.terms:
+            best = self.terms[0]
+            return (
+                f"No law of the library does what the network does: with the nearest, {best.attachment.prefix}, the mean squared error on "
+                f"the held-out stretches is {_told(best.lost)}. Keep the network."
+            )
+        return "No law of the library without memory comes near to what the network has learned. Keep the network."
+
+
+def explain(
+    found: Trained,
+    others: Sequence[Trained] = (),
+    *,
+    refit: bool = True,
+    told: Callable[[str], None] = lambda text: None,
+) -> Explanation:
+    """Turn what a network has learned into a named term, where a law of the library does as well.
+
+    The laws are those that the verdict `unknown` is compared with: without memory, functions of the network's signals alone. The best few
+    take the network's place, are estimated with the physics without the held-out stretches, and judged on these, as the network was. As
+    these stretches choose, a validation experiment has to score.
+
+    Args:
+        others: the same hybrid trained with other seeds; their differences widen the band.
+        refit: put laws in the network's place (some times the work of estimating the physics), or only compare curves.
+        told: is told what is being done.
+
+    Raises:
+        UserError: the others have a network at another port, or of other signals.
+        NumericalError: the chosen law overflows on all samples.
+    """
+    if found.physics_chosen:
+        return Explanation()
+    told("explaining: the learned curve")
+    first = learned_force(found)
+    others = [other for other in others if not other.physics_chosen]
+    members = [first, *(_beside(first, found, other) for other in others)]
+    network = found.hybrid.network
+    curves = curves_of(members, found.hybrid.surroundings[network.port].units)
+    matches = tuple(_matches(found, first))
+    terms = _terms(found, matches, told) if refit else ()
+    term = needless(terms, found)
+    if term is not None:
+        told(f"explaining: {term.attachment.prefix} on all samples")
+    result = None if term is None else on_all_samples(term, found)
+    return Explanation(curves, len(members), matches, terms, term, result)
+
+
+def needless(terms: Sequence[NamedTerm], found: Trained) -> NamedTerm | None:
+    """The term for which the network can be dropped: as good on held-out stretches as a network must be better to be worth having, and
+    better than physics alone.
+    """
+    alone = next(choice.held_out for choice in found.polished.choices if choice.weight is None)
+    return next((term for term in terms if term.lost <= WORTH and term.held_out < alone), None)
+
+
+def _beside(first: LearnedForce, found: Trained, other: Trained) -> LearnedForce:
+    one, two = found.hybrid.network, other.hybrid.network
+    if (one.port, one.mechanism.needs) != (two.port, two.mechanism.needs):
+        raise UserError(
+            f"explain: others has a network at {two.port} reading {', '.join(two.mechanism.needs)}; expected one at {one.port} reading "
+            f"{', '.join(one.mechanism.needs)}, as the first"
+        )
+    force, slope = force_at(other, first.signals)
+    return LearnedForce(first.signals, force, slope, learned_force(other).covariances)
+
+
+def _matches(found: Trained, learned: LearnedForce) -> list[Match]:
+    physics, network = found.physics.problem.model, found.hybrid.network
+    there = [a for a in physics.attachments if a.port == network.port] if isinstance(physics, AugmentedModel) else []
+    around, kind = found.hybrid.surroundings[network.port], port_named(physics, network.port).kind
+    signals = {name: torch.tensor(np.ascontiguousarray(values)) for name, values in learned.signals.items()}
+    weight = np.ones(len(learned.force))
+    return matching_laws(kind, around, signals, learned.force, weight, {a.mechanism.name for a in there})
+
+
+def _terms(found: Trained, matches: Sequence[Match], told: Callable[[str], None]) -> tuple[NamedTerm, ...]:
+    """The laws that come near the curve, and the kinematic ones of its signals, in the network's place; best first."""
+    physics, network = found.physics.problem, found.hybrid.network
+    beside = dict(zip(found.result.problem.names, map(float, found.result.problem.values), strict=True))
+    beside = {name: beside[name] for name in physics.names}
+    candidates = [(attach(physics.model, network.port, m.law), [m.values], m.share) for m in worth_a_refit(matches)] + [
+        (attachment, sizes, None) for attachment, sizes in _kinematic(found)
+    ]
+    terms = []
+    for attachment, sizes, share in candidates:
+        told(f"explaining: {attachment.prefix} instead of the network")
+        starts = [{**beside, **{f"{attachment.prefix}.{n}": v for n, v in values.items()}} for values in sizes]
+        term = refitted_term(found, attachment, starts, share)
+        terms += [] if term is None else [term]
+    return tuple(sorted(terms, key=lambda term: term.held_out))
+
+
+def _kinematic(found: Trained) -> list[tuple[Attachment, list[dict[str, float]]]]:
+    """Attachments of the kinematic laws of the network's signals, with sizes to begin with, where a state carries their change."""
+    physics, network = found.physics.problem, found.hybrid.network
+    site = port_named(physics.model, network.port)
+    shifted = shifted_state(physics.model, physics, site) if isinstance(site, Coupling) else ""
+    laws = kinematic_laws(found.hybrid.surroundings[network.port], network.mechanism.needs) if shifted else []
+    return [(attach(physics.model, network.port, law, shifted), sizes) for law, sizes in laws]
+
+
+def _told(lost: float) -> str:
+    return f"{abs(100 * lost):.1f} % {'more' if lost > 0 else 'less'}"

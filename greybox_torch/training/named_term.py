@@ -1,0 +1,81 @@
+"""A named law in the place of a network: fitted on the same samples, judged on the same held-out stretches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from greybox_torch.errors import NumericalError
+from greybox_torch.estimate.fit import FitResult, fit
+from greybox_torch.estimate.problem import Problem, problem_for
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.training.physics import estimate_physics
+from greybox_torch.training.polish import held_out_error
+from greybox_torch.training.stages import without_samples
+from greybox_torch.training.trained import Trained
+
+
+@dataclass(frozen=True)
+class NamedTerm:
+    """A law at the network's port, with the physics re-estimated beside it.
+
+    ``match`` is the share of the learned force that the law alone draws (None for a law that is not a force); ``held_out`` the mean squared
+    error of the free run on the stretches that the network was judged on, without which it was fitted; ``lost`` by which share that is
+    more than the network's. ``problem`` is at the estimate without those stretches.
+    """
+
+    attachment: Attachment
+    match: float | None
+    held_out: float
+    lost: float
+    problem: Problem
+    simulator: Simulator
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The law's own parameters, by the names that the law has for them, in their units."""
+        start, pairs = f"{self.attachment.prefix}.", zip(self.problem.names, self.problem.values, strict=True)
+        return {name.removeprefix(start): float(value) for name, value in pairs if name.startswith(start)}
+
+
+def refitted_term(
+    found: Trained, attachment: Attachment, starts: list[dict[str, float]], match: float | None
+) -> NamedTerm | None:
+    """The law of ``attachment`` instead of the network, from each of several start values; the best on the samples fitted.
+
+    None where it cannot be simulated from any of them.
+    """
+    course, physics = found.course, found.physics.problem
+    model = AugmentedModel(physics.model, (attachment,), found.hybrid.surroundings)
+    fitted, simulator = [], None
+    for start in starts:
+        problem = problem_for(physics, model, start)
+        if found.settings.freeze_physics:
+            own = np.array([name.startswith(f"{attachment.prefix}.") for name in problem.names])
+            problem = replace(problem, free=problem.free & own)
+        simulator = simulator or course.simulator.for_model(model, problem.free_names)
+        masked = without_samples(problem, course.mask)
+        try:
+            fitted.append(estimate_physics(masked, simulator, course.lengths, found.settings.seed).result)
+        except NumericalError:  # this start overflows; another may not
+            continue
+    if not fitted or simulator is None:
+        return None
+    best = min(fitted, key=lambda result: result.mse).problem
+    complete = problem_for(physics, model, {})
+    held_out = held_out_error(complete, best, simulator, course)
+    lost = held_out / found.polished.chosen.held_out - 1.0
+    return NamedTerm(attachment, match, held_out, lost, best, simulator)
+
+
+def on_all_samples(term: NamedTerm, found: Trained) -> FitResult:
+    """The term estimated once more, on everything that the network was trained on in the end.
+
+    Raises:
+        NumericalError: the simulation overflows.
+    """
+    problem = replace(term.problem, records=found.physics.problem.records)
+    return fit(problem, simulator=term.simulator, seed=found.settings.seed, starts=1)
