@@ -19,8 +19,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from experiments.verdicts.contradictions import contradictions, worse_than_refit
 from experiments.verdicts.running import RUN, VERDICT, has_verdict, sentence
+from greybox_torch.diagnosis.contradictions import contradictions, worse_than_refit
 
 KINDS = ("without effect", "one effect", "two effects or more")
 OUTSIDE = "outside the library"
@@ -114,7 +114,7 @@ class Scored:
     @property
     def worse(self) -> bool:
         """Whether the recommended model simulates the validation experiments worse than the re-estimated one."""
-        return self.verdict is not None and worse_than_refit(self.verdict)
+        return self.verdict is not None and worse_than_refit(self.verdict["fit"])
 
 
 def score(

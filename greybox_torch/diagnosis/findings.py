@@ -148,7 +148,7 @@ def _judged(
     while state.effects and ((empty := _empty(study, state, augmented)) or not judged.holds):
         if not state.compared_without:
             state = result_of(drop_superfluous(study, state))
-        if empty is not None:
+        if empty is not None and empty in state.prefixes:
             state = result_of(drop(study, state, empty))
             gains = {n: g for n, g in gains.items() if n in state.prefixes}
         else:

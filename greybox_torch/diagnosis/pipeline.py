@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -13,6 +13,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.free_runs import Judgement
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.standing import least_size, sizes
+from greybox_torch.diagnosis.contradictions import contradictions
 from greybox_torch.diagnosis.describe.effects import describe
 from greybox_torch.diagnosis.describe.evidence import sentences
 from greybox_torch.diagnosis.describe.left import what_is_left
@@ -28,7 +29,7 @@ from greybox_torch.diagnosis.stopping import Deadline, or_else
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study, silent
 from greybox_torch.diagnosis.verdict import Effect, Verdict
-from greybox_torch.errors import UserError
+from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.stored import attachment_json
 from greybox_torch.model import GreyBoxModel
@@ -100,7 +101,34 @@ def diagnose(
 
 
 def _diagnosis(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int, clock: Stopwatch) -> Diagnosis:
-    """The findings as a verdict, and the model that follows from them."""
+    """The findings as a verdict, and the model that follows from them.
+
+    Findings that would make the verdict contradict itself are taken back.
+
+    Raises:
+        NumericalError: the verdict contradicts itself without any finding.
+    """
+    told = _as_found(found, dataset, model, seed, clock)
+    against = contradictions(told.verdict.as_json())
+    if against and told.verdict.effects:
+        told = _as_found(_taken_back(found, against), dataset, model, seed, clock)
+        against = contradictions(told.verdict.as_json())
+    if against:
+        raise NumericalError(
+            f"the verdict on {model.title} would contradict itself: {'; '.join(against)}; try `greybox fit` and `greybox compare`, which "
+            "show how well the model simulates the recordings"
+        )
+    return told
+
+
+def _taken_back(found: Findings, against: Sequence[str]) -> Findings:
+    """The findings without any effect, and why."""
+    why = f"Everything found was taken back, as a verdict with it would contradict itself: {'; '.join(against)}."
+    return replace(found, state=found.state.at(found.state.plain), gains={}, more=(*found.more, why))
+
+
+def _as_found(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int, clock: Stopwatch) -> Diagnosis:
+    """The findings as a verdict, whatever it says."""
     study, state, judged = found.study, found.state, found.judged
     effects, refinements = _told(found) if state.effects else ((), ())
     traces = judged.traces(bool(effects))
@@ -117,7 +145,7 @@ def _diagnosis(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int
         scores={name: comparison.scores for name, comparison in judged.comparisons(bool(effects)).items()},
         evidence=(
             *sentences(found.dataset, study.problem, state, effects, found.gains, detected, not found.complete),
-            *judged.augmented.sentences(),
+            *(judged.augmented.sentences() if effects else ()),
             *found.more,
         ),
         stages=clock.stages,
@@ -142,7 +170,7 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
     if not found.complete:
         told = of_a_stopped_search(told)
     least = least_size(study, state, found.others)
-    small = [by_effect.get(e.prefix, np.inf) < least for e in state.effects]
+    small = [not by_effect[e.prefix] >= max(least, np.finfo(float).tiny) for e in state.effects]
     return (
         tuple(e for e, is_small in zip(told, small, strict=True) if not is_small),
         tuple(e for e, is_small in zip(told, small, strict=True) if is_small),

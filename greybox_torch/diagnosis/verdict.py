@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 from greybox_torch.estimate.comparison import Score
 
 SCHEMA = "greybox-verdict/2"
+MODELS = ("start", "refit", "augmented")
 
 
 @dataclass(frozen=True)
@@ -182,12 +183,6 @@ class Verdict:
 
     def as_json(self) -> dict[str, Any]:
         """The dictionary of `verdict.json` (contract section 4)."""
-        rows = []
-        for start, refit, augmented in zip(*(self.scores[m] for m in ("start", "refit", "augmented")), strict=True):
-            row: dict[str, Any] = {"experiment": start.experiment, "role": start.role, "output": start.output}
-            for name, score in (("start", start), ("refit", refit), ("augmented", augmented)):
-                row[name] = {"fit": score.fit, "rmse": score.rmse}
-            rows.append(row)
         return {
             "schema": SCHEMA,
             "dataset": self.dataset,
@@ -203,10 +198,19 @@ class Verdict:
             "left": None
             if self.left is None
             else {n: getattr(self.left, n) for n in ("share", "times_noise", "sentence")},
-            "fit": rows,
+            "fit": fit_rows(self.scores),
             "evidence": list(self.evidence),
             "stages": dict(self.stages),
         }
+
+
+def fit_rows(scores: Mapping[str, Sequence[Score]]) -> list[dict[str, Any]]:
+    """The rows ``fit`` of `verdict.json` from scores by model name ("start", "refit", "augmented"), each in the same order."""
+    rows = []
+    for of_one in zip(*(scores[m] for m in MODELS), strict=True):
+        row: dict[str, Any] = {n: getattr(of_one[0], n) for n in ("experiment", "role", "output")}
+        rows.append(row | {m: {"fit": s.fit, "rmse": s.rmse} for m, s in zip(MODELS, of_one, strict=True)})
+    return rows
 
 
 def spoken(mechanism: str) -> str:

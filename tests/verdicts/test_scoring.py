@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from experiments.verdicts.calibrate import brier, fitted_map, main, mapped, reliability
-from experiments.verdicts.contradictions import contradictions
 from experiments.verdicts.scoring import score, score_all
 from experiments.verdicts.totals import table
+from greybox_torch.diagnosis.contradictions import contradictions
 
 KEY = {
     "effects": ["bias", "friction"],
@@ -95,7 +95,7 @@ def test_contradictions_are_said() -> None:
         "gravity at motor: it is likelier (0.40) than the class that it belongs to (0.30)",
         "gravity at motor: m has no value",
     ]
-    assert contradictions(verdict(("motor", "gravity", 0.9))) == contradictions(verdict()) == []
+    assert contradictions(verdict(("motor", "gravity", 0.9))) == contradictions(verdict(after=1.0)) == []
 
 
 def test_a_near_miss_takes_its_effect() -> None:

@@ -21,8 +21,13 @@ from experiments.verdicts.running import VERDICT, Outcome, diagnose_all
 
 Progress = Callable[[str], None]
 ROOT = Path(__file__).parents[3]
-RULES = ("verdicts/scoring.py", "verdicts/contradictions.py", "verdicts/rates.py", "concealed/proof/promises.py")
-"""Of experiments: what decides on right and wrong; may not change between sealing and scoring."""
+RULES = (
+    "experiments/verdicts/scoring.py",
+    "greybox_torch/diagnosis/contradictions.py",
+    "experiments/verdicts/rates.py",
+    "experiments/concealed/proof/promises.py",
+)
+"""What decides on right and wrong; may not change between sealing and scoring."""
 
 
 class Proof:
@@ -172,7 +177,7 @@ class Proof:
 
 def rules_hash() -> str:
     """SHA-256 over the files that decide on right and wrong."""
-    return sha256(b"\0".join((Path(__file__).parents[2] / name).read_bytes() for name in RULES))
+    return sha256(b"\0".join((ROOT / name).read_bytes() for name in RULES))
 
 
 def tool_version() -> dict[str, str]:

@@ -9,10 +9,11 @@ import numpy as np
 
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.diagnosis.confirm.take_back import UNEXERCISED
+from greybox_torch.diagnosis.contradictions import worse_than_refit
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.hypothesis.noise import output_floors
 from greybox_torch.diagnosis.select.state import SearchState
-from greybox_torch.diagnosis.verdict import Trace
+from greybox_torch.diagnosis.verdict import Trace, fit_rows
 from greybox_torch.estimate.comparison import Comparison, Score, compare
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
@@ -45,8 +46,11 @@ class Judgement:
     def holds(self) -> bool:
         """Whether the model with effects simulates the validation experiments no worse than the one without.
 
-        By the mean squared error, outputs in units of their spread, and by the mean fit in %: what a user sees.
+        By the mean squared error, outputs in units of their spread, by the mean fit in %, what a user sees, and by the errors in units of
+        those without effects, by which no verdict may contradict itself.
         """
+        if worse_than_refit(fit_rows({m: c.scores for m, c in self.comparisons(True).items()})):
+            return False
         before, after = (_mean_fit(c.scores) for c in (self._judged(self.refit), self._judged(self.with_effects)))
         return self.sums[1] <= (1 + UNEXERCISED) * self.sums[0] and after >= before - 100 * UNEXERCISED
 
@@ -120,16 +124,21 @@ class Judgement:
 
     def _energy(self, comparison: Comparison, floors: np.ndarray | None = None) -> float:
         """Sum of the mean squared validation errors, outputs in units of their spread, beyond ``floors`` (E, n_y) where those are given."""
-        spread = {
-            o.name: float(np.nanstd(row))
-            for o, row in zip(self.problem.model.outputs, self.problem.records.y, strict=True)
-        }
+        unit = self._units()
         order = [r.name for r in self.recordings], [o.name for o in self.problem.model.outputs]
         total = 0.0
         for score in self._judged(comparison).scores:
             floor = 0.0 if floors is None else floors[order[0].index(score.experiment), order[1].index(score.output)]
-            total += max(score.rmse**2 - floor, 0.0) / max(spread[score.output] ** 2, 1e-300)
+            total += max(score.rmse**2 - floor, 0.0) / max(unit[score.output] ** 2, 1e-300)
         return float(total)
+
+    def _units(self) -> dict[str, float]:
+        """The spread of every output; of one that never moves, the largest error of the re-estimated model."""
+        units = {}
+        for output, row in zip(self.problem.model.outputs, self.problem.records.y, strict=True):
+            errors = [s.rmse for s in self.refit.scores if s.output == output.name and np.isfinite(s.rmse)]
+            units[output.name] = float(np.nanstd(row)) or max(errors, default=0.0)
+        return units
 
 
 def _mean_fit(scores: Sequence[Score]) -> float:

@@ -19,9 +19,11 @@ from greybox_torch.diagnosis.study import Study
 def sizes(study: Study, state: SearchState, gains: Mapping[str, Gain]) -> dict[str, float]:
     """By effect, the share of the plain model's mismatch that leaving it out brings back.
 
-    On held-out experiments; on the estimation experiments where those do not exercise the effect, or where there are none.
+    On held-out experiments; on the estimation experiments where those do not exercise the effect, or where there are none. Where the search
+    was stopped before it knew what every effect brings, each has an equal part of what all of them account for together.
     """
-    found = {}
+    together = size(state.plain.fits, state.plain.fits, state.current.fits)
+    found = {prefix: together / len(state.effects) for prefix in state.prefixes}
     for prefix in state.without:
         gain = gains.get(prefix)
         idle = gain is None or abs(gain.share) + gain.error < study.settings.unexercised or not np.isfinite(gain.size)
