@@ -246,6 +246,7 @@ def test_a_training_that_explains_nothing(folder: Path, data: gt.DataSet) -> Non
         (lambda m, d: gt.simulate(m, d, precision="half"), "precision: found 'half', expected \"double\" or \"single\""),
         (lambda m, d: gt.compare(d, [m]), "models: found an object of type list, expected models by name"),
         (lambda m, d: gt.compare(d, {}), "models: found none, expected models by name"),
+        (lambda m, d: gt.residuals(m, d).plot("sweep"), "experiment: found 'sweep', expected one of Steps, More steps, Sweep"),
         (lambda m, d: gt.simulate(m, d).plot("sweep"), "experiment: found 'sweep', expected one of Steps, More steps, Sweep"),
     ],
 )  # fmt: skip

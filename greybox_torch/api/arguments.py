@@ -46,6 +46,15 @@ def check_estimation(data: DataSet) -> None:
         )
 
 
+def check_experiment(data: DataSet, experiment: Any) -> str:
+    """Raises ArgumentError where ``data`` has no experiment of that name."""
+    names = [recording.name for recording in data.recordings]
+    if experiment not in names:
+        hint = did_you_mean(str(experiment), names)
+        raise ArgumentError("experiment", experiment, f"expected one of {', '.join(names)}{hint}")
+    return experiment
+
+
 def check_device(device: str) -> str:
     """The device as torch names it. Raises ArgumentError where torch does not know it or this machine does not have it."""
     try:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from greybox_torch.api.arguments import check_experiment
 from greybox_torch.api.scores import Scores, scores_json
 from greybox_torch.data import DataSet, Recording
-from greybox_torch.errors import ArgumentError, did_you_mean
 from greybox_torch.evaluation import Evaluation
 
 if TYPE_CHECKING:
@@ -84,10 +84,8 @@ def plot_simulated(
 
 def _shown(data: DataSet, experiment: str | None) -> list[Recording]:
     """The experiment asked for; otherwise the first few, validation before estimation, in the order of the data set."""
-    names = [recording.name for recording in data.recordings]
-    if experiment is not None and experiment not in names:
-        hint = did_you_mean(experiment, names)
-        raise ArgumentError("experiment", experiment, f"expected one of {', '.join(names)}{hint}")
+    if experiment is not None:
+        check_experiment(data, experiment)
     ranked = sorted(data.recordings, key=lambda r: r.role != "validation")
     wanted = [experiment] if experiment is not None else [r.name for r in ranked[:MOST_EXPERIMENTS]]
     return [recording for recording in data.recordings if recording.name in wanted]

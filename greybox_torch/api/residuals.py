@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.text import Text
 
+from greybox_torch.api.arguments import check_experiment
 from greybox_torch.api.result import Result
 from greybox_torch.api.simulate import START, simulate
 from greybox_torch.data import DataSet
@@ -74,11 +75,19 @@ class ResidualResult(Result):
     def files(self, folder: Path) -> dict[Path, str | bytes]:
         return {folder / FIGURE: notebook.png(self.plot())}
 
-    def plot(self) -> Figure:
-        """Errors over time, their autocorrelation, and their correlation with the inputs."""
+    def plot(self, experiment: str | None = None) -> Figure:
+        """Errors over time, their autocorrelation, and their correlation with the inputs, of all experiments or of one.
+
+        Raises:
+            ArgumentError: there is no such experiment.
+        """
         from greybox_torch.report.residuals import plot_residuals  # matplotlib takes half a second
 
-        return plot_residuals(self.tests, self._title)
+        if experiment is None:
+            return plot_residuals(self.tests, self._title)
+        check_experiment(self.run.data, experiment)
+        own = [test for test in self.tests if test.recording.name == experiment]
+        return plot_residuals(own, f"{self._title}, {experiment}")
 
     def _repr_html_(self) -> str:
         notes = (notebook.sentence(line) for line in _EXPLANATION)

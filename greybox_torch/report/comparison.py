@@ -18,6 +18,9 @@ Panel = tuple[Recording, Mapping[str, np.ndarray], Mapping[str, str]]
 _DETAIL = 0.05
 """Share of the record that the detail shows."""
 
+_MOST_ABREAST = 4
+"""Entries of the legend that stand in one row."""
+
 
 def plot_comparison(
     recording: Recording, outputs: list[Channel], simulated: Mapping[str, np.ndarray], legend: Mapping[str, str]
@@ -60,7 +63,9 @@ def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> Non
                 below.set_ylabel(with_unit("error", output.unit))
             else:
                 above.set_title("where the error is largest", fontsize=9)
-    figure.legend(*above.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    entries = above.get_legend_handles_labels()
+    columns = len(entries[0]) if len(entries[0]) <= _MOST_ABREAST else 3
+    figure.legend(*entries, loc="outside lower center", ncols=columns)
 
 
 def _plot_signals(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mapping[str, np.ndarray]) -> None:

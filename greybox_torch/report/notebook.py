@@ -14,12 +14,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _STYLE = """\
+.greybox { font-family: system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, "DejaVu Sans", sans-serif; }
 .greybox { font-size: 13px; line-height: 1.45; max-width: 980px; }
 .greybox p { margin: 0.3em 0; }
 .greybox .title { font-weight: 600; font-size: 1.1em; }
 .greybox .found { font-weight: 600; }
 .greybox .note { opacity: 0.75; }
-.greybox table { border-collapse: collapse; margin: 0.5em 0 0.8em; font-variant-numeric: tabular-nums; }
+.greybox table { font-size: inherit; border-collapse: collapse; margin: 0.5em 0 0.8em; font-variant-numeric: tabular-nums; }
 .greybox th, .greybox td { padding: 2px 12px 2px 0; text-align: left; vertical-align: top; background: none; white-space: normal; }
 .greybox th { font-weight: 600; border-bottom: 1px solid rgba(128, 128, 128, 0.6); vertical-align: bottom; white-space: pre-line; }
 .greybox th.number, .greybox td.number { text-align: right; white-space: pre; }
