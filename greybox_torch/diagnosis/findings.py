@@ -54,7 +54,7 @@ def find(dataset: DataSet, model: GreyBoxModel, make_study: MakeStudy, clock: St
     """Search on the estimation experiments, and let the others confirm what was found or take it back.
 
     Args:
-        make_study: :class:`Study` with everything but the problem and how many sub-steps it needs.
+        make_study: :class:`Study` with everything but the problem and how it is simulated.
     """
     problem = all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
     study = make_study(problem)
@@ -63,7 +63,7 @@ def find(dataset: DataSet, model: GreyBoxModel, make_study: MakeStudy, clock: St
     study, state, complete = _searched(study)
     clock.lap("searching: screen, refit, select")
     unlimited = study.without_limit()
-    others = HeldOut(dataset, study.problem, study.options.substeps) if dataset.validation() else None
+    others = HeldOut(dataset, study) if dataset.validation() else None
     state, gains, confirmed = _confirmed(unlimited, state, others)
     clock.lap("confirming on held-out experiments")
     (plain, augmented), fitted = _finished(unlimited, state)
@@ -80,7 +80,7 @@ def find_with_more(first: Findings, model: GreyBoxModel, make_study: MakeStudy, 
     best = last = first
     try:
         while last.complete and last.others is not None:
-            more = promote_validation(last.dataset, last.state, last.others)
+            more = promote_validation(last.study, last.dataset, last.state, last.others)
             if more is None:
                 return best
             last.study.working_on(f"searching again, {more.taken} among the experiments to choose with")
@@ -122,8 +122,8 @@ def _finished(study: Study, state: SearchState) -> tuple[tuple[Final, Final], bo
 
     def fits() -> tuple[Final, Final]:
         study.working_on("fitting whole records")
-        plain = finish(state.plain)
-        return plain, finish(state.current) if state.effects else plain
+        plain = finish(state.plain, study.settings, study.budget)
+        return plain, finish(state.current, study.settings, study.budget) if state.effects else plain
 
     def as_they_are() -> tuple[Final, Final]:
         plain = from_longest_windows(state.plain)
@@ -143,8 +143,8 @@ def _judged(
 ) -> tuple[SearchState, Mapping[str, Gain], Judgement]:
     """Effects taken back, the weakest first, until those left hold on the validation experiments."""
     study.working_on("judging on the validation experiments")
-    judge = partial(Judgement, dataset, problem)
-    judged = judge(state, plain, augmented, study.options)
+    judge = partial(Judgement, study, dataset, problem)
+    judged = judge(state, plain, augmented)
     while state.effects and ((empty := _empty(study, state, augmented)) or not judged.holds):
         if not state.compared_without:
             state = result_of(drop_superfluous(study, state))
@@ -153,8 +153,8 @@ def _judged(
             gains = {n: g for n, g in gains.items() if n in state.prefixes}
         else:
             state, gains = take_back_weakest(study, state, gains)
-        augmented = finish(state.current) if state.effects else plain
-        judged = judge(state, plain, augmented, study.options)
+        augmented = finish(state.current, study.settings, study.budget) if state.effects else plain
+        judged = judge(state, plain, augmented)
     return state, gains, judged
 
 

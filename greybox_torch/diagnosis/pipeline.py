@@ -20,8 +20,9 @@ from greybox_torch.diagnosis.describe.left import what_is_left
 from greybox_torch.diagnosis.describe.ranking import ranking
 from greybox_torch.diagnosis.describe.residual_tests import detect
 from greybox_torch.diagnosis.findings import Findings, find, find_with_more
+from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
-from greybox_torch.diagnosis.hypothesis.noise import FAR_ABOVE_NOISE, floor_known, times_noise
+from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.select.posterior import confidence, of_a_stopped_search
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
@@ -132,7 +133,7 @@ def _as_found(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int,
     study, state, judged = found.study, found.state, found.judged
     effects, refinements = _told(found) if state.effects else ((), ())
     traces = judged.traces(bool(effects))
-    detected = detect(judged.problem, traces)
+    detected = detect(judged.problem, traces, study.settings)
     clock.lap("validation and report data")
     unexplained = None if effects else _unexplained(study, state, found.others, judged)
     verdict = Verdict(
@@ -140,11 +141,11 @@ def _as_found(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int,
         model=model.title,
         seed=seed,
         seconds=clock.seconds,
-        confidence=confidence(study.problem, state, effects, found.complete, unexplained),
+        confidence=confidence(study, state, effects, found.complete, unexplained),
         effects=effects,
         scores={name: comparison.scores for name, comparison in judged.comparisons(bool(effects)).items()},
         evidence=(
-            *sentences(found.dataset, study.problem, state, effects, found.gains, detected, not found.complete),
+            *sentences(found.dataset, study, state, effects, found.gains, detected, not found.complete),
             *(judged.augmented.sentences() if effects else ()),
             *found.more,
         ),
@@ -168,7 +169,7 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
     by_effect = sizes(study, state, found.gains)
     told = describe(study, state, judged.augmented, judged.sums, found.gains, by_effect)
     if not found.complete:
-        told = of_a_stopped_search(told)
+        told = of_a_stopped_search(told, study.settings)
     least = least_size(study, state, found.others)
     small = [not by_effect[e.prefix] >= max(least, np.finfo(float).tiny) for e in state.effects]
     return (
@@ -183,14 +184,15 @@ def _unexplained(study: Study, state: SearchState, others: HeldOut | None, judge
     By windows and by free runs: where either shows hardly more than noise, nothing says that anything is missing. Nor where the error is
     less than simulations of one machine differ by.
     """
-    if mismatch_share(state.plain) < study.settings.least_mismatch:
+    settings = study.settings
+    if mismatch_share(state.plain, settings) < settings.least_mismatch:
         return None
-    errors = [times_noise(study.problem, state.plain)] if floor_known(study.problem) else []
-    if others is not None and floor_known(others.problem):
+    errors = [times_noise(study.problem, state.plain, settings)] if floor_known(study.problem, settings) else []
+    if others is not None and floor_known(others.problem, settings):
         errors += list(others.times_noise(state.plain))
-    by_windows = max((e for e in errors if FAR_ABOVE_NOISE < e < np.inf), default=0.0)
+    by_windows = max((e for e in errors if settings.far_above_noise < e < np.inf), default=0.0)
     least = min(by_windows, float(np.nanmax(judged.times_noise, initial=0.0)))
-    return least if least > FAR_ABOVE_NOISE else None
+    return least if least > settings.far_above_noise else None
 
 
 def _starts(problem: Problem) -> dict[str, dict[str, float]]:

@@ -9,7 +9,7 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import Deadline
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.simulation.simulator import SimulationOptions
+from greybox_torch.simulation.simulator import DEFAULT, SimulationOptions
 
 
 def silent(text: str) -> None:
@@ -20,13 +20,13 @@ def silent(text: str) -> None:
 class Study:
     """The estimation experiments with the model as it stands, and how it is looked for what they lack.
 
-    ``surroundings`` and ``shifts`` are what mechanisms need to know of the ports: where signals moved, and which state carries the
-    deflection of a coupling; both are known once the model as it stands is fitted. ``report`` is told what is being done; it does not
-    stop the search, which ``deadline`` does.
+    ``options`` are those of every simulation. ``surroundings`` and ``shifts`` are what mechanisms need to know of the ports: where signals
+    moved, and which state carries the deflection of a coupling; both are known once the model as it stands is fitted. ``report`` is told
+    what is being done; it does not stop the search, which ``deadline`` does.
     """
 
     problem: Problem
-    options: SimulationOptions
+    options: SimulationOptions = DEFAULT
     surroundings: Mapping[str, Surroundings] = field(default_factory=dict)
     shifts: Mapping[str, str] = field(default_factory=dict)
     settings: DiagnosisSettings = field(default_factory=DiagnosisSettings)

@@ -95,6 +95,10 @@ class Begun:
         return self.study.surroundings
 
     @property
+    def options(self) -> SimulationOptions:
+        return self.study.options
+
+    @property
     def shifts(self) -> Mapping[str, str]:
         return self.study.shifts
 
@@ -145,7 +149,7 @@ def arm_search(data_set, begun) -> Begun:
     torque = 6.0 * np.sign(np.sin(4.0 * t)) + sum(np.sin(2 * np.pi * f * t + f) for f in (7.0, 13.0, 23.0))
     records = Records(torque[None], np.zeros((1, n)), np.full(n, step), np.array([0]), np.array([n - 1]), ("",), "zoh")
     p = np.array(list(arm.values().values()))
-    speed = Simulator.of(arm).run(records, Pass(whole_records(records), p, np.zeros((1, 5)))).y[0, :, 0]
+    speed = Simulator.of(arm, ()).run(records, Pass(whole_records(records), p, np.zeros((1, 5)))).y[0, :, 0]
     noisy = speed + np.random.default_rng(3).normal(0, 0.01, n)
     return begun(
         data_set(

@@ -15,7 +15,7 @@ from greybox_torch.diagnosis.confirm.free_runs import Judgement
 from greybox_torch.diagnosis.pipeline import Diagnosis, diagnose
 from greybox_torch.diagnosis.refit import rank, refitted
 from greybox_torch.diagnosis.screen.score_test import Screen
-from greybox_torch.diagnosis.select import finer_curve, offered, plain_model
+from greybox_torch.diagnosis.select import offered
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit
@@ -53,14 +53,16 @@ def remembered() -> Any:
 
         patch.setattr(owner, name, remembering)
 
-    for module in (rank, refitted, finer_curve, plain_model):
+    for module in (refitted,):
         once(module, "hypothesis", lambda *args, **kwargs: (fingerprint(args), fingerprint(sorted(kwargs.items()))))
     once(
-        rank, "_compiled", lambda base, current, found, *rest: (id(current), fingerprint([c.attachment for c in found]))
+        rank,
+        "_compiled",
+        lambda study, current, found, *rest: (id(current), fingerprint([c.attachment for c in found])),
     )
-    once(offered, "scan_orders", lambda model, effects, around, free, fits, **how: tuple(map(id, fits)))
+    once(offered, "scan_orders", lambda study, effects, free, fits: tuple(map(id, fits)))
     once(Screen, "of", lambda model, effects, there, *rest, **how: (fingerprint(effects), fingerprint(there)))
-    once(Screen, "look", lambda screen, fit, *rest: (id(screen), id(fit)))
+    once(Screen, "scores", lambda screen, fit, *rest: (id(screen), id(fit)))
     once(held_out, "held_out_fits", lambda hypothesis, *rest: (id(hypothesis), fingerprint(rest)))
     once(findings, "finish", lambda hypothesis, *rest, **how: id(hypothesis))
     once(Judgement, "_compared", lambda self, like, values, final: (like.names, values.tobytes(), final is None))

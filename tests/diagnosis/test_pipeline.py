@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.pipeline import Diagnosis, diagnose
-from greybox_torch.diagnosis.select.posterior import BEYOND_EXPLANATION
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.stored import restored_model
 
@@ -98,7 +98,7 @@ def test_what_nothing_explains_is_said_to_be_missing(motor_data, motor, monkeypa
     monkeypatch.setattr("greybox_torch.diagnosis.findings.search", nothing_found)
     verdict = diagnose(motor_data(acting=dead_zone), motor).verdict
     assert verdict.complete and verdict.mismatch and verdict.effects == () and verdict.unexplained > 3.0
-    assert verdict.confidence == BEYOND_EXPLANATION
+    assert verdict.confidence == DiagnosisSettings().confidence_missing_unnamed
     assert (
         verdict.sentence.startswith("Something is missing") and "no curve of one signal explains it" in verdict.sentence
     )

@@ -13,6 +13,7 @@ from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.diagnosis.hypothesis.final import finish
 from greybox_torch.diagnosis.hypothesis.fit import hypothesis, lengths
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.comparison import Score, compare
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
@@ -51,7 +52,9 @@ class Plain:
         rows = []
         for k in range(len(self.problem.records.y)):
             alone = replace(self.problem.records, y=self.problem.records.y[k : k + 1])
-            rows.append(np.sqrt(noise_floor(replace(self.problem, records=alone, weights=np.ones(1)))))
+            rows.append(
+                np.sqrt(noise_floor(replace(self.problem, records=alone, weights=np.ones(1)), DiagnosisSettings()))
+            )
         return np.maximum(np.array(rows), 1e-9 * np.nanstd(self.problem.records.y, axis=1))
 
     @property

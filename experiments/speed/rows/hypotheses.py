@@ -77,7 +77,7 @@ def measure(settings: Settings, progress: Progress) -> Row:
         entries=(
             Entry(PLAIN, times[PLAIN], ours=True, note=f"{count} windows, start states free"),
             Entry(
-                COLUMNS_PASS, times[COLUMNS_PASS], compiling, True, f"{columns} columns of {len(screen.looks)} probes"
+                COLUMNS_PASS, times[COLUMNS_PASS], compiling, True, f"{columns} columns of {len(screen.probed)} probes"
             ),
             Entry(SCREEN, times[SCREEN], ours=True, note=f"{times[SCREEN] / times[PLAIN]:.3g} times the plain pass"),
         ),

@@ -8,16 +8,16 @@ from dataclasses import replace
 import numpy as np
 
 from greybox_torch.data import DataSet, Recording
-from greybox_torch.diagnosis.confirm.take_back import UNEXERCISED
 from greybox_torch.diagnosis.contradictions import worse_than_refit
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.hypothesis.noise import output_floors
 from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.study import Study
 from greybox_torch.diagnosis.verdict import Trace, fit_rows
 from greybox_torch.estimate.comparison import Comparison, Score, compare
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
-from greybox_torch.simulation.simulator import SimulationOptions, Simulator
+from greybox_torch.simulation.simulator import Simulator
 
 
 class Judgement:
@@ -25,16 +25,17 @@ class Judgement:
 
     def __init__(
         self,
+        study: Study,
         dataset: DataSet,
         problem: Problem,
         state: SearchState,
         plain: Final,
         augmented: Final,
-        options: SimulationOptions,
     ) -> None:
+        self.settings = study.settings
         self.recordings = dataset.recordings
         self.problem = all_starts_free(dataset, make_problem(dataset, problem.model, dataset.recordings))
-        self.plain, self.augmented, self.options = plain, augmented, options
+        self.plain, self.augmented, self.options = plain, augmented, study.options
         self.start = self._compared(problem, problem.values, None)
         self.refit = self._compared(plain.problem, plain.problem.values, plain)
         self.with_effects = (
@@ -52,7 +53,10 @@ class Judgement:
         if worse_than_refit(fit_rows({m: c.scores for m, c in self.comparisons(True).items()})):
             return False
         before, after = (_mean_fit(c.scores) for c in (self._judged(self.refit), self._judged(self.with_effects)))
-        return self.sums[1] <= (1 + UNEXERCISED) * self.sums[0] and after >= before - 100 * UNEXERCISED
+        return (
+            self.sums[1] <= (1 + self.settings.unexercised) * self.sums[0]
+            and after >= before - 100 * self.settings.unexercised
+        )
 
     @property
     def times_noise(self) -> np.ndarray:
@@ -63,7 +67,7 @@ class Judgement:
         """What the recommended model leaves of the validation experiments: the share of the refitted model's mean squared error beyond the
         noise, and the root mean square error in units of the noise.
         """
-        floors = np.nan_to_num(output_floors(self.problem))
+        floors = np.nan_to_num(output_floors(self.problem, self.settings))
         final = self.with_effects if effects else self.refit
         beyond = [self._energy(c, floors) for c in (self.refit, final)]
         roles = [r.role for r in self.recordings]
@@ -108,7 +112,7 @@ class Judgement:
     def _times_noise(self, comparison: Comparison) -> np.ndarray:
         """Root mean square errors in units of the noise, by experiment (E,), over the outputs whose noise is known; NaN where none is."""
         errors = np.array([s.rmse for s in comparison.scores]).reshape(len(self.recordings), -1)
-        floors = output_floors(self.problem)
+        floors = output_floors(self.problem, self.settings)
         known = np.isfinite(floors)
         ratios = np.where(known, errors**2 / np.where(known, np.maximum(floors, 1e-300), 1.0), 0.0)
         count = known.sum(axis=1)

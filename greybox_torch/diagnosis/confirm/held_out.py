@@ -10,8 +10,10 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.start_positions import placed
-from greybox_torch.diagnosis.hypothesis.fit import WINDOW_SETTINGS, Hypothesis, lengths
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, lengths
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
+from greybox_torch.diagnosis.study import Study
 from greybox_torch.diagnosis.verdict import Timeline
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
@@ -46,16 +48,16 @@ class HeldOut:
     ``problem`` is the plain model on them, outputs weighted as in the search. Fits are kept: confirming asks for some of them again.
     """
 
-    def __init__(self, dataset: DataSet, problem: Problem, substeps: int) -> None:
-        others = all_starts_free(dataset, make_problem(dataset, problem.model, dataset.validation()))
-        self.problem, self.substeps = replace(others, weights=problem.weights), substeps
-        self._fits: dict[Hypothesis, tuple[WindowFit, ...]] = {}
+    def __init__(self, dataset: DataSet, study: Study) -> None:
+        others = all_starts_free(dataset, make_problem(dataset, study.problem.model, dataset.validation()))
+        self.problem, self.study = replace(others, weights=study.problem.weights), study
+        self._known: dict[Hypothesis, tuple[WindowFit, ...]] = {}
 
     def fits(self, hypothesis: Hypothesis) -> tuple[WindowFit, ...]:
         """The hypothesis with the parameters it was fitted with, as :func:`held_out_fits`."""
-        if hypothesis not in self._fits:
-            self._fits[hypothesis] = self.fits_at(hypothesis, hypothesis.values())
-        return self._fits[hypothesis]
+        if hypothesis not in self._known:
+            self._known[hypothesis] = self.fits_at(hypothesis, hypothesis.values())
+        return self._known[hypothesis]
 
     def times_noise(self, hypothesis: Hypothesis) -> np.ndarray:
         """Root mean square errors in units of the noise, over the windows where they are largest, by experiment, shape (J,).
@@ -65,16 +67,26 @@ class HeldOut:
         squares = [_mean_squares(fit) for fit in self.fits(hypothesis)] or [
             np.full(len(self.problem.records.first), np.inf)
         ]
-        return np.sqrt(np.max(squares, axis=0) / max(noise_floor(self.problem), 1e-300))
+        return np.sqrt(np.max(squares, axis=0) / max(noise_floor(self.problem, self.study.settings), 1e-300))
 
     def fits_at(self, hypothesis: Hypothesis, values: Mapping[str, float]) -> tuple[WindowFit, ...]:
         """The hypothesis with other parameters."""
         # Not with the hypothesis's own sub-steps: an earlier search may have taken others, and what is compared is simulated alike.
-        return held_out_fits(hypothesis, self.problem, hypothesis.simulator.with_substeps(self.substeps), values)
+        return held_out_fits(
+            hypothesis,
+            self.problem,
+            hypothesis.simulator.with_substeps(self.study.options.substeps),
+            values,
+            self.study.budget,
+        )
 
 
 def held_out_fits(
-    hypothesis: Hypothesis, problem: Problem, simulator: Simulator, values: Mapping[str, float]
+    hypothesis: Hypothesis,
+    problem: Problem,
+    simulator: Simulator,
+    values: Mapping[str, float],
+    budget: SearchBudget,
 ) -> tuple[WindowFit, ...]:
     """The hypothesis on other experiments: parameters as they are, window start states free, at the middle and the longest windows.
 
@@ -91,14 +103,14 @@ def held_out_fits(
     )
     fixed = replace(restated, free=np.zeros_like(restated.free))
     started = estimate_initial(fixed, simulator)
-    shortest, *longer = lengths(problem)
-    short = placed(started, simulator, shortest)
+    shortest, *longer = lengths(problem, budget)
+    short = placed(started, simulator, shortest, budget)
     if short is None or not longer:
         return () if short is None else (short,)
     found: list[WindowFit] = []
     for length in longer:
-        there = placed(short.problem, simulator, length, shorter=short) or short
-        fit = partial(fit_windows, there.problem, simulator, length, settings=WINDOW_SETTINGS)
+        there = placed(short.problem, simulator, length, budget, shorter=short) or short
+        fit = partial(fit_windows, there.problem, simulator, length, settings=budget.window_iterations)
         ended = reduce(_window_by_window, (fit(shorter=there), fit(shorter=short), fit()))
         if ended is not None:
             found.append(ended)
@@ -147,7 +159,12 @@ def gain(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> Gain:
     return max(found, key=lambda g: g.errors_away, default=Gain(0.0, float("inf")))
 
 
-def size(plain: tuple[WindowFit, ...], without: tuple[WindowFit, ...], full: tuple[WindowFit, ...]) -> float:
+def size(
+    plain: tuple[WindowFit, ...],
+    without: tuple[WindowFit, ...],
+    full: tuple[WindowFit, ...],
+    settings: DiagnosisSettings,
+) -> float:
     """The share of the mismatch of ``plain`` that leaving an effect out of ``full`` brings back: the mean over window lengths.
 
     The mismatch is the squared error beyond what the noise alone would leave. Where the plain model cannot be simulated, or leaves no
@@ -160,7 +177,7 @@ def size(plain: tuple[WindowFit, ...], without: tuple[WindowFit, ...], full: tup
             shares.append(1.0)
             continue
         whole = plain[level] if level < len(plain) else old
-        noise = noise_floor(new.problem) * float(np.sum(~np.isnan(new.problem.records.y)))
+        noise = noise_floor(new.problem, settings) * float(np.sum(~np.isnan(new.problem.records.y)))
         mismatch = max(
             float(whole.energies.sum()) - noise, float(old.energies.sum()) - float(new.energies.sum()), 1e-300
         )

@@ -8,16 +8,9 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain
-from greybox_torch.diagnosis.confirm.take_back import BEYOND_CHANCE
-from greybox_torch.diagnosis.hypothesis.noise import far_above_noise
+from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise
 from greybox_torch.diagnosis.select.state import SearchState
-
-SHOWN = 1.5
-"""How many times the noise the error of another experiment must be to show what nothing was found of."""
-
-SHOWN_BESIDE, LEFT_BESIDE = 2.0, 0.2
-"""The same where something was found, which may be a little wrong and yet right; and the share of the plain model's error that must be
-left besides."""
+from greybox_torch.diagnosis.study import Study
 
 
 @dataclass(frozen=True)
@@ -36,20 +29,21 @@ class Promotion:
         )
 
 
-def promote_validation(dataset: DataSet, state: SearchState, others: HeldOut) -> Promotion | None:
+def promote_validation(study: Study, dataset: DataSet, state: SearchState, others: HeldOut) -> Promotion | None:
     """The data set with the validation experiment that the search's model fits worst among those to choose with.
 
     None where the others show no more than the estimation experiments do, or where no validation experiment would be left. What has had
     a part in choosing does not score: the experiment changes its role.
     """
+    settings = study.settings
     recordings, found = dataset.validation(), bool(state.effects)
-    if len(recordings) < 2 or (found and far_above_noise(state.current)):
+    if len(recordings) < 2 or (found and far_above_noise(state.current, settings)):
         return None
     errors = others.times_noise(state.current)
     worst = int(np.argmax(errors))
-    if errors[worst] < (SHOWN_BESIDE if found else SHOWN):
+    if errors[worst] < (settings.promote_error_beside if found else settings.promote_error):
         return None
-    if found and errors[worst] < LEFT_BESIDE * others.times_noise(state.plain)[worst]:
+    if found and errors[worst] < settings.promote_share_beside * others.times_noise(state.plain)[worst]:
         return None
     name = recordings[worst].name
     changed = tuple(replace(r, role="estimation") if r.name == name else r for r in dataset.recordings)
@@ -65,4 +59,4 @@ def serves(others: HeldOut, before: SearchState, after: SearchState) -> bool:
     fits, fits_before = others.fits(after.current), others.fits(before.current)
     if before.effects:
         return gain(fits_before, fits).share > 0
-    return gain(fits, fits_before).errors_away < BEYOND_CHANCE
+    return gain(fits, fits_before).errors_away < others.study.settings.held_out_beyond_chance

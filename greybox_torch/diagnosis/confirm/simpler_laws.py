@@ -11,15 +11,11 @@ from greybox_torch.diagnosis.hypothesis.significance import likelihood_ratio
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.select.backward import drop_superfluous
-from greybox_torch.diagnosis.select.choice import LEAST_SIGNIFICANCE
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.simulation.side_by_side import side_by_side
-
-BEYOND_CHANCE = 3.0
-"""Standard errors by which a free curve must beat named effects on held-out experiments, or a law one that it contains, to be preferred."""
 
 
 def with_simpler_laws(study: Study, state: SearchState, others: HeldOut) -> Stage[SearchState]:
@@ -27,8 +23,11 @@ def with_simpler_laws(study: Study, state: SearchState, others: HeldOut) -> Stag
     for effect in state.effects:
         for rival, simpler in _contained(study, state, effect):
             before, after = side_by_side(partial(others.fits, h) for h in (simpler, state.current))
-            no_farther = gain(before, after).errors_away < BEYOND_CHANCE
-            if no_farther and likelihood_ratio(simpler, state.current) < LEAST_SIGNIFICANCE:
+            no_farther = gain(before, after).errors_away < study.settings.held_out_beyond_chance
+            if (
+                no_farther
+                and likelihood_ratio(simpler, state.current, study.settings) < study.settings.least_significance
+            ):
                 state = _with_rival(state, rival, simpler, effect)
                 yield state
                 state = yield from drop_superfluous(study, state)

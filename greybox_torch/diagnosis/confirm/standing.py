@@ -11,7 +11,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
-from greybox_torch.diagnosis.hypothesis.noise import ABOVE_NOISE, floor_known, times_noise
+from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
+from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 
@@ -22,22 +23,22 @@ def sizes(study: Study, state: SearchState, gains: Mapping[str, Gain]) -> dict[s
     On held-out experiments; on the estimation experiments where those do not exercise the effect, or where there are none. Where the search
     was stopped before it knew what every effect brings, each has an equal part of what all of them account for together.
     """
-    together = size(state.plain.fits, state.plain.fits, state.current.fits)
+    together = size(state.plain.fits, state.plain.fits, state.current.fits, study.settings)
     found = {prefix: together / len(state.effects) for prefix in state.prefixes}
     for prefix in state.without:
         gain = gains.get(prefix)
         idle = gain is None or abs(gain.share) + gain.error < study.settings.unexercised or not np.isfinite(gain.size)
-        own = size(state.plain.fits, state.without[prefix].fits, state.current.fits)
+        own = size(state.plain.fits, state.without[prefix].fits, state.current.fits, study.settings)
         found[prefix] = own if gain is None or idle else gain.size
     return found
 
 
 def least_size(study: Study, state: SearchState, others: HeldOut | None) -> float:
     """The size from which an effect is a finding: much less where with all of them hardly more than noise is left."""
-    if others is not None and floor_known(others.problem):
+    if others is not None and floor_known(others.problem, study.settings):
         left = float(np.max(others.times_noise(state.current)))
-    elif others is None and floor_known(study.problem):
-        left = times_noise(study.problem, state.current)
+    elif others is None and floor_known(study.problem, study.settings):
+        left = times_noise(study.problem, state.current, study.settings)
     else:
         left = np.inf
-    return study.settings.least_size_at_noise if left < ABOVE_NOISE else study.settings.least_size
+    return study.settings.least_size_at_noise if left < study.settings.above_noise else study.settings.least_size

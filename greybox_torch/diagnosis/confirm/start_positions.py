@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.fit import continued
-from greybox_torch.estimate.levenberg_marquardt import Settings
+from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 from greybox_torch.simulation.simulator import Simulator
@@ -21,11 +21,10 @@ from greybox_torch.simulation.simulator import Simulator
 FINER = (-0.6, -0.4, -0.2, 0.2, 0.4, 0.6)
 """Places around the best, in steps between neighbouring trials, that are looked at afterwards; in the end a fifth as wide."""
 
-GLANCE = Settings(iterations=5, tolerance=1e-2, trials=3)
-SETTINGS = Settings(iterations=20, tolerance=1e-4, trials=5)
 
-
-def placed(problem: Problem, simulator: Simulator, length: int, shorter: WindowFit | None = None) -> WindowFit | None:
+def placed(
+    problem: Problem, simulator: Simulator, length: int, budget: SearchBudget, shorter: WindowFit | None = None
+) -> WindowFit | None:
     """A fit of the window start states alone, positions beginning where each experiment fits best; None where even windows overflow.
 
     Args:
@@ -35,7 +34,7 @@ def placed(problem: Problem, simulator: Simulator, length: int, shorter: WindowF
             slowly along the travel shows.
         shorter: where the shorter windows placed it.
     """
-    fit = fit_windows(problem, simulator, length, shorter=shorter, settings=SETTINGS)
+    fit = fit_windows(problem, simulator, length, shorter=shorter, settings=budget.position_iterations)
     trials = problem.model.start_trials(problem.values)
     if fit is None or not trials:
         return fit
@@ -47,11 +46,13 @@ def placed(problem: Problem, simulator: Simulator, length: int, shorter: WindowF
     best = np.zeros((len(problem.records.first), len(places)))
     known = [problem.initial[:, places]]
     for moves in (grid, np.outer(FINER, step), np.outer(FINER, step), np.outer(FINER, 0.2 * step)):
-        best = _best_of(fit, places, [*known, best, *(best + move for move in moves)], experiments, simulator, length)
+        best = _best_of(
+            fit, places, [*known, best, *(best + move for move in moves)], experiments, simulator, length, budget
+        )
         known = []
-        there = _moved(fit, places, best, experiments, simulator, length)
-        if there is not None:  # with the trajectories there, the next look is nearer to the truth
-            fit = continued(there, simulator, length, SETTINGS)
+        there = _moved(fit, places, best, experiments, simulator, length, budget)
+        if there is not None:  # with the trajectories there, the next trial is nearer to the truth
+            fit = continued(there, simulator, length, budget.position_iterations, budget)
     return fit
 
 
@@ -62,11 +63,12 @@ def _best_of(
     experiments: np.ndarray,
     simulator: Simulator,
     length: int,
+    budget: SearchBudget,
 ) -> np.ndarray:
     """Of start positions (E, k) tried, those at which each experiment fits best."""
     best, least = trials[0].copy(), np.full(len(trials[0]), np.inf)
     for trial in trials:
-        found = _moved(fit, places, trial, experiments, simulator, length)
+        found = _moved(fit, places, trial, experiments, simulator, length, budget)
         if found is not None:
             energies = np.bincount(experiments, weights=found.energies, minlength=len(trial))
             better = energies < least
@@ -81,6 +83,7 @@ def _moved(
     experiments: np.ndarray,
     simulator: Simulator,
     length: int,
+    budget: SearchBudget,
 ) -> WindowFit | None:
     """``fit`` once more with the positions ``places`` of every experiment beginning at ``to`` (E, k)."""
     starts, initial = fit.starts.copy(), fit.problem.initial.copy()
@@ -88,4 +91,4 @@ def _moved(
     starts[:, places] += (to - starts[first][:, places])[experiments]
     initial[:, places] = to
     problem = replace(fit.problem, initial=initial)
-    return fit_windows(problem, simulator, length, starts=starts, settings=GLANCE)
+    return fit_windows(problem, simulator, length, starts=starts, settings=budget.position_trial_iterations)

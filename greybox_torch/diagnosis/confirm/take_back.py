@@ -7,25 +7,14 @@ from dataclasses import replace
 from functools import partial
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, size, timelines
-from greybox_torch.diagnosis.confirm.simpler_laws import BEYOND_CHANCE, with_simpler_laws
+from greybox_torch.diagnosis.confirm.simpler_laws import with_simpler_laws
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import Stage, result_of
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.simulation.side_by_side import side_by_side
-
-LEAST_HELD_OUT = 1.0
-"""Standard errors by which an effect must lower the error on held-out experiments to be kept."""
-
-LEAST_OWN = 3.0
-"""Standard errors by which leaving an effect out of held-out experiments, all else as it is, must raise the error there."""
-
-PARTLY = 0.9
-"""Share of the held-out error below which it is asked whether an effect itself removes it."""
-
-UNEXERCISED = 2e-3
-"""Share of the held-out error below which, either way, those experiments do not exercise an effect: they cannot take it back."""
 
 
 def confirm(study: Study, state: SearchState, others: HeldOut) -> Stage[SearchState]:
@@ -45,11 +34,12 @@ def confirm(study: Study, state: SearchState, others: HeldOut) -> Stage[SearchSt
 
 def held_out_gains(state: SearchState, others: HeldOut) -> dict[str, Gain]:
     """By effect, what it gains on held-out experiments beside the others."""
+    settings = others.study.settings
     plain, full, *without = side_by_side(
         partial(others.fits, h) for h in (state.plain, state.current, *state.without.values())
     )
     return {
-        p: replace(gain(fits, full), timelines=timelines(fits, full), size=size(plain, fits, full))
+        p: replace(gain(fits, full), timelines=timelines(fits, full), size=size(plain, fits, full, settings))
         for p, fits in zip(state.without, without, strict=True)
     }
 
@@ -69,7 +59,7 @@ def _names_for_curve(study: Study, state: SearchState, others: HeldOut) -> Stage
     if state.named is None:
         return state
     named, curve = (others.fits(h) for h in (state.named.current, state.current))
-    if gain(named, curve).errors_away >= BEYOND_CHANCE:
+    if gain(named, curve).errors_away >= study.settings.held_out_beyond_chance:
         return state
     named_state = replace(state.named.at(state.named.current), plain=state.plain, named=None)
     yield named_state
@@ -79,12 +69,15 @@ def _names_for_curve(study: Study, state: SearchState, others: HeldOut) -> Stage
 def _to_take_back(state: SearchState, gains: Mapping[str, Gain], others: HeldOut) -> str | None:
     """The weakest effect if it is not borne out, else one that is idle; None where all stand."""
     weakest = min(gains, key=lambda p: gains[p].errors_away)
-    return weakest if not _borne_out(gains[weakest]) else _idle(state, gains, others.fits(state.current), others)
+    settings = others.study.settings
+    if not _borne_out(gains[weakest], settings.least_held_out, settings):
+        return weakest
+    return _idle(state, gains, others.fits(state.current), others)
 
 
-def _borne_out(gain: Gain, least: float = LEAST_HELD_OUT) -> bool:
+def _borne_out(gain: Gain, least: float, settings: DiagnosisSettings) -> bool:
     """Whether held-out experiments bear an effect out by so many standard errors, or do not exercise it."""
-    return gain.errors_away > least or abs(gain.share) + gain.error < UNEXERCISED
+    return gain.errors_away > least or abs(gain.share) + gain.error < settings.unexercised
 
 
 def _idle(state: SearchState, gains: Mapping[str, Gain], full: tuple[WindowFit, ...], others: HeldOut) -> str | None:
@@ -93,9 +86,9 @@ def _idle(state: SearchState, gains: Mapping[str, Gain], full: tuple[WindowFit, 
     A disturbance of one experiment (a slow drift) bends the other parameters; what takes it up there, say a bias, frees them, and so
     predicts other experiments better though it is not in them. Left out there, all else as it is, nothing is lost.
     """
-    values = state.current.values()
-    for prefix in (p for p, found in gains.items() if found.share < PARTLY):
+    values, settings = state.current.values(), others.study.settings
+    for prefix in (p for p, found in gains.items() if found.share < settings.held_out_in_part):
         own = gain(others.fits_at(state.without[prefix], values), full)
-        if not _borne_out(own, LEAST_OWN):
+        if not _borne_out(own, settings.least_held_out_alone, settings):
             return prefix
     return None

@@ -73,11 +73,13 @@ def _effect(
 ) -> Effect:
     around = study.surroundings[attachment.port]
     taken = state.step_of(attachment.prefix)
-    probability, alternatives = (0.5, ()) if taken is None or taken.taken is None else shared(taken.taken, taken.ranked)
+    probability, alternatives = (
+        (0.5, ()) if taken is None or taken.taken is None else shared(taken.taken, taken.ranked, study.settings)
+    )
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     if not isinstance(attachment.mechanism, Unknown):
-        share = remaining_share(state.plain, state.current)
-        probability = for_all_that_is_left(probability, share, state.current, study.settings.least_size)
+        share = remaining_share(state.plain, state.current, study.settings)
+        probability = for_all_that_is_left(probability, share, state.current, study.settings)
     profiles = _profiles(study, state, model, attachment, site)
     timelines = () if gain is None else gain.timelines
     mechanism = attachment.mechanism

@@ -9,17 +9,19 @@ import numpy as np
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest
-from greybox_torch.diagnosis.hypothesis.noise import ABOVE_NOISE, floor_known, times_noise
+from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
+from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.diagnosis.study import Study
 from greybox_torch.diagnosis.verdict import Effect
-from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.attachment import Attachment
 
 
 def sentences(
     dataset: DataSet,
-    problem: Problem,
+    study: Study,
     state: SearchState,
     effects: Sequence[Effect],
     gains: Mapping[str, Gain],
@@ -37,8 +39,8 @@ def sentences(
         + ("; with the effects: " + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in final) if effects else "")
         + " (weighted output units).",
     ]
-    lines += [_noise(problem, state), *detection_sentences(detected, bool(effects))]
-    lines += [_step_sentence(done) for done in state.steps]
+    lines += [_noise(study, state), *detection_sentences(detected, bool(effects))]
+    lines += [_step_sentence(done, study.settings) for done in state.steps]
     lines += [ceiling_sentence(e) for e in effects if e.ceiling is not None]
     for prefix, gain in gains.items():
         low, high = gain.interval
@@ -60,7 +62,7 @@ def sentences(
     return tuple(lines)
 
 
-def _step_sentence(done: SelectionStep) -> str:
+def _step_sentence(done: SelectionStep, settings: DiagnosisSettings) -> str:
     """What a forward step took, or why it took nothing."""
     if done.taken is not None:
         return (
@@ -72,7 +74,7 @@ def _step_sentence(done: SelectionStep) -> str:
     best = done.ranked[0]
     return (
         f"The best further candidate, {_name(best.leader.attachment)}, would lower it by {100 * (1 - np.exp(-best.gain)):.2g} % "
-        f"({best.significance:.1f} standard errors); claimed is what exceeds {100 * least_gain(best.fitted):.0f} % and chance."
+        f"({best.significance:.1f} standard errors); claimed is what exceeds {100 * least_gain(best.fitted, settings):.0f} % and chance."
     )
 
 
@@ -124,12 +126,14 @@ def _size(largest: Largest, what: str) -> str:
     return f"largest {what} {largest.value:.2g}, 99 % bound {largest.bound:.2g}"
 
 
-def _noise(problem: Problem, state: SearchState) -> str:
-    times = times_noise(problem, state.current)
+def _noise(study: Study, state: SearchState) -> str:
+    times = times_noise(study.problem, state.current, study.settings)
     shown = f"Over the windows that show it best the error is {times:.2g} times the noise that the recordings' high-frequency floor shows"
-    if times > ABOVE_NOISE:
+    if times > study.settings.above_noise:
         return shown + ": more than noise is left."
-    return shown + ("." if floor_known(problem) else ", an upper bound, as part of that is motion.")
+    return shown + (
+        "." if floor_known(study.problem, study.settings) else ", an upper bound, as part of that is motion."
+    )
 
 
 def _name(attachment: Attachment) -> str:

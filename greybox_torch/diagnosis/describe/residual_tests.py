@@ -17,18 +17,10 @@ import torch
 from scipy.stats import norm
 
 from greybox_torch.diagnosis.describe.profiles import parameters_of
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.verdict import Trace
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.residuals import NORMAL_99, Correlation, feedback_correlation, input_correlation, whiteness
-
-EXCITED = 0.99
-"""Share of an input's power up to the end of its excited band."""
-
-CHANCE = 0.01
-"""Probability with which the largest of all correlations exceeds its bound where there is nothing to find."""
-
-RUNAWAY = 1e3
-"""Size of a free run, in sizes of the measurement, from which its errors are only its own."""
 
 
 @dataclass(frozen=True)
@@ -78,23 +70,23 @@ class Detection:
         return self.later.beyond
 
 
-def detect(problem: Problem, traces: Sequence[Trace]) -> tuple[Detection, ...]:
+def detect(problem: Problem, traces: Sequence[Trace], settings: DiagnosisSettings) -> tuple[Detection, ...]:
     """The detection for every trace of an estimation experiment whose free runs do not run away.
 
     Args:
         problem: the model as it stands on the experiments of ``traces``.
     """
     records = problem.records
-    looked = [t for t in traces if t.role == "estimation" and len(records.u) and _followed(t)]
+    looked = [t for t in traces if t.role == "estimation" and len(records.u) and _followed(t, settings.runaway)]
     first = 1 if _acts_at_once(problem) else 0
     inputs = (records.u[:, records.span(records.names.index(t.experiment))] for t in looked)
-    return tuple(_detection(t, u, len(looked), first) for t, u in zip(looked, inputs, strict=True))
+    return tuple(_detection(t, u, len(looked), first, settings) for t, u in zip(looked, inputs, strict=True))
 
 
-def excited_band(signal: np.ndarray, sample_time: float) -> float:
-    """The frequency (Hz) below which an input (N,) has :data:`EXCITED` of its power, its mean left out."""
+def excited_band(signal: np.ndarray, sample_time: float, share: float) -> float:
+    """The frequency (Hz) below which an input (N,) has a ``share`` of its power, its mean left out."""
     power = np.cumsum(np.abs(np.fft.rfft(signal - signal.mean())) ** 2)
-    index = int(np.searchsorted(power, EXCITED * power[-1]))
+    index = int(np.searchsorted(power, share * power[-1]))
     return float(np.fft.rfftfreq(len(signal), sample_time)[index])
 
 
@@ -106,31 +98,31 @@ def _acts_at_once(problem: Problem) -> bool:
     return problem.records.hold != "zoh" or bool((y != y[:, :1]).any())
 
 
-def _followed(trace: Trace) -> bool:
+def _followed(trace: Trace, runaway: float) -> bool:
     """Whether the free runs stay with the measurement, by orders of magnitude, and there is one."""
     largest = np.nanmax(np.abs(trace.measured), initial=0.0)
-    return largest > 0 and bool(np.max(np.abs([trace.refit, trace.augmented])) < RUNAWAY * largest)
+    return largest > 0 and bool(np.max(np.abs([trace.refit, trace.augmented])) < runaway * largest)
 
 
-def _detection(trace: Trace, inputs: np.ndarray, records: int, first: int) -> Detection:
+def _detection(trace: Trace, inputs: np.ndarray, records: int, first: int, settings: DiagnosisSettings) -> Detection:
     final, plain = trace.measured - trace.augmented, trace.measured - trace.refit
     step, tests = float(np.median(np.diff(trace.time))), records * len(inputs)
-    band = max(excited_band(signal, step) for signal in inputs)
+    band = max(excited_band(signal, step, settings.excited_share) for signal in inputs)
     answers = (feedback_correlation(final, signal) for signal in inputs)
-    later = _worst([_largest(c, c.lags >= first, tests) for c in answers])
+    later = _worst([_largest(c, c.lags >= first, tests, settings.chance) for c in answers])
     # the noise that a controller passes on to the input lies where nothing else excites it: there, correlation says nothing of physics
     reach = band * step if later.beyond else np.inf
-    before, after = (_remains(errors, inputs, reach, records) for errors in (plain, final))
+    before, after = (_remains(errors, inputs, reach, records, settings.chance) for errors in (plain, final))
     return Detection(trace.experiment, trace.output, before, after, later, band)
 
 
-def _remains(errors: np.ndarray, inputs: np.ndarray, reach: float, records: int) -> Remains:
+def _remains(errors: np.ndarray, inputs: np.ndarray, reach: float, records: int, chance: float) -> Remains:
     of_themselves = whiteness(errors)
     kept = _up_to(errors, reach)
     with_inputs = [input_correlation(kept, _up_to(signal, reach)) for signal in inputs]
     return Remains(
-        _largest(of_themselves, of_themselves.lags > 0, records),
-        _worst([_largest(c, c.lags >= 0, records * len(inputs)) for c in with_inputs]),
+        _largest(of_themselves, of_themselves.lags > 0, records, chance),
+        _worst([_largest(c, c.lags >= 0, records * len(inputs), chance) for c in with_inputs]),
     )
 
 
@@ -143,10 +135,10 @@ def _up_to(signal: np.ndarray, reach: float) -> np.ndarray:
     return np.fft.irfft(spectrum, len(signal))
 
 
-def _largest(correlation: Correlation, lags: np.ndarray, tests: int) -> Largest:
+def _largest(correlation: Correlation, lags: np.ndarray, tests: int, chance: float) -> Largest:
     """The largest of some lags, with a bound for the largest of all lags of so many tests (Bonferroni)."""
     values = np.abs(correlation.values[lags])
-    wider = norm.isf(CHANCE / 2 / (tests * max(len(values), 1))) / NORMAL_99
+    wider = norm.isf(chance / 2 / (tests * max(len(values), 1))) / NORMAL_99
     return Largest(float(values.max(initial=0.0)), float(wider * correlation.bound))
 
 

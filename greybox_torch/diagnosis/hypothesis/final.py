@@ -7,18 +7,15 @@ from functools import partial
 
 import numpy as np
 
+from greybox_torch.diagnosis.hypothesis.above_noise import noise_over_windows
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.hypothesis.noise import noise_over_windows
 from greybox_torch.diagnosis.hypothesis.whole_records import coloured, from_windows, whole_runs
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimise
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.uncertainty import Uncertainty, of_information, uncertainty
 from greybox_torch.simulation.side_by_side import side_by_side
-
-SETTINGS = Settings(iterations=60, tolerance=1e-8)
-BEGINNING = Settings(iterations=12, tolerance=1e-3)
-"""How far the values of every window length are followed before the best of them goes on to the end."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +49,9 @@ class Final:
         return dict(zip(self.problem.free_names, map(float, both), strict=False))
 
 
-def finish(hypothesis: Hypothesis) -> Final:
+def finish(
+    hypothesis: Hypothesis, settings: DiagnosisSettings = DiagnosisSettings(), budget: SearchBudget = SearchBudget()
+) -> Final:
     """Fit whole records by simulation error, from the values of every window length and from the card's; the best of the results.
 
     Where the effects of a hypothesis leave noise alone over windows, what a free run leaves beyond it is a slow disturbance, and the errors
@@ -62,7 +61,7 @@ def finish(hypothesis: Hypothesis) -> Final:
     """
     problems = [from_windows(fit) for fit in reversed(hypothesis.fits)]
     runs = whole_runs(hypothesis, [*problems, _from_the_card(hypothesis)])
-    begun = side_by_side(partial(_descended, run, run.start, BEGINNING) for run in runs)
+    begun = side_by_side(partial(_descended, run, run.start, budget.record_first_iterations) for run in runs)
     best, cost = None, np.inf
     for run, optimum in zip(runs, begun, strict=True):
         if optimum is not None and optimum.model.cost < (1 - 1e-3) * cost:
@@ -70,9 +69,9 @@ def finish(hypothesis: Hypothesis) -> Final:
     if best is None:
         return from_longest_windows(hypothesis)
     run, point = best
-    ended = _descended(run, point, SETTINGS)
+    ended = _descended(run, point, budget.record_iterations)
     point = point if ended is None else ended.point
-    if hypothesis.effects and noise_over_windows(hypothesis):
+    if hypothesis.effects and noise_over_windows(hypothesis, settings):
         weighed = coloured([replace(run, problem=run.at(point)), replace(runs[0])])
         if weighed is not None:
             run, fit = weighed

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.noise import reaches_noise
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, carried_starts, fit_windows
@@ -19,24 +20,10 @@ from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 
-FACTORS = (1, 4, 16)
-"""Window lengths as multiples of the shortest, a 64th of the longest record: short windows forgive a wrong trajectory, long ones show
-slow effects. Multiples, so that the start states of short windows serve the long ones."""
-
-FIRST_SETTINGS = Settings(iterations=10, tolerance=3e-3, trials=5)
-WINDOW_SETTINGS = Settings(iterations=30, tolerance=3e-4, trials=6)
-RIVAL = 4.0
-"""How many times the best mean squared error a start may be at, after its first iterations, and still be followed."""
-
-MOST_TURNS, TURN_GAIN = 3, 0.03
-"""How often a fit is taken up again after carried states were brought along, and the gain from which that is worth another turn."""
-
-POLISH_SETTINGS = Settings(iterations=60, tolerance=1e-5, trials=6)
-
 
 @dataclass(frozen=True, eq=False)
 class Hypothesis:
-    """A model with some effects attached, fitted. Equal only to itself.
+    """A model with some effects attached, fitted; equal only to itself.
 
     With its simulator, which has tangents for the free parameters, and its window fits from short to long.
     """
@@ -70,11 +57,11 @@ def score_of(fits: Sequence[WindowFit], floor: float) -> float:
     return float(np.mean([np.log(f.mean_square + floor) for f in fits]))
 
 
-def lengths(problem: Problem) -> list[int]:
+def lengths(problem: Problem, budget: SearchBudget = SearchBudget()) -> list[int]:
     """Window lengths for a problem's records, in samples."""
     longest = int(problem.records.lengths.max())
-    shortest = max(20, round(longest / 64))
-    return [shortest * factor for factor in FACTORS if shortest * factor <= longest // 2] or [shortest]
+    shortest = max(budget.shortest_window, round(longest / budget.windows_of_longest))
+    return [shortest * factor for factor in budget.window_factors if shortest * factor <= longest // 2] or [shortest]
 
 
 def hypothesis(
@@ -86,7 +73,9 @@ def hypothesis(
     options: SimulationOptions,
     at: Sequence[int] | None = None,
     shorter: WindowFit | None = None,
-    settings: Settings = WINDOW_SETTINGS,
+    limits: Settings | None = None,
+    settings: DiagnosisSettings = DiagnosisSettings(),
+    budget: SearchBudget = SearchBudget(),
     simulator: Simulator | None = None,
     frozen: frozenset[str] = frozenset(),
 ) -> Hypothesis | None:
@@ -97,6 +86,7 @@ def hypothesis(
     Args:
         starts: parameter values by name, of the base and of the effects.
         at: window lengths; by default :func:`lengths`.
+        limits: how far the best of the starts is followed; by default ``budget.window_iterations``.
         shorter: a fit on shorter windows that the start states are taken from.
         options: of the simulator, where none is given.
         simulator: one made for this model and these ``frozen`` parameters before.
@@ -105,17 +95,17 @@ def hypothesis(
     model = augmented(base, effects, surroundings)
     problems = [without_free(problem_for(base, model, start), frozen) for start in starts]
     simulator = simulator or Simulator.of(model, problems[0].free_names, options)
-    fits: list[WindowFit] = []
-    for length in at or lengths(base):
+    limits, fits = limits or budget.window_iterations, []
+    for length in at or lengths(base, budget):
         trials = _distinct([*([fits[-1].problem] if fits else []), *problems])
-        fit = _best_fit(trials, simulator, length, shorter, settings)
+        fit = _best_fit(trials, simulator, length, shorter, limits, budget)
         if fit is None:
             return None
-        if fits and reaches_noise(base, fits[-1]) and not reaches_noise(base, fit):
-            fit = _states_first(fit, fits, simulator, length, settings)
+        if fits and reaches_noise(base, fits[-1], settings) and not reaches_noise(base, fit, settings):
+            fit = _states_first(fit, fits, simulator, length, limits, budget)
         fits.append(fit)
         shorter = fit
-    return Hypothesis(tuple(effects), model, simulator, tuple(fits), _floor(base), frozen)
+    return Hypothesis(tuple(effects), model, simulator, tuple(fits), _floor(base, settings), frozen)
 
 
 def without_free(problem: Problem, names: Collection[str]) -> Problem:
@@ -128,9 +118,9 @@ def augmented(base: Problem, effects: Sequence[Attachment], surroundings: Mappin
     return AugmentedModel(base.model, effects, surroundings) if effects else base.model
 
 
-def _floor(base: Problem) -> float:
+def _floor(base: Problem, settings: DiagnosisSettings) -> float:
     spread = np.nanstd(base.records.y, axis=1) * base.weights
-    return float(np.mean((1e-5 * spread) ** 2)) + 1e-300
+    return float(np.mean((settings.negligible_error * spread) ** 2)) + 1e-300
 
 
 def _best_fit(
@@ -138,19 +128,25 @@ def _best_fit(
     simulator: Simulator,
     length: int,
     shorter: WindowFit | None,
-    settings: Settings,
+    limits: Settings,
+    budget: SearchBudget,
 ) -> WindowFit | None:
     begin = partial(fit_windows, simulator=simulator, length=length, shorter=shorter)
-    begun = side_by_side(partial(begin, t, settings=FIRST_SETTINGS) for t in trials)
+    begun = side_by_side(partial(begin, t, settings=budget.first_iterations) for t in trials)
     found = sorted((fit for fit in begun if fit is not None), key=lambda f: f.mean_square)
     if not found:
         return None
-    ended = side_by_side(partial(continued, fit, simulator, length, settings) for fit in _apart(found))
+    ended = side_by_side(partial(continued, fit, simulator, length, limits, budget) for fit in _apart(found, budget))
     return min(ended, key=lambda f: f.mean_square)
 
 
 def _states_first(
-    fit: WindowFit, fits: Sequence[WindowFit], simulator: Simulator, length: int, settings: Settings
+    fit: WindowFit,
+    fits: Sequence[WindowFit],
+    simulator: Simulator,
+    length: int,
+    limits: Settings,
+    budget: SearchBudget,
 ) -> WindowFit:
     """``fit``, or a better one from the parameters that reached the noise on shorter windows, start states along those found first.
 
@@ -159,33 +155,34 @@ def _states_first(
     problem = fits[-1].problem
     fixed = replace(problem, free=np.zeros_like(problem.free))
     for shorter in fits:
-        begun = fit_windows(fixed, simulator, length, shorter=shorter, settings=settings)
-        again = begun and fit_windows(problem, simulator, length, starts=begun.starts, settings=settings)
+        begun = fit_windows(fixed, simulator, length, shorter=shorter, settings=limits)
+        again = begun and fit_windows(problem, simulator, length, starts=begun.starts, settings=limits)
         if again is not None:
-            fit = min(fit, continued(again, simulator, length, settings), key=lambda f: f.mean_square)
+            fit = min(fit, continued(again, simulator, length, limits, budget), key=lambda f: f.mean_square)
     return fit
 
 
-def _apart(found: Sequence[WindowFit]) -> list[WindowFit]:
+def _apart(found: Sequence[WindowFit], budget: SearchBudget) -> list[WindowFit]:
     """The best, and the next one that seems to be on its way to another optimum: being ahead early says little."""
     best = found[0]
     values = best.problem.values
     rivals = [
         f
         for f in found[1:]
-        if f.mean_square < RIVAL * best.mean_square and not np.allclose(f.problem.values, values, rtol=0.02)
+        if f.mean_square < budget.rival_start * best.mean_square
+        and not np.allclose(f.problem.values, values, rtol=0.02)
     ]
     return [best, *rivals[:1]]
 
 
-def continued(fit: WindowFit, simulator: Simulator, length: int, settings: Settings) -> WindowFit:
+def continued(fit: WindowFit, simulator: Simulator, length: int, limits: Settings, budget: SearchBudget) -> WindowFit:
     """The fit carried on to the end; where states are carried, in turns with bringing those along anew, while that gains anything."""
-    for _ in range(MOST_TURNS):
+    for _ in range(budget.most_turns):
         starts = carried_starts(fit.problem, simulator, fit.windows, fit.starts)
-        again = fit_windows(fit.problem, simulator, length, starts=starts, settings=settings)
+        again = fit_windows(fit.problem, simulator, length, starts=starts, settings=limits)
         if again is None or again.mean_square > fit.mean_square:
             break
-        gained, fit = again.mean_square < (1 - TURN_GAIN) * fit.mean_square, again
+        gained, fit = again.mean_square < (1 - budget.least_turn_gain) * fit.mean_square, again
         if not (gained and fit.problem.carried.any()):
             break
     return fit

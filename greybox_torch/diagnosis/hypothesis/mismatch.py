@@ -6,13 +6,14 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 
-def mismatch_share(fitted: Hypothesis) -> float:
+def mismatch_share(fitted: Hypothesis, settings: DiagnosisSettings) -> float:
     """Root mean square error beyond the noise, in units of the outputs' spread: the largest over the window lengths."""
     shares = []
     for fit in fitted.fits:
         spread = np.nanstd(fit.problem.records.y, axis=1) * fit.problem.weights
         whole = max(float(np.mean(spread**2)), 1e-300)
-        shares.append(np.sqrt(max(fit.mean_square - noise_floor(fit.problem), 0.0) / whole))
+        shares.append(np.sqrt(max(fit.mean_square - noise_floor(fit.problem, settings), 0.0) / whole))
     return float(max(shares))

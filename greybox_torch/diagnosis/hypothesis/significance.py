@@ -6,33 +6,28 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import reaches_noise
-
-LEAST_RATIO_SPREAD = 0.02
-"""Scatter of the log ratio of window energies below which differences between windows mean nothing."""
-
-FEWEST_WINDOWS = 8
-"""Windows that a standard error needs."""
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 
-def surely_better(worse: Hypothesis, better: Hypothesis) -> float:
+def surely_better(worse: Hypothesis, better: Hypothesis, settings: DiagnosisSettings) -> float:
     """How many standard errors ``better`` is better: by windows or, at the noise, by likelihood."""
-    return max(significance(worse, better), likelihood_ratio(worse, better))
+    return max(significance(worse, better, settings), likelihood_ratio(worse, better, settings))
 
 
-def likelihood_ratio(worse: Hypothesis, better: Hypothesis) -> float:
+def likelihood_ratio(worse: Hypothesis, better: Hypothesis, settings: DiagnosisSettings) -> float:
     """Standard errors by which the likelihood of white noise puts ``worse`` behind; zero where more than that is left."""
-    return float(np.sqrt(max(0.0, white_samples(better) * (worse.score - better.score))))
+    return float(np.sqrt(max(0.0, white_samples(better, settings) * (worse.score - better.score))))
 
 
-def white_samples(fitted: Hypothesis) -> int:
+def white_samples(fitted: Hypothesis, settings: DiagnosisSettings) -> int:
     """How many samples tell hypotheses apart by likelihood: all of them where this one leaves white noise alone, else none."""
     worst = max(fitted.fits, key=lambda fit: fit.mean_square)
-    if not reaches_noise(fitted.problem, worst):
+    if not reaches_noise(fitted.problem, worst, settings):
         return 0
     return int(np.sum(~np.isnan(fitted.problem.records.y)))
 
 
-def significance(before: Hypothesis, after: Hypothesis) -> float:
+def significance(before: Hypothesis, after: Hypothesis, settings: DiagnosisSettings) -> float:
     """How many standard errors the improvement is away from none: the largest over the window lengths.
 
     Judged over windows, so that errors which are correlated within a window count once: by the mean difference of the windows'
@@ -41,19 +36,22 @@ def significance(before: Hypothesis, after: Hypothesis) -> float:
     """
     best = 0.0
     for old, new in zip(before.fits, after.fits, strict=True):
-        if len(old.energies) >= FEWEST_WINDOWS:
+        if len(old.energies) >= settings.fewest_windows:
             least = 1e-12 * float(old.energies.max())
             ratio = np.log(np.maximum(old.energies, least)) - np.log(np.maximum(new.energies, least))
             best = max(
-                best, _standard_errors(old.energies - new.energies), _standard_errors(ratio), _standing_out(ratio)
+                best,
+                _standard_errors(old.energies - new.energies),
+                _standard_errors(ratio),
+                _standing_out(ratio, settings.least_ratio_spread),
             )
     return best
 
 
-def _standing_out(ratio: np.ndarray) -> float:
+def _standing_out(ratio: np.ndarray, least_spread: float) -> float:
     """How far the largest log ratio lies from the middle, in robust standard deviations, halved because it is the largest of many."""
     middle = float(np.median(ratio))
-    spread = 1.4826 * float(np.median(np.abs(ratio - middle))) + LEAST_RATIO_SPREAD
+    spread = 1.4826 * float(np.median(np.abs(ratio - middle))) + least_spread
     return 0.5 * (float(ratio.max()) - middle) / spread
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
-from greybox_torch.diagnosis.hypothesis.fit import POLISH_SETTINGS, Hypothesis, hypothesis
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, hypothesis
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.estimate.levenberg_marquardt import Settings
+from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment
 
 
@@ -16,12 +19,35 @@ def refitted(
 
     None where it cannot be simulated from any of them.
     """
+    return fit(study, effects, [start.values(), {**start.values(), **study.card}, *starts], start.fits[0])
+
+
+def polished(study: Study, fitted: Hypothesis, starts: Sequence[Mapping[str, float]] = ()) -> Hypothesis:
+    """``fitted`` refitted to convergence, also from further start values; the better of the two."""
+    simulator = None if fitted.frozen else fitted.simulator
+    again = fit(study, fitted.effects, [fitted.values(), *starts], fitted.fits[0], simulator=simulator)
+    return fitted if again is None or again.score > fitted.score else again
+
+
+def fit(
+    study: Study,
+    effects: Sequence[Attachment],
+    starts: Sequence[Mapping[str, float]],
+    shorter: WindowFit | None,
+    *,
+    limits: Settings | None = None,
+    **how: Any,
+) -> Hypothesis | None:
+    """:func:`hypothesis` of a study, by default to convergence."""
     return hypothesis(
         study.problem,
         effects,
         study.surroundings,
-        [start.values(), {**start.values(), **study.card}, *starts],
+        starts,
         options=study.options,
-        shorter=start.fits[0],
-        settings=POLISH_SETTINGS,
+        shorter=shorter,
+        limits=limits or study.budget.polish_iterations,
+        settings=study.settings,
+        budget=study.budget,
+        **how,
     )

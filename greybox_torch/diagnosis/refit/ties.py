@@ -13,10 +13,13 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.significance import white_samples
 from greybox_torch.diagnosis.hypothesis.whole_records import coloured, from_windows, whole_runs
-from greybox_torch.diagnosis.refit.rank import MOST_TIED, TIE, RankedCandidate
+from greybox_torch.diagnosis.refit.rank import RankedCandidate
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 
 
-def rank_by_likelihood(ranked: Sequence[RankedCandidate]) -> list[RankedCandidate]:
+def rank_by_likelihood(
+    ranked: Sequence[RankedCandidate], settings: DiagnosisSettings, budget: SearchBudget
+) -> list[RankedCandidate]:
     """``ranked`` with the named ones that tie at the noise in the order of their likelihood, less a price for every parameter.
 
     The price is half the logarithm of the number of samples. One whose free run is far from what its windows promise (a machine that is
@@ -26,14 +29,14 @@ def rank_by_likelihood(ranked: Sequence[RankedCandidate]) -> list[RankedCandidat
     """
     named = [r for r in ranked if not r.unknown]
     best = min(named, key=lambda r: r.fitted.score, default=None)
-    samples = 0 if best is None else white_samples(best.fitted)
+    samples = 0 if best is None else white_samples(best.fitted, settings)
     if best is None or not samples:
         return list(ranked)
-    tied = [r for r in named if r.fitted.score < best.fitted.score + TIE][:MOST_TIED]
+    tied = [r for r in named if r.fitted.score < best.fitted.score + settings.score_tie][: budget.most_tied]
     if len({r.leader.attachment.prefix for r in tied}) < 2:
         return list(ranked)
     costs = [_cost(r) for r in tied]
-    within = min(costs) + 0.5 * TIE * samples
+    within = min(costs) + 0.5 * settings.score_tie * samples
     weighed = {id(r): replace(r, cost=cost) for r, cost in zip(tied, costs, strict=True) if cost <= within}
     price = 0.5 * float(np.log(samples))
     in_turn = iter(sorted(weighed.values(), key=lambda r: (r.cost or 0.0) + price * r.size))

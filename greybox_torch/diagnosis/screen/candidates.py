@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.gravity import Gravity
@@ -15,9 +16,6 @@ from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Port
 from greybox_torch.model.ports import driving_body
-
-LEAST_RIPPLE_ORDER = 1.2
-"""Below this order a force periodic in an angle is gravity's, not ripple."""
 
 ANGLES = ("rad", "deg", "rev", "turn")
 """Beginnings of the units of angles: only on an angle does gravity repeat."""
@@ -46,7 +44,7 @@ def candidates(
     surroundings: Mapping[str, Surroundings],
     *,
     flexible: bool,
-    knots: int = 14,
+    knots: int = SearchBudget().knots,
 ) -> list[Attachment]:
     """Every mechanism of the library at every port that it fits (or, with ``flexible``, the unknown curves).
 
@@ -82,6 +80,7 @@ def periodic_candidates(
     shifts: Mapping[str, str],
     surroundings: Mapping[str, Surroundings],
     orders: Iterable[float],
+    least_ripple_order: float = DiagnosisSettings().least_ripple_order,
 ) -> list[Attachment]:
     """Periodic mechanisms at every port that they fit, at the given orders (gravity, order one, stands by itself)."""
     found = []
@@ -89,7 +88,7 @@ def periodic_candidates(
         for port in model.ports:
             if isinstance(port, Body):
                 found.append(attach(model, port.name, PositionDependentFriction(order)))
-                if order > LEAST_RIPPLE_ORDER or not _is_angle(surroundings[port.name]):
+                if order > least_ripple_order or not _is_angle(surroundings[port.name]):
                     found.append(attach(model, port.name, TorqueRipple(order)))
             elif isinstance(port, Coupling) and driving_body(model.ports) is not None:
                 shifted = shifts.get(port.name, "")

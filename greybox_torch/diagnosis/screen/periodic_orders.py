@@ -7,25 +7,21 @@ highest peaks, a coherent look over the record gives the order finely.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
 
 import numpy as np
 
 from greybox_torch.diagnosis.screen.score_test import Screen
+from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.linear_algebra import solve
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
-from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.ports import driving_body
 from greybox_torch.simulation.side_by_side import side_by_side
-from greybox_torch.simulation.simulator import SimulationOptions
-
-LEAST_PERIODS = 5.0
-"""Periods within the travel from which an effect is seen to repeat; anything slow could otherwise pass for periodic."""
 
 BATCH = 32
 """Orders looked at in one compiled pass."""
@@ -35,37 +31,33 @@ FAMILIES: tuple[type[Mechanism], ...] = (TorqueRipple, PositionDependentFriction
 
 
 def scan_orders(
-    base: GreyBoxModel,
-    accepted: Sequence[Attachment],
-    surroundings: Mapping[str, Surroundings],
-    free_names: Sequence[str],
-    fits: Sequence[WindowFit],
-    *,
-    options: SimulationOptions,
-    peaks: int = 2,
+    study: Study, accepted: Sequence[Attachment], free_names: Sequence[str], fits: Sequence[WindowFit]
 ) -> list[float]:
     """The most promising orders (periods per unit of position) of a periodic effect at the first body.
 
     Of every fit (they differ in window length), the two that explain most, best first.
     """
+    base, settings, budget = study.problem.model, study.settings, study.budget
     body = driving_body(base.ports)
     if body is None:
         return []
 
     def screen(family: type[Mechanism]) -> Screen:
         attachments = [Attachment(body.name, family(), position=body.name)] * BATCH
-        return Screen.of(base, accepted, attachments, surroundings, free_names, options)
+        return Screen.of(base, accepted, attachments, study.surroundings, free_names, study.options)
 
-    around = surroundings[body.name]
-    grids = [(fit, grid) for fit in fits if len(grid := _grid(around, fit)) >= 4]
+    around = study.surroundings[body.name]
+    grids = [(fit, grid) for fit in fits if len(grid := _grid(around, fit, study)) >= 4]
     screens = side_by_side(partial(screen, family) for family in FAMILIES) if grids else []
     pairs = [(one, fit, grid) for fit, grid in grids for one in screens]
-    peaks_of = side_by_side(partial(_peaks, *pair, peaks) for pair in pairs)
+    peaks_of = side_by_side(partial(_peaks, *pair, budget.order_peaks) for pair in pairs)
     orders = []
     for fit, _ in grids:
         own = [peak for (_, of, _), some in zip(pairs, peaks_of, strict=True) if of is fit for peak in some]
-        orders += distinct_orders(order for _, order in sorted(own, reverse=True))[:2]
-    return distinct_orders(orders)
+        orders += distinct_orders((order for _, order in sorted(own, reverse=True)), settings.orders_differ)[
+            : budget.order_peaks
+        ]
+    return distinct_orders(orders, settings.orders_differ)
 
 
 def _peaks(screen: Screen, fitted: WindowFit, grid: np.ndarray, count: int) -> list[tuple[float, float]]:
@@ -76,23 +68,25 @@ def _peaks(screen: Screen, fitted: WindowFit, grid: np.ndarray, count: int) -> l
     return [_refined(screen, fitted, float(grid[k]), step, starts) for k in _highest(scores, count)]
 
 
-def distinct_orders(orders: Iterable[float]) -> list[float]:
-    """Orders in the sequence given, without those within 5 % of one before."""
+def distinct_orders(orders: Iterable[float], differ: float) -> list[float]:
+    """Orders in the sequence given, without those that differ relatively by ``differ`` or less from one before."""
     kept: list[float] = []
     for order in orders:
-        if all(abs(order - other) > 0.05 * other for other in kept):
+        if all(abs(order - other) > differ * other for other in kept):
             kept.append(order)
     return kept
 
 
-def _grid(around: Surroundings, fitted: WindowFit) -> np.ndarray:
+def _grid(around: Surroundings, fitted: WindowFit, study: Study) -> np.ndarray:
     """Orders from a little above zero to what the sampling resolves, as fine as the travel within a window asks for."""
     position, speed = around.ranges["position"], around.ranges["speed"]
     travel = max(speed.rms * around.sample_time * fitted.windows.steps, 1e-9)
     highest = 1.0 / max(speed.rms * around.sample_time, 1e-12)
     one = 2 * np.pi / max(position.high - position.low, 1e-9)
     step = max(1.5 / travel, one / 2)
-    return np.arange(max(LEAST_PERIODS * one, step / 2), min(highest, 400 * step), step)
+    return np.arange(
+        max(study.settings.least_periods * one, step / 2), min(highest, study.budget.order_steps * step), step
+    )
 
 
 def _batches(grid: np.ndarray) -> list[np.ndarray]:
@@ -121,9 +115,9 @@ def _refined(screen: Screen, fitted: WindowFit, order: float, step: float, start
     width = step
     for _ in range(3):
         orders = np.linspace(max(best[1] - width, 1e-3), best[1] + width, BATCH)
-        looks = _at_orders(screen, orders).look(fitted, starts)
-        k = int(np.argmax([look.explained for look in looks]))
-        best = (looks[k].explained, float(orders[k]))
+        scores = _at_orders(screen, orders).scores(fitted, starts)
+        k = int(np.argmax([score.explained for score in scores]))
+        best = (scores[k].explained, float(orders[k]))
         width = 2.5 * width / BATCH
     return best
 

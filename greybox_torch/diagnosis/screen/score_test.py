@@ -47,7 +47,7 @@ class Screen:
 
     base: GreyBoxModel
     accepted: tuple[Attachment, ...]
-    looks: tuple[tuple[Attachment, Probe], ...]
+    probed: tuple[tuple[Attachment, Probe], ...]
     model: AugmentedModel
     simulator: Simulator
     directions: tuple[tuple[str, ...], ...]
@@ -63,18 +63,18 @@ class Screen:
         options: SimulationOptions,
     ) -> Screen:
         """Prepare the screen of ``attachments``."""
-        looks, labelled = [], []
+        probed, labelled = [], []
         for attachment in attachments:
             for probe in attachment.mechanism.probes(surroundings[attachment.port]):
-                looks.append((attachment, probe))
-                labelled.append(replace(attachment, label=f"#{len(looks)}"))
+                probed.append((attachment, probe))
+                labelled.append(replace(attachment, label=f"#{len(probed)}"))
         model = AugmentedModel(base, [*accepted, *labelled], surroundings, probed=labelled)
         directions = tuple(
-            tuple(f"{a.prefix}.{d}" for d in probe.directions) for a, (_, probe) in zip(labelled, looks, strict=True)
+            tuple(f"{a.prefix}.{d}" for d in probe.directions) for a, (_, probe) in zip(labelled, probed, strict=True)
         )
         zero = [name for group in directions for name in group]
         simulator = Simulator.of(model, [*free_names, *zero], options, at_zero=zero)
-        return Screen(base, tuple(accepted), tuple(looks), model, simulator, directions, tuple(free_names))
+        return Screen(base, tuple(accepted), tuple(probed), model, simulator, directions, tuple(free_names))
 
     @property
     def probes(self) -> Probes:
@@ -85,13 +85,13 @@ class Screen:
     def values(self, problem: Problem) -> np.ndarray:
         """Parameter vector of the screen's model: the problem's values, the probes' values, zero in the directions."""
         numbers = dict(zip(problem.names, problem.values, strict=True))
-        for group, (_, probe) in zip(self.directions, self.looks, strict=True):
+        for group, (_, probe) in zip(self.directions, self.probed, strict=True):
             prefix = group[0].rpartition(".")[0]
             numbers |= {f"{prefix}.{name}": value for name, value in probe.values.items()}
             numbers |= dict.fromkeys(group, 0.0)
         return np.array([numbers.get(p.name, p.value) for p in self.model.declared_parameters])
 
-    def look(self, fitted: WindowFit, starts: np.ndarray | None = None) -> list[ScreenScore]:
+    def scores(self, fitted: WindowFit, starts: np.ndarray | None = None) -> list[ScreenScore]:
         """Score every probe on windows whose parameters and start states were fitted.
 
         Args:
@@ -103,7 +103,7 @@ class Screen:
         base = np.arange(n_p)
         before = _energy(total, base, _solve(total, base, hold))
         results, at = [], n_p
-        for group, (attachment, probe) in zip(self.directions, self.looks, strict=True):
+        for group, (attachment, probe) in zip(self.directions, self.probed, strict=True):
             both = np.concatenate([base, np.arange(at, at + len(group))])
             at += len(group)
             size = _solve(total, both, hold)
@@ -113,11 +113,11 @@ class Screen:
 
     def with_probes(self, values: Sequence[Mapping[str, float]]) -> Screen:
         """The same compiled screen looking at other shapes: new values for every probe, in order."""
-        looks = tuple((a, replace(p, values={**p.values, **v})) for (a, p), v in zip(self.looks, values, strict=True))
-        return replace(self, looks=looks)
+        probed = tuple((a, replace(p, values={**p.values, **v})) for (a, p), v in zip(self.probed, values, strict=True))
+        return replace(self, probed=probed)
 
     def projected(self, fitted: WindowFit, starts: np.ndarray | None = None) -> Projected:
-        """Normal matrices of [parameters, probes, residual] with the window start states projected out; ``starts`` as in :meth:`look`."""
+        """Normal matrices of [parameters, probes, residual] with the window start states projected out; ``starts`` as in :meth:`scores`."""
         problem, windows = fitted.problem, fitted.windows
         values = self.values(problem)
         starts = self.starts(fitted) if starts is None else starts

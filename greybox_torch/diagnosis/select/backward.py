@@ -9,7 +9,7 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import significance
 from greybox_torch.diagnosis.refit.curve import absorbed
 from greybox_torch.diagnosis.refit.refitted import refitted
-from greybox_torch.diagnosis.select.choice import LEAST_SIGNIFICANCE, least_gain
+from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
@@ -22,7 +22,7 @@ def drop_superfluous(study: Study, state: SearchState) -> Stage[SearchState]:
     while True:
         refits = side_by_side(partial(_without, study, state, e) for e in state.effects)
         without = dict(zip((e.prefix for e in state.effects), refits, strict=True))
-        superfluous = next((h for h in refits if _made_up_for(state, h)), None)
+        superfluous = next((h for h in refits if _made_up_for(study, state, h)), None)
         if superfluous is None:
             state = replace(state, without=without)
             yield state
@@ -38,10 +38,14 @@ def drop(study: Study, state: SearchState, prefix: str) -> Stage[SearchState]:
     return (yield from drop_superfluous(study, state))
 
 
-def _made_up_for(state: SearchState, without: Hypothesis) -> bool:
+def _made_up_for(study: Study, state: SearchState, without: Hypothesis) -> bool:
     """Whether the other effects do as well alone."""
+    settings = study.settings
     gain = without.score - state.current.score
-    few = gain < least_gain(state.current) or significance(without, state.current) < LEAST_SIGNIFICANCE
+    few = (
+        gain < least_gain(state.current, settings)
+        or significance(without, state.current, settings) < settings.least_significance
+    )
     return len(state.effects) > 1 and few
 
 

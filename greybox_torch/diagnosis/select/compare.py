@@ -7,17 +7,12 @@ from dataclasses import dataclass
 from functools import partial
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.refit.rank import MOST_TIED, TIE, RankedCandidate, in_order, judged, polished
+from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order, judged
+from greybox_torch.diagnosis.refit.refitted import polished
 from greybox_torch.diagnosis.refit.restarts import restarts
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
-from greybox_torch.diagnosis.select.choice import LEAST_GAIN
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.simulation.side_by_side import side_by_side
-
-CLOSE = 0.7
-"""Share of the best gain from which a rival is polished before it is compared."""
-
-FRONT_RUNNERS = 3
 
 
 @dataclass(frozen=True)
@@ -39,29 +34,29 @@ def compare(
     Without the first, the order among close rivals would be the luck of their start values; without the second, an effect of next
     to no size could win merely because its refit got out of a local minimum that the parent sits in.
     """
-    if not ranked or ranked[0].gain < LEAST_GAIN:
+    if not ranked or ranked[0].gain < study.settings.least_gain:
         return Comparison(parent, tuple(ranked))
-    front = _front(ranked)
-    polish = side_by_side(
-        partial(_polished, study, r.fitted, restarts(screened, r, study.card, study.surroundings)) for r in front
-    )
+    front = _front(study, ranked)
+    polish = side_by_side(partial(_polished, study, r.fitted, restarts(study, screened, r)) for r in front)
     best = min(polish, key=lambda fitted: fitted.score)
     again = _polished(study, parent, [best.values(), {**best.values(), **study.card}])
     parent = again if again.score < parent.score else parent
     rest = [r for r in ranked if all(r is not one for one in front)]
     fitted = [*polish, *(r.fitted for r in rest)]
     pairs = zip([*front, *rest], fitted, strict=True)
-    return Comparison(parent, tuple(in_order([judged(r.leader, parent, one) for r, one in pairs])))
+    return Comparison(
+        parent, tuple(in_order([judged(r.leader, parent, one, study.settings) for r, one in pairs], study.settings))
+    )
 
 
-def _front(ranked: Sequence[RankedCandidate]) -> list[RankedCandidate]:
+def _front(study: Study, ranked: Sequence[RankedCandidate]) -> list[RankedCandidate]:
     """The first few that come near the best gain, and all that tie with it."""
-    tied = sum(not r.unknown and r.gain > ranked[0].gain - TIE for r in ranked)
+    tied = sum(not r.unknown and r.gain > ranked[0].gain - study.settings.score_tie for r in ranked)
     # Not always the first of the ranking: that has a price for every parameter.
-    close = [r for r in ranked if r.gain > CLOSE * ranked[0].gain]
-    return close[: max(FRONT_RUNNERS, min(tied, MOST_TIED))]
+    close = [r for r in ranked if r.gain > study.settings.polish_share * ranked[0].gain]
+    return close[: max(study.budget.front_runners, min(tied, study.budget.most_tied))]
 
 
 def _polished(study: Study, fitted: Hypothesis, starts: Sequence[dict[str, float]]) -> Hypothesis:
     study.working_on(f"polishing {' + '.join(e.prefix for e in fitted.effects) or 'the model as it stands'}")
-    return polished(study.problem, fitted, study.surroundings, starts)
+    return polished(study, fitted, starts)

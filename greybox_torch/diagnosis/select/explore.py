@@ -4,22 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
-from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.refit.rank import PARSIMONY
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
-from greybox_torch.diagnosis.select.choice import CURVE_MARGIN
+from greybox_torch.diagnosis.select.choice import priced_score
 from greybox_torch.diagnosis.select.forward import take_effects
 from greybox_torch.diagnosis.select.forward_step import forward_step
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import Stage, result_of
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
-
-LEAST_SHARE_PASSED_OVER = 0.5
-"""Share of the residual over the shortest windows from which what explains it is followed, whatever longer ones say."""
 
 
 def explore(study: Study, start: SearchState) -> Stage[SearchState]:
@@ -35,25 +31,21 @@ def explore(study: Study, start: SearchState) -> Stage[SearchState]:
     if passed is None or passed.attachment.prefix in first.prefixes:
         return first
     other, chosen_again = _from_given(study, start, first, passed)
-    if chosen_again and priced_score(other.current) <= priced_score(first.current) - CURVE_MARGIN:
+    price = partial(priced_score, settings=study.settings)
+    if chosen_again and price(other.current) <= price(first.current) - study.settings.curve_margin:
         return other
     return replace(first, plain=other.plain, named=other.named)
-
-
-def priced_score(fitted: Hypothesis) -> float:
-    """Score with a little for every parameter; lower is better."""
-    return fitted.score + PARSIMONY * int(fitted.problem.free.sum())
 
 
 def passed_over(study: Study, before: SearchState, done: SelectionStep) -> Candidate | None:
     """The named effect that explains most over the shortest windows, if what was taken explains far less of it."""
     if done.taken is None or done.taken.unknown:
         return None
-    shortest = done.screened[0]
-    found = [k for k in shortlist(done.screened, before.current.fits, study.surroundings, study.card) if not k.unknown]
+    shortest, settings = done.screened[0], study.settings
+    found = [k for k in shortlist(study, done.screened, before.current.fits) if not k.unknown]
     shares = {k.attachment.prefix: _explained(shortest, k.attachment) for k in found}
     best = max(found, key=lambda k: shares[k.attachment.prefix], default=None)
-    if best is None or shares[best.attachment.prefix] < LEAST_SHARE_PASSED_OVER:
+    if best is None or shares[best.attachment.prefix] < settings.passed_over_share:
         return None
     contained = [
         k
@@ -61,9 +53,16 @@ def passed_over(study: Study, before: SearchState, done: SelectionStep) -> Candi
         if k.attachment.port == best.attachment.port
         and k.attachment.mechanism.name in best.attachment.mechanism.generalises
     ]
-    best = next((k for k in contained if shares[k.attachment.prefix] > 0.9 * shares[best.attachment.prefix]), best)
+    best = next(
+        (
+            k
+            for k in contained
+            if shares[k.attachment.prefix] > settings.passed_over_simpler * shares[best.attachment.prefix]
+        ),
+        best,
+    )
     taken = _explained(shortest, done.taken.leader.attachment)
-    return best if taken < 0.5 * shares[best.attachment.prefix] else None
+    return best if taken < settings.passed_over_ratio * shares[best.attachment.prefix] else None
 
 
 def _from_given(study: Study, start: SearchState, first: SearchState, given: Candidate) -> tuple[SearchState, bool]:

@@ -5,19 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
+from greybox_torch.diagnosis.hypothesis.above_noise import only_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
-from greybox_torch.diagnosis.hypothesis.noise import ABOVE_NOISE, floor_known, only_noise, times_noise
-from greybox_torch.diagnosis.select.choice import CURVE_MARGIN, alone_at_noise
+from greybox_torch.diagnosis.hypothesis.noise import floor_known
+from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import Stage, only_if
 from greybox_torch.diagnosis.study import Study
-
-MOST_EFFECTS = 4
-
-NAMED_SHARE = 0.85
-"""Share of a free curve's gain (in the logarithm of the mean squared error) from which named effects stand for it: real friction is
-never exactly the law of a book."""
 
 
 def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> Stage[SearchState]:
@@ -26,7 +21,7 @@ def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> St
     Args:
         curves: whether free curves are offered.
     """
-    while len(state.effects) < MOST_EFFECTS and not _done(study, state):
+    while len(state.effects) < study.budget.most_effects and not _done(study, state):
         before = state
         state = yield from forward_step(study, before, curves=curves)
         if not state.took_one and _fine_curves_may_help(study, state, curves) and not little_is_left(study, state):
@@ -43,15 +38,17 @@ def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> St
 
 def _done(study: Study, state: SearchState) -> bool:
     """Whether noise alone is left, or so little that no effect can be a finding and none could be seen to complete the model."""
-    if mismatch_share(state.plain) < study.settings.least_mismatch:
+    settings = study.settings
+    if mismatch_share(state.plain, settings) < settings.least_mismatch:
         return True
-    hidden = little_is_left(study, state) and not floor_known(study.problem)
-    return hidden or only_noise(study.problem, state.current)
+    hidden = little_is_left(study, state) and not floor_known(study.problem, settings)
+    return hidden or only_noise(study.problem, state.current, settings)
 
 
 def _fine_curves_may_help(study: Study, state: SearchState, curves: bool) -> bool:
     """Where nothing pays and yet more than noise is left, curves fine enough for a narrow law are tried."""
-    return curves and not state.has_curve and times_noise(study.problem, state.current) > ABOVE_NOISE
+    times = times_noise(study.problem, state.current, study.settings)
+    return curves and not state.has_curve and times > study.settings.above_noise
 
 
 def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -> Stage[SearchState]:
@@ -61,8 +58,8 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     """
     done = with_curve.steps[-1]
     start = replace(with_curve.at(done.parent), steps=before.steps)
-    branch = yield from only_if(_without_curves(study, start, done), partial(_as_far, with_curve=with_curve))
-    if _as_far(branch, with_curve):
+    branch = yield from only_if(_without_curves(study, start, done), partial(_as_far, study, with_curve))
+    if _as_far(study, with_curve, branch):
         return branch
     found = replace(branch, named=None) if len(branch.effects) > len(done.parent.effects) else with_curve.named
     return replace(with_curve, plain=branch.plain, named=found)
@@ -75,9 +72,9 @@ def _without_curves(study: Study, start: SearchState, done: SelectionStep) -> St
     return (yield from take_effects(study, branch, curves=False)) if branch.took_one else branch
 
 
-def _as_far(branch: SearchState, with_curve: SearchState) -> bool:
+def _as_far(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
     """Whether the effects of ``branch`` come as far as the curve of ``with_curve``, from the hypothesis that both build on."""
     before = with_curve.steps[-1].parent
     reached, ceiling = (before.score - s.current.score for s in (branch, with_curve))
-    share = 1.0 if alone_at_noise(with_curve.current, branch.current) else NAMED_SHARE
-    return reached >= min(ceiling - CURVE_MARGIN, share * ceiling)
+    share = 1.0 if alone_at_noise(with_curve.current, branch.current, study.settings) else study.settings.named_share
+    return reached >= min(ceiling - study.settings.curve_margin, share * ceiling)

@@ -10,8 +10,8 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order, rank
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
-from greybox_torch.diagnosis.screen.shortlist import Candidate, elsewhere, shortlist
-from greybox_torch.diagnosis.select.choice import CURVE_MARGIN, LEAST_SIGNIFICANCE, chosen, least_gain
+from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist
+from greybox_torch.diagnosis.select.choice import chosen, least_gain
 from greybox_torch.diagnosis.select.compare import compare
 from greybox_torch.diagnosis.select.finer_curve import with_finer_curve
 from greybox_torch.diagnosis.select.offered import screen_scores
@@ -19,18 +19,6 @@ from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
-
-LEAST_PART = 0.02
-"""Share of the plain model's mean squared error that a free curve has to remove at some window length."""
-
-HOPE = 0.5
-"""Share of that which a curve must promise in the screen to be refitted at all."""
-
-LEAST_BY_FINE_CURVE = 0.3
-"""Share of what named effects leave that a fine curve has to promise in the screen: forty knots always take up something."""
-
-LEAST_BESIDE_CURVE = 0.1
-"""Share of what a free curve leaves from which a further effect is worth refits, which are slow beside it."""
 
 Screened = tuple[tuple[ScreenScore, ...], ...]
 
@@ -45,27 +33,28 @@ def forward_step(study: Study, state: SearchState, *, curves: bool = True, fine:
     """
     screened = screen_scores(study, state, curves=curves and not state.has_curve, fine=fine)
     found = _worth_a_refit(study, state, screened, fine)
-    ranked = _refits(study, state, found)
-    further = _refits(study, state, _at_other_ports(study, state, screened, found, ranked))
-    return (yield from take_best(study, state, screened, in_order([*ranked, *further])))
+    ranked = rank(study, state.current, found)
+    further = rank(study, state.current, _at_other_ports(study, state, screened, found, ranked))
+    return (yield from take_best(study, state, screened, in_order([*ranked, *further], study.settings)))
 
 
 def take_best(
     study: Study, state: SearchState, screened: Screened, ranked: Sequence[RankedCandidate]
 ) -> Stage[SearchState]:
     """End a step: compare what was refitted, and take the best if it pays; a free curve is then drawn more finely."""
+    settings = study.settings
     compared = compare(study, state.current, screened, ranked)
     state = with_better_fit(state, compared.parent)
     sound = [
         r for r in compared.ranked if degenerate(r.leader.attachment, study.surroundings, r.fitted.values()) is None
     ]
-    in_turn = rank_by_likelihood(sound)
-    paying = [r for r in in_turn if r.gain > least_gain(r.fitted) and r.significance > LEAST_SIGNIFICANCE]
+    in_turn = rank_by_likelihood(sound, settings, study.budget)
+    paying = [
+        r for r in in_turn if r.gain > least_gain(r.fitted, settings) and r.significance > settings.least_significance
+    ]
     if little_is_left(study, state):
-        paying = [r for r in paying if completes(r.fitted)]
-    taken = chosen(
-        [r for r in paying if not r.unknown or substantial(state, r)], state.plain, study.settings.least_size
-    )
+        paying = [r for r in paying if completes(r.fitted, settings)]
+    taken = chosen([r for r in paying if not r.unknown or substantial(study, state, r)], state.plain, settings)
     step = SelectionStep(screened, state.current, tuple(in_turn), taken)
     state = replace(state.at(state.current if taken is None else taken.fitted), steps=(*state.steps, step))
     yield state
@@ -74,7 +63,8 @@ def take_best(
 
 def little_is_left(study: Study, state: SearchState) -> bool:
     """Whether what the effects so far leave of the mismatch is less than a finding is."""
-    return bool(state.effects) and remaining_share(state.plain, state.current) < study.settings.least_size
+    settings = study.settings
+    return bool(state.effects) and remaining_share(state.plain, state.current, settings) < settings.least_size
 
 
 def with_better_fit(state: SearchState, fitted: Hypothesis) -> SearchState:
@@ -84,38 +74,32 @@ def with_better_fit(state: SearchState, fitted: Hypothesis) -> SearchState:
     return replace(state.at(fitted), plain=state.plain if fitted.effects else fitted)
 
 
-def substantial(state: SearchState, curve: RankedCandidate) -> bool:
+def substantial(study: Study, state: SearchState, curve: RankedCandidate) -> bool:
     """Whether a free curve explains a part of the whole mismatch that counts, and not what a named law lacks to be the machine's.
 
     By less than the margin it would give way to names, or to nothing where no name pays.
     """
     fits = zip(state.plain.fits, state.current.fits, curve.fitted.fits, strict=True)
-    return curve.gain > CURVE_MARGIN and any(
-        b.mean_square - a.mean_square > LEAST_PART * p.mean_square for p, b, a in fits
+    return curve.gain > study.settings.curve_margin and any(
+        b.mean_square - a.mean_square > study.settings.least_curve_share * p.mean_square for p, b, a in fits
     )
 
 
 def _worth_a_refit(study: Study, state: SearchState, screened: Screened, fine: bool) -> list[Candidate]:
     """The shortlist, without what promises too little for the time that its refits take."""
-    least = LEAST_BY_FINE_CURVE if fine and state.effects else LEAST_BESIDE_CURVE if state.has_curve else 0.0
-    found = shortlist(screened, state.current.fits, study.surroundings, study.card)
-    return [k for k in found if k.explained >= least and (not k.unknown or _promising(state, k))]
+    least, settings = 0.0, study.settings
+    if fine and state.effects:
+        least = settings.least_screen_share_of_fine_curve
+    elif state.has_curve:
+        least = settings.least_screen_share_beside_curve
+    found = shortlist(study, screened, state.current.fits)
+    return [k for k in found if k.explained >= least and (not k.unknown or _promising(study, state, k))]
 
 
-def _promising(state: SearchState, curve: Candidate) -> bool:
+def _promising(study: Study, state: SearchState, curve: Candidate) -> bool:
     """Whether the screen leaves hope that a free curve is substantial: its refits are the slowest of all."""
     left = (c.mean_square / p.mean_square for p, c in zip(state.plain.fits, state.current.fits, strict=True))
-    return curve.explained * max(left) > HOPE * LEAST_PART
-
-
-def _refits(study: Study, state: SearchState, found: Sequence[Candidate]) -> list[RankedCandidate]:
-    return rank(
-        study.problem,
-        state.current,
-        found,
-        study.surroundings,
-        progress=study.working_on,
-    )
+    return curve.explained * max(left) > study.settings.curve_promise * study.settings.least_curve_share
 
 
 def _at_other_ports(
@@ -127,7 +111,11 @@ def _at_other_ports(
 ) -> list[Candidate]:
     """The best named law at the ports where the screen did not put it among the first, if it pays."""
     best = next((r for r in ranked if not r.unknown), None)
-    if best is None or best.gain < least_gain(best.fitted) or best.significance < LEAST_SIGNIFICANCE:
+    if (
+        best is None
+        or best.gain < least_gain(best.fitted, study.settings)
+        or best.significance < study.settings.least_significance
+    ):
         return []
     known = [k.attachment for k in found]
-    return elsewhere(best.leader.attachment, known, screened, state.current.fits, study.surroundings, study.card)
+    return at_other_ports(study, best.leader.attachment, known, screened, state.current.fits)

@@ -8,14 +8,10 @@ from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.screen.candidates import candidates, periodic_candidates
 from greybox_torch.diagnosis.screen.periodic_orders import distinct_orders, scan_orders
 from greybox_torch.diagnosis.screen.score_test import Screen, ScreenScore
-from greybox_torch.diagnosis.select.choice import LEAST_GAIN
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.simulation.side_by_side import side_by_side
-
-FINE_KNOTS = 40
-"""Knots of the curves that are tried when nothing else pays."""
 
 
 def screen_scores(study: Study, state: SearchState, *, curves: bool, fine: bool) -> tuple[tuple[ScreenScore, ...], ...]:
@@ -36,7 +32,7 @@ def screen_scores(study: Study, state: SearchState, *, curves: bool, fine: bool)
         at.problem.free_names,
         study.options,
     )
-    return tuple(tuple(scores) for scores in side_by_side(partial(screen.look, fit) for fit in at.fits))
+    return tuple(tuple(scores) for scores in side_by_side(partial(screen.scores, fit) for fit in at.fits))
 
 
 def _is_there(offered: Attachment, effects: tuple[Attachment, ...]) -> bool:
@@ -48,30 +44,29 @@ def _is_there(offered: Attachment, effects: tuple[Attachment, ...]) -> bool:
 
 
 def _fine_curves(study: Study) -> list[Attachment]:
-    return candidates(study.problem.model, study.shifts, study.surroundings, flexible=True, knots=FINE_KNOTS)
+    return candidates(
+        study.problem.model, study.shifts, study.surroundings, flexible=True, knots=study.budget.fine_knots
+    )
 
 
 def _offered(study: Study, state: SearchState, curves: bool) -> list[Attachment]:
     model, at = study.problem.model, state.current
-    over = [f for f in at.fits if f.mean_square > noise_floor(study.problem)] or at.fits
-    scanned = scan_orders(
-        model,
-        at.effects,
-        study.surroundings,
-        at.problem.free_names,
-        over[:2],
-        options=study.options,
-    )
-    orders = distinct_orders([*scanned, *orders_before(state)])
+    over = [f for f in at.fits if f.mean_square > noise_floor(study.problem, study.settings)] or at.fits
+    scanned = scan_orders(study, at.effects, at.problem.free_names, over[:2])
+    orders = distinct_orders([*scanned, *orders_before(study, state)], study.settings.orders_differ)
     return [
         *candidates(model, study.shifts, study.surroundings, flexible=False),
-        *periodic_candidates(model, study.shifts, study.surroundings, orders),
-        *(candidates(model, study.shifts, study.surroundings, flexible=True) if curves else []),
+        *periodic_candidates(model, study.shifts, study.surroundings, orders, study.settings.least_ripple_order),
+        *(
+            candidates(model, study.shifts, study.surroundings, flexible=True, knots=study.budget.knots)
+            if curves
+            else []
+        ),
     ]
 
 
-def orders_before(state: SearchState) -> list[float]:
+def orders_before(study: Study, state: SearchState) -> list[float]:
     """Orders that refits of earlier steps came to: what is there now may hide the one that is right from a scan."""
-    ranked = [r for done in state.steps for r in done.ranked if r.gain > LEAST_GAIN]
+    ranked = [r for done in state.steps for r in done.ranked if r.gain > study.settings.least_gain]
     values = ((r.fitted.values(), f"{r.leader.attachment.prefix}.order") for r in ranked)
     return [found[name] for found, name in values if name in found]

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from greybox_torch.diagnosis.hypothesis.fit import POLISH_SETTINGS, hypothesis
 from greybox_torch.diagnosis.hypothesis.window_errors import window_errors
+from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.errors import NumericalError
@@ -24,7 +24,7 @@ def fit_plain_model(study: Study) -> tuple[Study, SearchState]:
     """
     study.report("refitting the model as it stands")
     model = study.problem.model
-    plain = hypothesis(study.problem, (), {}, [study.card], options=study.options, settings=POLISH_SETTINGS)
+    plain = fit(study, (), [study.card], None)
     if plain is None:
         raise NumericalError(
             f"simulating {model.title}: the simulation overflows even over windows of a 64th of the record; "

@@ -10,31 +10,32 @@ from __future__ import annotations
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.hypothesis.noise import ABOVE_NOISE, noise_floor, reaches_noise
+from greybox_torch.diagnosis.hypothesis.noise import noise_floor, reaches_noise
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 
-def remaining_share(plain: Hypothesis, fitted: Hypothesis) -> float:
+def remaining_share(plain: Hypothesis, fitted: Hypothesis, settings: DiagnosisSettings) -> float:
     """The share of the plain model's squared error beyond the noise that ``fitted`` leaves: the largest over the window lengths."""
     shares = []
     for before, after in zip(plain.fits, fitted.fits, strict=True):
-        floor = noise_floor(after.problem)
+        floor = noise_floor(after.problem, settings)
         whole = before.mean_square - floor
         shares.append(max(after.mean_square - floor, 0.0) / whole if whole > 0 else 1.0)
     return max(shares, default=1.0)
 
 
-def completes(fitted: Hypothesis) -> bool:
+def completes(fitted: Hypothesis, settings: DiagnosisSettings) -> bool:
     """Whether a hypothesis leaves hardly more than noise at every window length, where the recordings tell how much of it there is."""
-    return all(reaches_noise(fit.problem, fit, ABOVE_NOISE) for fit in fitted.fits)
+    return all(reaches_noise(fit.problem, fit, settings, settings.above_noise) for fit in fitted.fits)
 
 
-def difference(plain: Hypothesis, simpler: Hypothesis, better: Hypothesis) -> float:
+def difference(plain: Hypothesis, simpler: Hypothesis, better: Hypothesis, settings: DiagnosisSettings) -> float:
     """By which share of the plain model's mismatch two hypotheses differ: the mean over the window lengths."""
     triples = zip(plain.fits, simpler.fits, better.fits, strict=True)
     return float(
         np.mean(
             [
-                (s.mean_square - b.mean_square) / max(p.mean_square - noise_floor(p.problem), 1e-300)
+                (s.mean_square - b.mean_square) / max(p.mean_square - noise_floor(p.problem, settings), 1e-300)
                 for p, s, b in triples
             ]
         )

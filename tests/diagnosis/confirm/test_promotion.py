@@ -52,13 +52,13 @@ def test_nothing_is_taken_where_none_would_be_left_or_none_shows_more(
 ) -> None:
     data = drag_at_speed(levels, drag)
     search = begun(data, motor)
-    assert promote_validation(data, search.state, HeldOut(data, search.problem, 1)) is None
+    assert promote_validation(search.study, data, search.state, HeldOut(data, search.study)) is None
 
 
 def test_the_experiment_that_shows_most_is_taken(drag_at_speed, motor, begun) -> None:
     data = drag_at_speed((SLOW, 1.0, FAST))
     search = begun(data, motor)
-    more = promote_validation(data, search.state, HeldOut(data, search.problem, 1))
+    more = promote_validation(search.study, data, search.state, HeldOut(data, search.study))
     assert more is not None and more.taken == data.recordings[2].name and more.error > 1.5
     assert [r.role for r in more.dataset.recordings] == ["estimation", "validation", "estimation"]
 
@@ -66,11 +66,11 @@ def test_the_experiment_that_shows_most_is_taken(drag_at_speed, motor, begun) ->
 def test_what_explains_the_others_is_left_as_it_is(drag_at_speed, motor, begun) -> None:
     data = drag_at_speed((FAST, FAST, FAST))
     search = begun(data, motor)
-    others = HeldOut(data, search.problem, 1)
-    assert promote_validation(data, search.state, others) is not None
+    others = HeldOut(data, search.study)
+    assert promote_validation(search.study, data, search.state, others) is not None
     complete = begun(data, motor)
     complete = complete.at(complete.refitted((attach(motor, "rotor", QuadraticDrag()),), complete.plain))
-    assert promote_validation(data, complete.state, others) is None
+    assert promote_validation(search.study, data, complete.state, others) is None
     search, complete = search.state, complete.state
     assert serves(others, search, complete) and not serves(others, complete, search)
     assert serves(others, complete, complete) is False and serves(others, search, search)
@@ -87,5 +87,5 @@ def test_what_only_the_last_experiment_shows_is_said_to_be_missing_without_a_nam
 def test_the_noise_of_other_experiments_is_the_unit_of_their_errors(drag_at_speed, motor, begun) -> None:
     data = drag_at_speed((FAST, FAST, SLOW), drag=0.0)
     search = begun(data, motor)
-    errors = HeldOut(data, search.problem, 1).times_noise(search.current)
+    errors = HeldOut(data, search.study).times_noise(search.current)
     assert errors == pytest.approx([1.0, 1.0], abs=0.1)

@@ -9,6 +9,7 @@ import pytest
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
 from greybox_torch.diagnosis.confirm.standing import least_size, sizes
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 
 @pytest.fixture
@@ -32,12 +33,12 @@ def fits(motor, begun, motor_data):
 
 def test_the_size_is_what_leaving_out_brings_back_of_the_mismatch_beyond_the_noise(fits) -> None:
     """Noise 0.02: a mean square of 4e-4 is nobody's."""
-    assert size(fits(1.0), fits(0.5), fits(4e-4)) == pytest.approx(0.5, rel=1e-2)
-    assert size(fits(1.0), fits(0.004), fits(4e-4)) == pytest.approx(0.0036, rel=2e-2)
+    assert size(fits(1.0), fits(0.5), fits(4e-4), DiagnosisSettings()) == pytest.approx(0.5, rel=1e-2)
+    assert size(fits(1.0), fits(0.004), fits(4e-4), DiagnosisSettings()) == pytest.approx(0.0036, rel=2e-2)
 
 
 def test_a_model_that_does_not_simulate_without_it_leaves_the_whole(fits) -> None:
-    assert size(fits(1.0), (), fits(4e-4)) == 1.0
+    assert size(fits(1.0), (), fits(4e-4), DiagnosisSettings()) == 1.0
 
 
 def test_what_held_out_experiments_do_not_exercise_is_measured_where_it_was_found(dead_zone_search, fits) -> None:
@@ -52,12 +53,9 @@ def test_what_held_out_experiments_do_not_exercise_is_measured_where_it_was_foun
 def test_small_effects_are_findings_only_where_noise_alone_is_left(motor, begun, motor_data) -> None:
     data = motor_data()
     found = begun(data, motor)
-    others = HeldOut(data, found.problem, found.study.options.substeps)
+    others = HeldOut(data, found.study)
     settings = found.study.settings
     assert least_size(found.study, found.state, others) == settings.least_size_at_noise
     wrong = motor_data(acting=lambda v: np.sign(v) * np.maximum(np.abs(v) - 1.0, 0.0))
     missing = begun(wrong, motor)
-    assert (
-        least_size(missing.study, missing.state, HeldOut(wrong, missing.problem, missing.study.options.substeps))
-        == settings.least_size
-    )
+    assert least_size(missing.study, missing.state, HeldOut(wrong, missing.study)) == settings.least_size

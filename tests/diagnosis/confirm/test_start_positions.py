@@ -11,9 +11,12 @@ from greybox_torch.diagnosis.confirm.held_out import _window_by_window
 from greybox_torch.diagnosis.confirm.start_positions import placed
 from greybox_torch.diagnosis.hypothesis.fit import augmented
 from greybox_torch.diagnosis.screen.candidates import attach
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.problem import problem_for
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.simulation.simulator import Simulator
+
+SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
 
 BEGINS = 0.4
 """Position at which the simulated motor begins, rad."""
@@ -38,7 +41,7 @@ def test_position_is_found_along_a_period(motor_data, motor, begun, samples) -> 
     ripple = attach(motor, "rotor", TorqueRipple(order))
     size = {"a": 0.03 * np.cos(phase), "b": -0.03 * np.sin(phase), "order": order}
     problem, simulator = restated(search, ripple, **size)
-    fit = placed(problem, simulator, 31)
+    fit = placed(problem, simulator, 31, BUDGET)
     assert fit is not None
     found = fit.problem.initial[0, 1]
     period = 2 * np.pi / order
@@ -49,7 +52,7 @@ def test_position_is_found_along_a_period(motor_data, motor, begun, samples) -> 
 def test_without_a_position_it_is_a_fit_of_the_windows(motor_data, motor, begun) -> None:
     search = begun(motor_data(torque=lambda q, v: 0.05), motor)
     problem, simulator = restated(search, attach(motor, "rotor", ConstantBias()), bias=0.05)
-    fit = placed(problem, simulator, 31)
+    fit = placed(problem, simulator, 31, BUDGET)
     assert fit is not None and fit.problem.initial.shape == (1, 1)
     assert np.sqrt(fit.mean_square) == pytest.approx(0.02, rel=0.1)
 

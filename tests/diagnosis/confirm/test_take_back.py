@@ -35,9 +35,9 @@ def chose_stribeck(motor_data, motor, begun) -> Any:
             effect = attach(motor, "rotor", law)
             sizes = {f"{effect.prefix}.{n}": v for n, v in (("F_c", 0.04), ("F_s", 0.02), ("v_0", 0.1), ("v_s", 0.8))}
             fitted = search.refitted((effect,), search.plain, [{**search.plain.values(), **sizes}])
-            ranked.append(judged(Candidate(effect, (), 0.9), search.plain, fitted))
+            ranked.append(judged(Candidate(effect, (), 0.9), search.plain, fitted, search.study.settings))
         step = SelectionStep((), search.plain, tuple(ranked), ranked[0])
-        return search.at(ranked[0].fitted, steps=(step,)), HeldOut(data, search.problem, 1)
+        return search.at(ranked[0].fitted, steps=(step,)), HeldOut(data, search.study)
 
     return make
 
@@ -63,7 +63,7 @@ def test_what_only_frees_the_other_parameters_is_idle_on_other_experiments(
     data = replace(biased, recordings=recordings)
     search, effect = begun(data, motor), attach(motor, "rotor", ConstantBias())
     state = search.at(search.refitted((effect,), search.plain), without={effect.prefix: search.plain}).state
-    held_out = HeldOut(data, search.problem, 1)
+    held_out = HeldOut(data, search.study)
     found = _idle(state, {effect.prefix: Gain(0.5, 0.1)}, held_out.fits(state.current), held_out)
     assert found == (None if elsewhere_too else effect.prefix)
     assert _idle(state, {effect.prefix: Gain(0.95, 0.1)}, held_out.fits(state.current), held_out) is None

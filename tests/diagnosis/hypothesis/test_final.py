@@ -7,10 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from greybox_torch.diagnosis.hypothesis.above_noise import noise_over_windows
 from greybox_torch.diagnosis.hypothesis.final import _from_the_card, finish
-from greybox_torch.diagnosis.hypothesis.noise import noise_over_windows
 from greybox_torch.diagnosis.screen.candidates import attach
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.forces import ConstantBias
+
+SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +52,7 @@ def test_drift_beside_an_effect_does_not_bend_the_machine(motor_data, motor, beg
     drift = 0.02 * np.sin(np.linspace(0.0, 9.0, 2000))
     search = begun(motor_data(acting=lambda v: v + 0.3 + drift, noise=0.05), motor)
     drifting = search.refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
-    assert drifting is not None and noise_over_windows(drifting)
+    assert drifting is not None and noise_over_windows(drifting, SETTINGS)
     loud = replace(drifting, fits=tuple(replace(f, mean_square=9.0 * f.mean_square) for f in drifting.fits))
     true = np.array([0.02, 0.05])
     weighed, plain = (finish(h) for h in (drifting, loud))

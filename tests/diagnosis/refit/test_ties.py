@@ -13,12 +13,15 @@ from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
 from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.diagnosis.screen.shortlist import Candidate
-from greybox_torch.diagnosis.select.posterior import CEILING, shared
+from greybox_torch.diagnosis.select.posterior import shared
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.actuator import InputBias
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.gravity import Gravity
 from greybox_torch.mechanisms.unknown import Unknown
+
+SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
 
 SAMPLES = 20_000
 
@@ -54,7 +57,7 @@ def test_a_parameter_more_must_be_worth_its_price(monkeypatch, ranked, gravity, 
     """Seen: a gain of 1.02 called gravity, whose second parameter took up a drift."""
     costing(monkeypatch, constant_bias=100.0, gravity=gravity)
     order = [ranked(Gravity(), 0.996, 2), ranked(ConstantBias(), 1.0)]
-    found = rank_by_likelihood(order)
+    found = rank_by_likelihood(order, SETTINGS, BUDGET)
     assert names(found)[0] == first
     assert {r.cost for r in found} == {100.0, gravity}
 
@@ -62,24 +65,34 @@ def test_a_parameter_more_must_be_worth_its_price(monkeypatch, ranked, gravity, 
 def test_what_does_not_tie_keeps_its_place_and_so_do_curves_and_what_goes_astray(monkeypatch, ranked) -> None:
     costing(monkeypatch, constant_bias=100.0, gravity=1e6, torque_ripple=0.0)
     curve, worse = ranked(Unknown("speed"), 0.99, 14), ranked(TorqueRipple(), 1.2, 3)
-    found = rank_by_likelihood([curve, ranked(Gravity(), 0.996, 2), ranked(ConstantBias(), 1.0), worse])
+    found = rank_by_likelihood(
+        [curve, ranked(Gravity(), 0.996, 2), ranked(ConstantBias(), 1.0), worse], SETTINGS, BUDGET
+    )
     assert names(found) == ["unknown", "gravity", "constant_bias", "torque_ripple"]
     assert [r.cost for r in found] == [None, None, 100.0, None]
     costing(monkeypatch, constant_bias=100.0, gravity=120.0)
-    found = rank_by_likelihood([curve, ranked(Gravity(), 0.996, 2), ranked(ConstantBias(), 1.0), worse])
+    found = rank_by_likelihood(
+        [curve, ranked(Gravity(), 0.996, 2), ranked(ConstantBias(), 1.0), worse], SETTINGS, BUDGET
+    )
     assert names(found) == ["unknown", "constant_bias", "gravity", "torque_ripple"]
 
 
 def test_above_the_noise_and_alone_nothing_is_weighed(ranked) -> None:
     loud = [ranked(Gravity(), 3.0, 2), ranked(ConstantBias(), 3.0)]
     alone = [ranked(Gravity(), 1.0, 2)]
-    assert rank_by_likelihood(loud) == loud and rank_by_likelihood(alone) == alone and rank_by_likelihood([]) == []
+    assert (
+        rank_by_likelihood(loud, SETTINGS, BUDGET) == loud
+        and rank_by_likelihood(alone, SETTINGS, BUDGET) == alone
+        and rank_by_likelihood([], SETTINGS, BUDGET) == []
+    )
 
 
 def test_the_probability_is_shared_by_likelihood(ranked) -> None:
     chosen, rival = replace(ranked(ConstantBias(), 1.0), cost=100.0), ranked(Gravity(), 0.996)
-    even, behind, far = (shared(chosen, [chosen, replace(rival, cost=c)])[0] for c in (100.0, 101.6, 140.0))
-    assert even == pytest.approx(CEILING / 2, abs=1e-3) and even < behind < far == pytest.approx(CEILING, abs=1e-3)
+    even, behind, far = (shared(chosen, [chosen, replace(rival, cost=c)], SETTINGS)[0] for c in (100.0, 101.6, 140.0))
+    assert even == pytest.approx(SETTINGS.highest_probability / 2, abs=1e-3) and even < behind < far == pytest.approx(
+        SETTINGS.highest_probability, abs=1e-3
+    )
 
 
 def test_one_law_by_two_names_is_equally_likely_on_a_machine_that_drifts(motor_data, motor, begun) -> None:
@@ -91,7 +104,7 @@ def test_one_law_by_two_names_is_equally_likely_on_a_machine_that_drifts(motor_d
         attachment = attach(motor, port, mechanism)
         fitted = search.refitted((attachment,), search.plain)
         assert fitted is not None
-        laws.append(judged(Candidate(attachment, (), 0.5), search.plain, fitted))
-    one, other = rank_by_likelihood(laws)
+        laws.append(judged(Candidate(attachment, (), 0.5), search.plain, fitted, SETTINGS))
+    one, other = rank_by_likelihood(laws, SETTINGS, BUDGET)
     assert one.cost is not None and other.cost == pytest.approx(one.cost, abs=0.5)
-    assert shared(one, [one, other])[0] == pytest.approx(CEILING / 2, abs=0.05)
+    assert shared(one, [one, other], SETTINGS)[0] == pytest.approx(SETTINGS.highest_probability / 2, abs=0.05)

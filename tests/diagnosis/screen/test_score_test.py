@@ -26,7 +26,7 @@ def screen(dead_zone_search) -> Screen:
 
 @pytest.fixture(scope="module")
 def looks(dead_zone_search, screen) -> list[list[ScreenScore]]:
-    return [screen.look(fit) for fit in dead_zone_search.plain.fits]
+    return [screen.scores(fit) for fit in dead_zone_search.plain.fits]
 
 
 def test_the_effect_that_is_there_explains_most(looks) -> None:
@@ -66,7 +66,7 @@ def test_size_of_the_effect_is_near_the_truth(looks) -> None:
 
 def test_no_effect_no_share(motor_data, motor, begun, screen) -> None:
     clean = begun(motor_data(), motor)
-    explained = [look.explained for fit in clean.plain.fits[:1] for look in screen.look(fit)]
+    explained = [look.explained for fit in clean.plain.fits[:1] for look in screen.scores(fit)]
     assert max(explained) < 0.02
 
 
@@ -79,4 +79,4 @@ def test_memories_of_accepted_effects_are_not_taken_for_positions(motor_data, mo
     assert fitted is not None
     offered = [attach(motor, "rotor", TorqueRipple(7.0))]
     screen = Screen.of(motor, (lag,), offered, search.surroundings, fitted.problem.free_names, search.study.options)
-    assert max(look.explained for look in screen.look(fitted.fits[0])) > 0.5
+    assert max(score.explained for score in screen.scores(fitted.fits[0])) > 0.5

@@ -7,6 +7,7 @@ import pytest
 
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import identity_of, shortlist
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.actuator import InputLag
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
@@ -26,9 +27,14 @@ def fit(stub):
 
 
 @pytest.fixture
-def found(dead_zone_search, fit):
-    card = {"J": 0.01, "b": 0.1}
-    return lambda *looks: shortlist(looks, [fit] * len(looks), dead_zone_search.surroundings, card)
+def found(dead_zone_search, fit, stub):
+    study = stub(
+        card={"J": 0.01, "b": 0.1},
+        surroundings=dead_zone_search.surroundings,
+        settings=DiagnosisSettings(),
+        budget=SearchBudget(),
+    )
+    return lambda *looks: shortlist(study, looks, [fit] * len(looks))
 
 
 def names(found) -> list[str]:

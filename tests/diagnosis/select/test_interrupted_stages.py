@@ -12,7 +12,10 @@ from greybox_torch.diagnosis.select import explore as exploring
 from greybox_torch.diagnosis.select import forward as advancing
 from greybox_torch.diagnosis.select import search as searching
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import Deadline, TimeIsUp, best_so_far, only_if, or_else, result_of
+
+SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
 
 
 def state(stub, score: float, *names: str, steps: tuple[Any, ...] = ()) -> SearchState:
@@ -75,7 +78,7 @@ def test_on_the_way_from_a_given_effect_the_first_way_stands(monkeypatch, stub, 
     monkeypatch.setattr(exploring, "passed_over", lambda *args: given)
     monkeypatch.setattr(exploring, "refitted", lambda *args: partial_way.current)
     monkeypatch.setattr(exploring, "forward_step", yielding(partial_way, then=KeyboardInterrupt))
-    assert best_so_far(exploring.explore(stub(), start), start) == (first, False)
+    assert best_so_far(exploring.explore(stub(settings=SETTINGS), start), start) == (first, False)
 
 
 @pytest.mark.parametrize(("score", "names_stand"), [(-0.5, False), (-0.9, True)])
@@ -89,7 +92,7 @@ def test_among_names_in_the_place_of_a_curve_the_curve_stands_until_they_come_as
     monkeypatch.setattr(advancing, "take_best", yielding(names))
     monkeypatch.setattr(advancing, "take_effects", yielding(then=KeyboardInterrupt))
     monkeypatch.setattr(advancing, "alone_at_noise", lambda *args: False)
-    best, ended = best_so_far(advancing._named_instead(stub(), before, with_curve), with_curve)
+    best, ended = best_so_far(advancing._named_instead(stub(settings=SETTINGS), before, with_curve), with_curve)
     assert not ended and best is (names if names_stand else with_curve)
 
 
@@ -100,5 +103,5 @@ def test_while_an_effect_is_chosen_once_more_the_whole_stands(monkeypatch, stub)
     monkeypatch.setattr(searching, "explore", yielding(whole))
     monkeypatch.setattr(searching, "drop_superfluous", yielding(whole))
     monkeypatch.setattr(searching, "forward_step", yielding(weaker, then=KeyboardInterrupt))
-    study = stub(working_on=lambda text: None)
+    study = stub(working_on=lambda text: None, settings=SETTINGS, budget=BUDGET)
     assert best_so_far(searching.search(study, state(stub, 0.0)), weaker) == (whole, False)

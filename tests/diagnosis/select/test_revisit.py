@@ -8,14 +8,16 @@ from functools import partial
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.hypothesis.fit import WINDOW_SETTINGS, _states_first, hypothesis, lengths
-from greybox_torch.diagnosis.hypothesis.noise import only_noise, reaches_noise
+from greybox_torch.diagnosis.hypothesis.above_noise import only_noise
+from greybox_torch.diagnosis.hypothesis.fit import _states_first, hypothesis, lengths
+from greybox_torch.diagnosis.hypothesis.noise import reaches_noise
 from greybox_torch.diagnosis.refit.curve import absorbed, finer
-from greybox_torch.diagnosis.refit.rank import judged, polished
+from greybox_torch.diagnosis.refit.rank import judged
+from greybox_torch.diagnosis.refit.refitted import polished
 from greybox_torch.diagnosis.refit.restarts import restarts
 from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
-from greybox_torch.diagnosis.screen.shortlist import MOST_TIED, NAMED_PER_LENGTH, Candidate, _with_ties, elsewhere
+from greybox_torch.diagnosis.screen.shortlist import Candidate, _with_ties, at_other_ports
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.compare import compare
@@ -23,6 +25,7 @@ from greybox_torch.diagnosis.select.forward_step import forward_step
 from greybox_torch.diagnosis.select.offered import orders_before, screen_scores
 from greybox_torch.diagnosis.select.search import beyond_doubt, revise
 from greybox_torch.diagnosis.select.state import SelectionStep
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.friction import QuadraticDrag, StribeckFriction, ViscousFriction
@@ -31,19 +34,22 @@ from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.mechanisms.varying_friction import FrictionWarmup
 
+SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
+
 
 def look(motor, explained: float) -> ScreenScore:
     return ScreenScore(attach(motor, "rotor", ConstantBias()), Probe(("bias",)), 31, explained, np.ones(1))
 
 
-def test_what_ties_with_the_best_look_is_followed_as_well(motor) -> None:
+def test_what_ties_with_the_best_look_is_followed_as_well(motor, stub) -> None:
+    study = stub(settings=SETTINGS, budget=BUDGET)
     few = [look(motor, 0.8 - 0.2 * k) for k in range(4)]
-    assert _with_ties(few) == few
+    assert _with_ties(study, few) == few
     clear = [look(motor, 0.9), *[look(motor, 0.3)] * 9]
-    assert len(_with_ties(clear)) == NAMED_PER_LENGTH
-    assert len(_with_ties([look(motor, 0.8)] * 6)) == 6
-    assert len(_with_ties([look(motor, 0.8)] * 30)) == MOST_TIED
-    assert _with_ties([]) == []
+    assert len(_with_ties(study, clear)) == BUDGET.named_per_length
+    assert len(_with_ties(study, [look(motor, 0.8)] * 6)) == 6
+    assert len(_with_ties(study, [look(motor, 0.8)] * 30)) == BUDGET.most_screen_ties
+    assert _with_ties(study, []) == []
 
 
 def test_an_early_wrong_choice_is_mended_beside_the_others(motor_data, motor, begun) -> None:
@@ -79,7 +85,7 @@ def test_hypotheses_keep_their_fits_where_the_order_is_not_that_of_the_gains(mot
     for law, gain in ((QuadraticDrag(), 0.5), (ConstantBias(), 0.1), (StribeckFriction(), 0.4)):
         effect = attach(motor, "rotor", law)
         fitted = search.refitted((effect,), search.plain)
-        ranked.append(replace(judged(Candidate(effect, (), 0.5), search.plain, fitted), gain=gain))
+        ranked.append(replace(judged(Candidate(effect, (), 0.5), search.plain, fitted, SETTINGS), gain=gain))
     again = compare(search.study, search.plain, [[look(motor, 0.5)]], ranked).ranked
     assert {r.leader.attachment.prefix for r in again} == {r.leader.attachment.prefix for r in ranked}
     assert all(r.fitted.effects == (r.leader.attachment,) for r in again)
@@ -89,10 +95,12 @@ def test_orders_of_earlier_rounds_are_looked_at_again(motor_data, motor, begun) 
     search = begun(motor_data(), motor)
     effect = attach(motor, "rotor", TorqueRipple(3.0))
     fitted = search.refitted((effect,), search.plain)
-    ranked = replace(judged(Candidate(effect, (), 0.5), search.plain, fitted), gain=0.5)
+    ranked = replace(judged(Candidate(effect, (), 0.5), search.plain, fitted, SETTINGS), gain=0.5)
     step = SelectionStep((), search.plain, (ranked, replace(ranked, gain=0.0)), None)
-    assert orders_before(replace(search.state, steps=(step,))) == [fitted.values()["rotor.torque_ripple.order"]]
-    assert orders_before(search.state) == []
+    assert orders_before(search.study, replace(search.state, steps=(step,))) == [
+        fitted.values()["rotor.torque_ripple.order"]
+    ]
+    assert orders_before(search.study, search.state) == []
 
 
 def test_friction_that_has_coulomb_friction_in_it_is_not_joined_by_it(motor_data, motor, begun) -> None:
@@ -111,7 +119,7 @@ def test_a_law_is_also_looked_for_where_the_screen_did_not_put_it_first(arm_sear
         [ScreenScore(a, Probe(("F_c",)), 31, 0.2, np.ones(1)) for a in places]
         + [ScreenScore(viscous, Probe(("c",)), 31, 0.3, np.ones(1))]
     ]
-    found = elsewhere(places[0], [places[0]], looks, fits[:1], arm_search.surroundings, {})
+    found = at_other_ports(arm_search.study, places[0], [places[0]], looks, fits[:1])
     assert {k.attachment.prefix for k in found} == {
         "gearbox.stribeck_friction",
         "arm.stribeck_friction",
@@ -123,8 +131,10 @@ def test_a_law_is_also_looked_for_where_the_screen_did_not_put_it_first(arm_sear
 def test_names_do_not_stand_for_a_curve_that_alone_leaves_nothing_but_noise(motor_data, motor, begun) -> None:
     search = begun(motor_data(torque=lambda q, v: 0.2, noise=0.1), motor)
     with_bias = search.refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
-    assert alone_at_noise(with_bias, search.plain)
-    assert not alone_at_noise(with_bias, with_bias) and not alone_at_noise(search.plain, search.plain)
+    assert alone_at_noise(with_bias, search.plain, SETTINGS)
+    assert not alone_at_noise(with_bias, with_bias, SETTINGS) and not alone_at_noise(
+        search.plain, search.plain, SETTINGS
+    )
 
 
 def test_frozen_parameters_keep_their_values_and_are_free_again_when_polished(dead_zone_search) -> None:
@@ -138,7 +148,7 @@ def test_frozen_parameters_keep_their_values_and_are_free_again_when_polished(de
     assert frozen is not None
     assert [frozen.values()[n] for n in heights] == [0.1] * 6
     assert not set(heights) & set(frozen.problem.free_names)
-    free = polished(search.problem, frozen, search.surroundings)
+    free = polished(search.study, frozen)
     assert set(heights) <= set(free.problem.free_names)
     assert free.score < frozen.score
 
@@ -146,14 +156,14 @@ def test_frozen_parameters_keep_their_values_and_are_free_again_when_polished(de
 @pytest.mark.parametrize(("torque", "expected"), [(None, True), (lambda q, v: -0.004 * v * abs(v), False)])
 def test_nothing_is_looked_for_below_the_noise(motor_data, motor, begun, torque, expected) -> None:
     search = begun(motor_data(torque=torque, noise=0.1), motor)
-    assert only_noise(search.problem, search.plain) == expected
+    assert only_noise(search.problem, search.plain, SETTINGS) == expected
 
 
 def test_noise_is_not_known_where_the_motion_is_rough(motor_data, motor, begun) -> None:
     """Differences of several orders do not agree: nothing says that this little error is only noise."""
     search = begun(motor_data(noise=1e-6), motor)
     tiny = tuple(replace(f, mean_square=1e-12) for f in search.plain.fits)
-    assert not only_noise(search.problem, replace(search.plain, fits=tiny))
+    assert not only_noise(search.problem, replace(search.plain, fits=tiny), SETTINGS)
 
 
 def test_what_no_rival_came_near_is_not_chosen_once_more(motor_data, motor, begun, monkeypatch) -> None:
@@ -164,10 +174,10 @@ def test_what_no_rival_came_near_is_not_chosen_once_more(motor_data, motor, begu
     first = state.effects[0]
     state = result_of(drop_superfluous(search.study, state))
     assert len(state.effects) == 2
-    monkeypatch.setattr("greybox_torch.diagnosis.select.search.shared", lambda chosen, ranked: (0.96, ()))
-    assert beyond_doubt(state, first) and result_of(revise(search.study, state)).current is state.current
-    monkeypatch.setattr("greybox_torch.diagnosis.select.search.shared", lambda chosen, ranked: (0.6, ()))
-    assert not beyond_doubt(state, first)
+    monkeypatch.setattr("greybox_torch.diagnosis.select.search.shared", lambda chosen, ranked, settings: (0.96, ()))
+    assert beyond_doubt(search.study, state, first) and result_of(revise(search.study, state)).current is state.current
+    monkeypatch.setattr("greybox_torch.diagnosis.select.search.shared", lambda chosen, ranked, settings: (0.6, ()))
+    assert not beyond_doubt(search.study, state, first)
 
 
 def test_shapes_that_explain_alike_are_tried_from_end_to_end(motor_data, motor, begun) -> None:
@@ -176,18 +186,18 @@ def test_shapes_that_explain_alike_are_tried_from_end_to_end(motor_data, motor, 
     mode = attach(motor, "rotor", AdditionalMode())
     shares = {1.0: 0.1, 2.0: 0.2, 4.0: 0.44, 8.0: 0.443, 16.0: 0.442, 32.0: 0.442, 64.0: 0.442}
     looks = [[ScreenScore(mode, Probe(("mass",), {"omega": w}), 31, share, np.ones(1)) for w, share in shares.items()]]
-    ranked = judged(Candidate(mode, (), 0.443), search.plain, search.plain)
-    tried = [start[f"{mode.prefix}.omega"] for start in restarts(looks, ranked, search.study.card, search.surroundings)]
+    ranked = judged(Candidate(mode, (), 0.443), search.plain, search.plain, SETTINGS)
+    tried = [start[f"{mode.prefix}.omega"] for start in restarts(search.study, looks, ranked)]
     assert tried == [4.0, 16.0, 64.0]
     looks[0][3] = ScreenScore(mode, Probe(("mass",), {"omega": 8.0}), 31, 0.9, np.ones(1))
-    assert restarts(looks, ranked, search.study.card, search.surroundings)[0][f"{mode.prefix}.omega"] == 8.0
+    assert restarts(search.study, looks, ranked)[0][f"{mode.prefix}.omega"] == 8.0
 
 
 def test_what_was_not_screened_has_no_further_shapes(motor, motor_data, begun) -> None:
     """A law that a learned curve suggested."""
     search = begun(motor_data(noise=0.1), motor)
-    ranked = judged(Candidate(attach(motor, "rotor", AdditionalMode()), (), 0.4), search.plain, search.plain)
-    assert restarts([[]], ranked, search.study.card, search.surroundings) == []
+    ranked = judged(Candidate(attach(motor, "rotor", AdditionalMode()), (), 0.4), search.plain, search.plain, SETTINGS)
+    assert restarts(search.study, [[]], ranked) == []
 
 
 def test_a_law_that_contains_what_is_there_is_chosen_in_its_place_not_beside_it(motor_data, motor, begun) -> None:
@@ -257,13 +267,13 @@ def test_long_windows_that_lost_the_way_begin_from_what_shorter_ones_found(motor
     """Seen: a transmission error found at the noise over 1240 samples, lost over 4960, and so taken back on other experiments."""
     search = begun(motor_data(noise=0.1), motor)
     *shorter, longest = search.plain.fits
-    assert all(reaches_noise(search.problem, fit) for fit in search.plain.fits)
+    assert all(reaches_noise(search.problem, fit, SETTINGS) for fit in search.plain.fits)
     lost = replace(
         longest, mean_square=9 * longest.mean_square, problem=longest.problem.with_values(3 * longest.problem.values)
     )
-    assert not reaches_noise(search.problem, lost)
+    assert not reaches_noise(search.problem, lost, SETTINGS)
     again = partial(_states_first, fits=shorter, simulator=search.plain.simulator, length=lengths(search.problem)[-1])
-    found = again(lost, settings=WINDOW_SETTINGS)
-    assert found.windows.steps == longest.windows.steps and reaches_noise(search.problem, found)
+    found = again(lost, limits=BUDGET.window_iterations, budget=BUDGET)
+    assert found.windows.steps == longest.windows.steps and reaches_noise(search.problem, found, SETTINGS)
     assert found.mean_square == pytest.approx(longest.mean_square, rel=1e-2)
-    assert again(longest, settings=WINDOW_SETTINGS).mean_square <= longest.mean_square
+    assert again(longest, limits=BUDGET.window_iterations, budget=BUDGET).mean_square <= longest.mean_square

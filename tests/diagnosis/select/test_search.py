@@ -11,15 +11,19 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
 from greybox_torch.diagnosis.screen.candidates import attach, candidates
 from greybox_torch.diagnosis.screen.score_test import ScreenScore, _sound
-from greybox_torch.diagnosis.screen.shortlist import CAUTIOUS, Candidate, shortlist
+from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
 from greybox_torch.diagnosis.select.choice import chosen, simplest
 from greybox_torch.diagnosis.select.forward_step import substantial
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction, ViscousFriction
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Body
 from greybox_torch.simulation.packed_normals import PackedNormals
+
+SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
+NONE_TOO_SMALL = DiagnosisSettings(least_size=0.0)
 
 WINDOWS = 40
 
@@ -46,19 +50,19 @@ def test_the_simpler_law_is_meant_where_the_richer_one_is_not_better_by_more_tha
     energies = rng.uniform(0.9, 1.1, WINDOWS)
     scattered = energies * rng.uniform(0.9, 1.1, WINDOWS)
     simple, rich = ranked(CoulombFriction(), energies), ranked(StribeckFriction(), scattered * 0.99)
-    assert simplest([rich, simple], simple.fitted, 0.0) is simple
+    assert simplest([rich, simple], simple.fitted, NONE_TOO_SMALL) is simple
     clearly = ranked(StribeckFriction(), 0.5 * scattered)
-    assert simplest([clearly, simple], simple.fitted, 0.0) is clearly
-    assert simplest([simple, rich], simple.fitted, 0.0) is simple
-    assert simplest([], simple.fitted, 0.0) is None
+    assert simplest([clearly, simple], simple.fitted, NONE_TOO_SMALL) is clearly
+    assert simplest([simple, rich], simple.fitted, NONE_TOO_SMALL) is simple
+    assert simplest([], simple.fitted, NONE_TOO_SMALL) is None
 
 
 def test_a_curve_is_taken_only_where_it_goes_much_farther(ranked) -> None:
     named = ranked(CoulombFriction(), np.full(WINDOWS, 1e-3))
     little, much = (ranked(Unknown("speed"), np.full(WINDOWS, e)) for e in (0.95e-3, 1e-9))
-    assert chosen([little, named], named.fitted, 0.0) is named
-    assert chosen([much, named], named.fitted, 0.0) is much
-    assert chosen([much], named.fitted, 0.0) is much
+    assert chosen([little, named], named.fitted, NONE_TOO_SMALL) is named
+    assert chosen([much, named], named.fitted, NONE_TOO_SMALL) is much
+    assert chosen([much], named.fitted, NONE_TOO_SMALL) is much
 
 
 def test_a_curve_is_also_refitted_from_a_part_of_it(dead_zone_search) -> None:
@@ -67,11 +71,11 @@ def test_a_curve_is_also_refitted_from_a_part_of_it(dead_zone_search) -> None:
     curve = attach(search.problem.model, "rotor", Unknown("speed"))
     probe = curve.mechanism.probes(search.surroundings["rotor"])[0]
     look = ScreenScore(curve, probe, 31, 0.4, np.arange(1.0, 15.0))
-    (leader,) = shortlist([[look]], [fit], search.surroundings, {})
+    (leader,) = shortlist(search.study, [[look]], [fit])
     whole, part = leader.starts[:2]
     heights = [f"{curve.prefix}.w_{k}" for k in range(14)]
     assert [whole[n] for n in heights] == list(look.size)
-    assert [part[n] for n in heights] == pytest.approx(CAUTIOUS * look.size)
+    assert [part[n] for n in heights] == pytest.approx(BUDGET.part_of_curve * look.size)
 
 
 def test_what_repeats_once_per_turn_is_not_offered_on_a_length(motor, dead_zone_search) -> None:
@@ -108,10 +112,10 @@ def test_what_a_law_lacks_is_not_a_curve_of_its_own(dead_zone_search, ranked) ->
     now = tuple(replace(f, mean_square=0.1) for f in search.plain.fits)
     state = replace(search.state, plain=replace(search.plain, fits=fits), current=replace(search.plain, fits=now))
     little, enough = (replace(ranked(Unknown("speed"), left - part), gain=0.2) for part in (0.018, 0.022))
-    assert not substantial(state, little)
-    assert substantial(state, enough)
+    assert not substantial(search.study, state, little)
+    assert substantial(search.study, state, enough)
     assert not substantial(
-        state, replace(enough, gain=0.09)
+        search.study, state, replace(enough, gain=0.09)
     )  # within the margin it would give way to names, or to nothing
 
 
@@ -121,17 +125,17 @@ def test_the_simpler_law_is_meant_where_the_richer_one_removes_little_more_of_th
     spread = np.random.default_rng(0).uniform(0.9, 1.1, WINDOWS)
     plain, simple = ranked(ViscousFriction(), 100 * spread), ranked(CoulombFriction(), 1.0 * spread)
     crumb, complete = ranked(StribeckFriction(), 0.5 * spread), ranked(StribeckFriction(), LOUD**2 * spread)
-    assert simplest([crumb, simple], plain.fitted, 0.02) is simple
-    assert simplest([crumb, simple], plain.fitted, 0.001) is crumb
-    assert simplest([complete, simple], plain.fitted, 0.02) is complete
+    assert simplest([crumb, simple], plain.fitted, DiagnosisSettings(least_size=0.02)) is simple
+    assert simplest([crumb, simple], plain.fitted, DiagnosisSettings(least_size=0.001)) is crumb
+    assert simplest([complete, simple], plain.fitted, DiagnosisSettings(least_size=0.02)) is complete
 
 
 @pytest.mark.parametrize("ranked", [LOUD], indirect=True)
 def test_what_is_left_is_counted_beyond_the_noise(ranked) -> None:
     plain, half, noise = (ranked(ViscousFriction(), np.full(WINDOWS, e)).fitted for e in (10.0, 5.0, 0.9 * LOUD**2))
-    assert remaining_share(plain, half) == pytest.approx(0.5, rel=1e-2)
-    assert remaining_share(plain, noise) == 0.0
-    assert completes(noise) and not completes(half)
+    assert remaining_share(plain, half, SETTINGS) == pytest.approx(0.5, rel=1e-2)
+    assert remaining_share(plain, noise, SETTINGS) == 0.0
+    assert completes(noise, SETTINGS) and not completes(half, SETTINGS)
     assert (
-        remaining_share(noise, noise) == 1.0
+        remaining_share(noise, noise, SETTINGS) == 1.0
     )  # where the plain model leaves noise alone there is no mismatch to have a share of

@@ -11,14 +11,17 @@ from greybox_torch.diagnosis.confirm.held_out import Gain, gain
 from greybox_torch.diagnosis.hypothesis.significance import likelihood_ratio, significance
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order
 from greybox_torch.diagnosis.screen.shortlist import Candidate
-from greybox_torch.diagnosis.select.choice import LEAST_GAIN, LEAST_GAIN_FAR_ABOVE_NOISE, least_gain
-from greybox_torch.diagnosis.select.posterior import CEILING, of_a_stopped_search, shared
+from greybox_torch.diagnosis.select.choice import least_gain
+from greybox_torch.diagnosis.select.posterior import of_a_stopped_search, shared
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.verdict import Effect
 from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorLag
+
+SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
 
 SAMPLES = 20_000
 
@@ -48,19 +51,19 @@ def test_chance_is_not_sure(fitted) -> None:
     for seed in range(200):
         before = energies(seed)
         after = before + np.random.default_rng(seed + 1000).normal(0, 0.01, 64)
-        high += significance(fitted(before), fitted(after)) > 3.0
+        high += significance(fitted(before), fitted(after), SETTINGS) > 3.0
     assert high <= 4
 
 
 def test_everywhere_is_sure(fitted) -> None:
     before = energies(0)
-    assert significance(fitted(before), fitted(0.7 * before)) > 10.0
+    assert significance(fitted(before), fitted(0.7 * before), SETTINGS) > 10.0
 
 
 def test_an_effect_that_varies_by_orders_of_magnitude_is_sure(fitted) -> None:
     before = energies(0) * np.geomspace(1.0, 1e6, 64)
     after = before * np.random.default_rng(1).uniform(0.6, 0.9, 64)
-    assert significance(fitted(before), fitted(after)) > 5.0
+    assert significance(fitted(before), fitted(after), SETTINGS) > 5.0
 
 
 def test_one_window_is_sure(fitted) -> None:
@@ -68,18 +71,20 @@ def test_one_window_is_sure(fitted) -> None:
     before = energies(0)
     after = before * noise
     before[20] += 5.0
-    assert significance(fitted(before), fitted(after)) > 3.0
+    assert significance(fitted(before), fitted(after), SETTINGS) > 3.0
 
 
 def test_worse_is_not_sure(fitted) -> None:
     before = energies(0)
-    assert significance(fitted(before), fitted(1.3 * before)) < 0.5
+    assert significance(fitted(before), fitted(1.3 * before), SETTINGS) < 0.5
 
 
 def test_few_windows_say_nothing_and_the_surest_length_counts(fitted) -> None:
     few, many = energies(0, 4), energies(1)
-    assert significance(fitted(few), fitted(0.1 * few)) == 0.0
-    assert significance(fitted(many, few), fitted(0.7 * many, few)) == significance(fitted(many), fitted(0.7 * many))
+    assert significance(fitted(few), fitted(0.1 * few), SETTINGS) == 0.0
+    assert significance(fitted(many, few), fitted(0.7 * many, few), SETTINGS) == significance(
+        fitted(many), fitted(0.7 * many), SETTINGS
+    )
 
 
 def test_share_that_is_gained_on_held_out_windows(fitted) -> None:
@@ -123,8 +128,8 @@ def ranked(mechanism, fitted, gained: float, window_energies, port="rotor", size
 def test_equal_rivals_share_equally(fitted) -> None:
     same = energies(0)
     chosen, twin = ranked(ConstantBias(), fitted, 1.0, same), ranked(CoulombAsymmetry(), fitted, 1.0, same)
-    probability, alternatives = shared(chosen, [chosen, twin])
-    assert probability == pytest.approx(CEILING / 2, abs=1e-3)
+    probability, alternatives = shared(chosen, [chosen, twin], SETTINGS)
+    assert probability == pytest.approx(SETTINGS.highest_probability / 2, abs=1e-3)
     assert [(a.mechanism, a.probability) for a in alternatives] == [("coulomb_asymmetry", probability)]
 
 
@@ -132,17 +137,20 @@ def test_a_far_rival_gets_none(fitted) -> None:
     same = energies(0)
     chosen, far = ranked(ConstantBias(), fitted, 1.0, same), ranked(CoulombFriction(), fitted, 0.5, 3.0 * same)
     useless = ranked(CoulombAsymmetry(), fitted, -0.1, same)
-    assert shared(chosen, [chosen, far, useless]) == (CEILING, ())
+    assert shared(chosen, [chosen, far, useless], SETTINGS) == (SETTINGS.highest_probability, ())
 
 
 def test_the_same_mechanism_at_another_order_is_no_rival_but_at_another_port_is(fitted) -> None:
     same = energies(0)
     chosen = ranked(TorqueRipple(4.0), fitted, 1.0, same)
-    assert shared(chosen, [chosen, ranked(TorqueRipple(5.0), fitted, 1.0, same)])[0] == CEILING
+    assert (
+        shared(chosen, [chosen, ranked(TorqueRipple(5.0), fitted, 1.0, same)], SETTINGS)[0]
+        == SETTINGS.highest_probability
+    )
     elsewhere = ranked(TorqueRipple(4.0), fitted, 1.0, same, port="load")
-    probability, alternatives = shared(chosen, [chosen, elsewhere])
+    probability, alternatives = shared(chosen, [chosen, elsewhere], SETTINGS)
     assert [(a.port, a.mechanism) for a in alternatives] == [("load", "torque_ripple")]
-    assert probability + alternatives[0].probability == pytest.approx(CEILING, abs=1e-3)
+    assert probability + alternatives[0].probability == pytest.approx(SETTINGS.highest_probability, abs=1e-3)
 
 
 def test_what_makes_a_model_simulate_gains_everything(fitted) -> None:
@@ -156,7 +164,7 @@ def test_a_stopped_search_is_not_sure_of_a_curve() -> None:
     """Names may not have been tried in its place."""
     curve = Effect("motor", "unknown", 0.97, ("speed",), "", {}, 0.5, (), None)
     named = replace(curve, mechanism="backlash", port="gear_spring")
-    less, same = of_a_stopped_search((curve, named))
+    less, same = of_a_stopped_search((curve, named), SETTINGS)
     assert less.probability == 0.5 and same == named
 
 
@@ -168,15 +176,15 @@ def test_at_the_noise_likelihood_tells_laws_apart_that_windows_do_not(fitted, no
     less = same * jitter * 0.9975 * same.mean() / (same * jitter).mean()
     small = ranked(ConstantBias(), fitted, 1.0, same, noise=noise)
     large = ranked(CoulombAsymmetry(), fitted, 1.0, less, size=2, noise=noise)
-    assert in_order([small, large])[0].leader.attachment.mechanism.name == first
-    away = likelihood_ratio(small.fitted, large.fitted)
+    assert in_order([small, large], SETTINGS)[0].leader.attachment.mechanism.name == first
+    away = likelihood_ratio(small.fitted, large.fitted, SETTINGS)
     assert away == pytest.approx(np.sqrt(-SAMPLES * np.log(0.9975)) if noise == 1.0 else 0.0)
-    assert (shared(large, [large, small])[0] > 0.9) == (noise == 1.0)
+    assert (shared(large, [large, small], SETTINGS)[0] > 0.9) == (noise == 1.0)
 
 
 def test_where_much_is_left_more_has_to_be_gained(fitted) -> None:
-    assert least_gain(fitted(energies(0), noise=1.0)) == LEAST_GAIN
-    assert least_gain(fitted(16.0 * energies(0), noise=1.0)) == LEAST_GAIN_FAR_ABOVE_NOISE
+    assert least_gain(fitted(energies(0), noise=1.0), SETTINGS) == SETTINGS.least_gain
+    assert least_gain(fitted(16.0 * energies(0), noise=1.0), SETTINGS) == SETTINGS.least_gain_far_above_noise
 
 
 def test_a_delay_of_the_input_is_a_delay_of_the_output(fitted) -> None:
@@ -184,11 +192,11 @@ def test_a_delay_of_the_input_is_a_delay_of_the_output(fitted) -> None:
     same = energies(0)
     chosen = ranked(InputDelay(), fitted, 1.0, same, port="actuator", noise=1.0)
     twin = ranked(OutputDelay(), fitted, 1.0, 1.01 * same, port="sensor", noise=1.0)
-    probability, alternatives = shared(chosen, [chosen, twin])
-    assert probability == pytest.approx(CEILING / 2, abs=1e-3) and len(alternatives) == 1
+    probability, alternatives = shared(chosen, [chosen, twin], SETTINGS)
+    assert probability == pytest.approx(SETTINGS.highest_probability / 2, abs=1e-3) and len(alternatives) == 1
     lag = ranked(SensorLag(), fitted, 1.0, 1.01 * same, port="sensor", noise=1.0)
-    assert shared(chosen, [chosen, lag])[0] > 0.9
+    assert shared(chosen, [chosen, lag], SETTINGS)[0] > 0.9
     chosen.fitted.problem.records.y = np.repeat(
         chosen.fitted.problem.records.y, 2, axis=0
     )  # another sensor sees no delay
-    assert shared(chosen, [chosen, twin])[0] > 0.9
+    assert shared(chosen, [chosen, twin], SETTINGS)[0] > 0.9
