@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from os import PathLike
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.errors import UserError
-from greybox_torch.estimate.comparison import Comparison, Score, compare
+from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.overflow import avoidance, first_overflow, remedies
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.residuals import Residuals, residuals_of
@@ -54,9 +54,9 @@ class Evaluation:
         }
 
     @property
-    def scores(self) -> tuple[Score, ...]:
-        """Fit in % and root mean square error of every output in every experiment."""
-        return self.comparison.scores
+    def scores(self) -> list[dict[str, Any]]:
+        """A row for every output of every experiment: fit in %, root mean square error in the output's unit."""
+        return [{**asdict(score), "unit": self.data.channels[score.output].unit} for score in self.comparison.scores]
 
     @property
     def simulated(self) -> dict[str, np.ndarray]:

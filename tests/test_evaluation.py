@@ -35,14 +35,15 @@ def test_true_values_leave_the_noise(motor_folder: Make) -> None:
     found = evaluate(data, saved(folder))
     assert found.values == TRUE
     assert found.overflow is None
-    assert [score.experiment for score in found.scores] == ["Steps", "More steps", "Sweep"]
-    assert [score.rmse for score in found.scores] == pytest.approx([0.02] * 3, rel=0.15)
+    assert found.scores[0].keys() == {"experiment", "role", "output", "fit", "rmse", "unit"}
+    assert [row["experiment"] for row in found.scores] == ["Steps", "More steps", "Sweep"]
+    assert [row["rmse"] for row in found.scores] == pytest.approx([0.02] * 3, rel=0.15)
     assert found.rates({"speed": 1.0})["speed"] == pytest.approx([-0.05 / 0.02])
     assert list(found.simulated) == ["Steps", "More steps", "Sweep"]
-    for recording, score, residuals in zip(data.recordings, found.scores, found.residuals, strict=True):
+    for recording, row, residuals in zip(data.recordings, found.scores, found.residuals, strict=True):
         errors = recording.signals["speed"] - found.simulated[recording.name][:, 0]
         assert np.array_equal(residuals.errors, errors)
-        assert score.rmse == pytest.approx(np.sqrt(np.mean(errors**2)))
+        assert row["rmse"] == pytest.approx(np.sqrt(np.mean(errors**2)))
         assert residuals.whiteness.largest < 1.6 * residuals.whiteness.bound  # the largest of 25 lags
         assert list(residuals.inputs) == ["voltage"]
 

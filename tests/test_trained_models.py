@@ -45,7 +45,7 @@ def test_they_reach_what_their_cards_say(machine: str, name: str) -> None:
     checkpoint = load_checkpoint(path)
     assert checkpoint.dataset == data.sha256
     told = [figure.get("augmented") or figure["refit"] for figure in checkpoint.figures]
-    for score, figure in zip(evaluate(data, path).scores, told, strict=True):
+    for row, figure in zip(evaluate(data, path).scores, told, strict=True):
         # where parameters were estimated, `greybox fit` counts the start states that were estimated with them
-        loose = 0.05 if name == "physics" and score.role == "estimation" else 0.005
-        assert score.rmse == pytest.approx(figure["rmse"], rel=loose)
+        loose = 0.05 if name == "physics" and row["role"] == "estimation" else 0.005
+        assert row["rmse"] == pytest.approx(figure["rmse"], rel=loose)

@@ -71,8 +71,8 @@ def _scores(runs: Mapping[str, Evaluation]) -> list[str]:
     rows = []
     for together in zip(*(run.scores for run in runs.values()), strict=True):
         first = together[0]
-        numbers = " | ".join(f"{score.fit:.2f} | {score.rmse:.4g}" for score in together)
-        rows.append(f"| {first.experiment} | {first.role} | {first.output} | {numbers} |")
+        numbers = " | ".join(f"{row['fit']:.2f} | {row['rmse']:.4g}" for row in together)
+        rows.append(f"| {first['experiment']} | {first['role']} | {first['output']} | {numbers} |")
     return rows
 
 

@@ -84,7 +84,7 @@ class ComparisonResult(Result):
 
     @property
     def _scores(self) -> dict[str, Any]:
-        return {name: run.scores for name, run in self.runs.items()}
+        return {name: run.comparison.scores for name, run in self.runs.items()}
 
     def _overflows(self) -> list[str]:
         """Of every model whose simulation overflows where that is, and what avoids it."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from greybox_torch.estimate.fit import FitResult as Estimation
+from greybox_torch.estimate.fit import Estimation
 
 
 @dataclass(frozen=True)

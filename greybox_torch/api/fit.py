@@ -19,7 +19,7 @@ from greybox_torch.api.arguments import (
 from greybox_torch.api.fit_result import FitResult
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Comparison, compare
-from greybox_torch.estimate.fit import FitResult as Estimation
+from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.fit import fit as estimate
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.identifiability import Unidentifiable, identifiability

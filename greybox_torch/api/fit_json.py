@@ -8,7 +8,7 @@ from typing import Any
 
 from greybox_torch.api.estimated import estimated_parameters, estimated_starts
 from greybox_torch.api.scores import Scores, scores_side_by_side
-from greybox_torch.estimate.fit import FitResult as Estimation
+from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.identifiability import Unidentifiable
 from greybox_torch.estimate.profile import LEVEL, THRESHOLD, Profile
 from greybox_torch.estimate.termination import Termination

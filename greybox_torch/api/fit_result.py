@@ -20,7 +20,7 @@ from greybox_torch.api.scores import print_scores, score_rows, score_table, scor
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Comparison
-from greybox_torch.estimate.fit import FitResult as Estimation
+from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.identifiability import Unidentifiable
 from greybox_torch.estimate.problem import with_card
 from greybox_torch.estimate.profile import Profile

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from greybox_torch.api.estimated import EstimatedStart, estimated_parameters, estimated_starts
 from greybox_torch.api.scores import print_substeps
-from greybox_torch.estimate.fit import FitResult as Estimation
+from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.profile import LEVEL, Profile
 from greybox_torch.estimate.termination import Termination
 from greybox_torch.report.tables import number, print_table

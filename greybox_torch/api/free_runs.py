@@ -29,7 +29,7 @@ def free_runs_json(data: DataSet, runs: Runs) -> dict[str, Any]:
         {
             "name": name,
             "model": run.model_name,
-            "fit": scores_json(run.scores),
+            "fit": scores_json(run.comparison.scores),
             "substeps": run.substeps,
             "overflow": run.overflow,
         }
@@ -64,7 +64,7 @@ def plot_free_runs(data: DataSet, runs: Runs, experiment: str | None = None) -> 
         ArgumentError: there is no such experiment.
     """
     simulated = {name: run.simulated for name, run in runs.items()}
-    return plot_simulated(data, simulated, {name: run.scores for name, run in runs.items()}, experiment)
+    return plot_simulated(data, simulated, {name: run.comparison.scores for name, run in runs.items()}, experiment)
 
 
 def plot_simulated(

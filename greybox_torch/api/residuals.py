@@ -46,7 +46,7 @@ class ResidualResult(Result):
     def scores(self) -> list[dict[str, Any]]:
         """A row for every output of every experiment: root mean square error, and every correlation with its 99 % bound."""
         rows = []
-        for test, score in zip(self.tests, self.run.scores, strict=True):
+        for test, score in zip(self.tests, self.run.comparison.scores, strict=True):
             row = {"experiment": score.experiment, "role": score.role, "output": score.output, "rmse": score.rmse}
             row |= {"unit": test.output.unit, "whiteness": test.whiteness.largest, "bound": test.whiteness.bound}
             for name, found in test.inputs.items():
@@ -62,7 +62,9 @@ class ResidualResult(Result):
             "schema": "greybox-residuals/1",
             "dataset": self.run.data.name,
             "model": {"name": self.name, "model": self.run.model_name},
-            "residuals": [_row_json(test, s.rmse) for test, s in zip(self.tests, self.run.scores, strict=True)],
+            "residuals": [
+                _row_json(test, s.rmse) for test, s in zip(self.tests, self.run.comparison.scores, strict=True)
+            ],
             "figure": str(folder / FIGURE),
         }
 

@@ -54,7 +54,7 @@ class SimulationResult(Result):
     @property
     def scores(self) -> list[dict[str, Any]]:
         """A row for every output of every experiment: fit in %, root mean square error in the output's unit."""
-        return score_rows(self.data, {self.name: self.run.scores})
+        return score_rows(self.data, {self.name: self.run.comparison.scores})
 
     @property
     def initial(self) -> dict[str, dict[str, float]]:
@@ -86,7 +86,7 @@ class SimulationResult(Result):
 
     def show(self, console: Console) -> None:
         console.print(Text(f"{self._title} with its start values", style="bold"))
-        print_scores(console, self.data, {self.name: self.run.scores})
+        print_scores(console, self.data, {self.name: self.run.comparison.scores})
         print_substeps(console, self.run.substeps)
 
     def files(self, folder: Path) -> dict[Path, str | bytes]:
@@ -99,7 +99,7 @@ class SimulationResult(Result):
         return plot_free_runs(self.data, {self.name: self.run}, experiment)
 
     def _repr_html_(self) -> str:
-        scores = {self.name: self.run.scores}
+        scores = {self.name: self.run.comparison.scores}
         shown = notebook.picture(self.plot(), "simulated and measured outputs over time")
         return notebook.page(self._title, notebook.table(*score_table(self.data, scores)), shown)
 

@@ -21,7 +21,7 @@ from greybox_torch.api.train_summary import parameter_table, print_training, tra
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Comparison
-from greybox_torch.estimate.fit import FitResult as Estimation
+from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.problem import with_card
 from greybox_torch.files import json_text
 from greybox_torch.mechanisms.stored import stored_effects

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Comparison, compare
-from greybox_torch.estimate.fit import FitResult as Estimation
+from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.model import GreyBoxModel

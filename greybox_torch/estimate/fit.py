@@ -20,7 +20,7 @@ from greybox_torch.simulation.simulator import Simulator
 
 
 @dataclass(frozen=True)
-class FitResult:
+class Estimation:
     """An estimate: the problem at its optimum and what is known about it.
 
     ``mse`` is the mean squared weighted error; ``fpe`` Akaike's final prediction error with d counting free parameters and free start
@@ -72,7 +72,7 @@ def fit(
     with_uncertainty: bool = True,
     starts: int | None = None,
     seed: int = 0,
-) -> FitResult:
+) -> Estimation:
     """Estimate the free parameters and start states of ``problem`` by simulation-error least squares.
 
     Start values that simulate the records tolerably are refined on whole records at once; others are first improved on short
@@ -101,19 +101,19 @@ def fit(
     return _result(found, problem.samples, with_uncertainty, weaknesses)
 
 
-def _unmoved(run: FreeRun, samples: int) -> FitResult:
+def _unmoved(run: FreeRun, samples: int) -> Estimation:
     here = run.quadratic(run.start)
     if here is None:
         raise overflow_error("simulating", run.problem, run.simulator)
     mse = 2 * here.cost / samples
-    return FitResult(run.problem, mse, mse, samples, 0, 1, Termination.nothing_free, None, run.simulator.substeps)
+    return Estimation(run.problem, mse, mse, samples, 0, 1, Termination.nothing_free, None, run.simulator.substeps)
 
 
-def _result(found: Descent, samples: int, with_uncertainty: bool, weaknesses: tuple[Unidentifiable, ...]) -> FitResult:
+def _result(found: Descent, samples: int, with_uncertainty: bool, weaknesses: tuple[Unidentifiable, ...]) -> Estimation:
     run, optimum = found.run, found.optimum
     mse = 2 * optimum.model.cost / samples
     share, problem = len(optimum.point) / samples, run.at(optimum.point)
-    return FitResult(
+    return Estimation(
         problem=problem,
         mse=mse,
         fpe=mse * (1 + share) / (1 - share),

@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from greybox_torch.errors import ArgumentError, did_you_mean
-from greybox_torch.estimate.fit import FitResult
+from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimise
 from greybox_torch.linear_algebra import least_squares
@@ -104,7 +104,7 @@ def check_profiled(names: Iterable[str], free: Iterable[str], declared: Iterable
             raise ArgumentError("profiles", name, f"this parameter is fixed; {expected}", option="profile")
 
 
-def profile(found: FitResult, simulator: Simulator, name: str, *, settings: Settings = SETTINGS) -> Profile:
+def profile(found: Estimation, simulator: Simulator, name: str, *, settings: Settings = SETTINGS) -> Profile:
     """The profile of the free parameter ``name`` around the estimate ``found``.
 
     The parameter is held at values that move away from the estimate, in steps that adapt to the rise, until the 95 % level is passed, a
@@ -198,7 +198,7 @@ class _Way:
         return rows
 
 
-def _colour(found: FitResult, index: int) -> float:
+def _colour(found: Estimation, index: int) -> float:
     """Variance for coloured residuals over the plain one: the parameter's own, or where the data do not determine it the others' median."""
     uncertainty = found.uncertainty
     if uncertainty is None:

@@ -9,7 +9,7 @@ import numpy as np
 import torch
 
 from greybox_torch.errors import UserError
-from greybox_torch.estimate.fit import FitResult
+from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.shifted_states import shifted_state
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
@@ -37,7 +37,7 @@ class Explanation:
     matches: tuple[Match, ...] = ()
     terms: tuple[NamedTerm, ...] = ()
     term: NamedTerm | None = None
-    result: FitResult | None = None
+    result: Estimation | None = None
 
     @property
     def sentence(self) -> str:

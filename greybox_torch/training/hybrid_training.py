@@ -12,7 +12,7 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.errors import UserError
-from greybox_torch.estimate.fit import FitResult
+from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.surroundings import survey
@@ -161,14 +161,14 @@ def _spread(problem: Problem) -> float:
     return float(np.sqrt(np.mean(np.nanvar(problem.records.y * problem.weights[:, None], axis=1))))
 
 
-def _result(polished: Polished, simulator: Simulator) -> FitResult:
+def _result(polished: Polished, simulator: Simulator) -> Estimation:
     """The hybrid's estimate in the form of any other; deviations allow for the weights, which the data seldom determine one by one."""
     problem, optimum = polished.problem, polished.optimum
     run = FreeRun(problem, simulator)
     here = run.quadratic(run.start)
     mse = float("inf") if here is None else 2.0 * here.cost / problem.samples
     share = len(run.start) / problem.samples
-    return FitResult(
+    return Estimation(
         problem=problem,
         mse=mse,
         fpe=mse * (1 + share) / (1 - share),

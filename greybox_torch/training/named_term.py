@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from greybox_torch.errors import NumericalError
-from greybox_torch.estimate.fit import FitResult, fit
+from greybox_torch.estimate.fit import Estimation, fit
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
@@ -71,7 +71,7 @@ def refitted_term(
     return NamedTerm(attachment, match, held_out, lost, best, simulator)
 
 
-def on_all_samples(term: NamedTerm, found: Trained) -> FitResult:
+def on_all_samples(term: NamedTerm, found: Trained) -> Estimation:
     """The term estimated once more, on everything that the network was trained on in the end.
 
     Raises:

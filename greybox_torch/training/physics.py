@@ -9,7 +9,7 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError, UserError
-from greybox_torch.estimate.fit import FitResult, fit
+from greybox_torch.estimate.fit import Estimation, fit
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.estimate.simulators import fine_enough
@@ -29,7 +29,7 @@ class Physics:
     curve where physics is missing, short windows hardly are, and so the hybrid begins with these.
     """
 
-    result: FitResult
+    result: Estimation
     values: np.ndarray
 
 
@@ -118,7 +118,7 @@ def on_whole_records(windows: WindowFit, problem: Problem) -> Problem:
     return problem.with_values(windows.problem.values, initial)
 
 
-def _fitted(problem: Problem, simulator: Simulator, seed: int) -> FitResult:
+def _fitted(problem: Problem, simulator: Simulator, seed: int) -> Estimation:
     return fit(problem, simulator=simulator, seed=seed, starts=1)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
-from greybox_torch.estimate.fit import FitResult
+from greybox_torch.estimate.fit import Estimation
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import Signals
 from greybox_torch.training.curriculum import Curriculum
@@ -43,8 +43,8 @@ class Trained:
     ``polished`` which penalty the held-out stretches chose; ``history`` has the epochs; ``course`` what it was trained by.
     """
 
-    physics: FitResult
-    result: FitResult
+    physics: Estimation
+    result: Estimation
     hybrid: Hybrid
     polished: Polished
     history: tuple[Epoch, ...]

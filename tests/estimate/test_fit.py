@@ -12,7 +12,7 @@ import pytest
 from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.comparison import compare
-from greybox_torch.estimate.fit import FitResult, fit
+from greybox_torch.estimate.fit import Estimation, fit
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.termination import Termination
@@ -47,7 +47,7 @@ def noisy(experiments: list[dict[str, np.ndarray]]) -> list[dict[str, np.ndarray
     return [{**e, "speed": e["speed"] + rng.normal(0, 0.1, len(e["speed"]))} for e in experiments]
 
 
-def values(found: FitResult) -> dict[str, float]:
+def values(found: Estimation) -> dict[str, float]:
     return dict(zip(found.problem.names, map(float, found.problem.values), strict=True))
 
 

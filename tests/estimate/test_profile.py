@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.errors import UserError
-from greybox_torch.estimate.fit import FitResult, fit
+from greybox_torch.estimate.fit import Estimation, fit
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.profile import THRESHOLD, Profile, check_profiled, profile
@@ -38,7 +38,7 @@ class Line(GreyBoxModel):
 
 @pytest.fixture(scope="module")
 def line(data_set: Any) -> Any:
-    def fitted(slope: float = 2.0) -> FitResult:
+    def fitted(slope: float = 2.0) -> Estimation:
         rng = np.random.default_rng(0)
         volts = rng.uniform(0.0, 1.0, 500)
         speed = slope * volts + 0.5 + rng.normal(0, 0.3, 500)
@@ -48,7 +48,7 @@ def line(data_set: Any) -> Any:
     return fitted
 
 
-def of(found: FitResult, name: str) -> Profile:
+def of(found: Estimation, name: str) -> Profile:
     return profile(found, Simulator.of(found.problem.model, found.problem.free_names), name)
 
 
