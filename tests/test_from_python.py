@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas
 import pytest
 from matplotlib.figure import Figure
 from typer.testing import CliRunner
@@ -42,14 +43,6 @@ class Motor(gt.GreyBoxModel):
         return {"speed": x.speed}
 
 
-class Frame(dict[str, Any]):
-    """A table as other libraries have them: columns by name."""
-
-    @property
-    def columns(self) -> list[str]:
-        return list(self)
-
-
 @pytest.fixture
 def folder(motor_folder: Make) -> Path:
     """The motor with a dead zone of 0.4 V that the model does not know."""
@@ -63,7 +56,7 @@ def data(folder: Path) -> gt.DataSet:
         name: np.genfromtxt(folder / f"{name}.csv", delimiter=",", names=True) for name in ("steps", "more", "sweep")
     }
     arrays = {name: {"voltage": table["v"], "speed": table["w"]} for name, table in columns.items()}
-    frame = Frame(t=np.arange(600) * 0.01, **arrays["steps"])
+    frame = pandas.DataFrame({"t": np.arange(600) * 0.01, **arrays["steps"]})
     steps = gt.Recording.from_dataframe("Steps", frame, time="t", role="estimation", units=UNITS)
     more = gt.Recording.from_arrays("More steps", arrays["more"], sample_time=0.01, role="estimation")
     sweep = gt.Recording.from_arrays("Sweep", arrays["sweep"], sample_time=0.01, role="validation", units=UNITS)
@@ -189,7 +182,6 @@ def test_residuals_and_inspect(folder: Path, data: gt.DataSet) -> None:
 
 
 def test_rows_become_a_data_frame(data: gt.DataSet) -> None:
-    pandas = pytest.importorskip("pandas", reason="pandas is not needed, and not installed here")
     table = pandas.DataFrame(gt.simulate(Motor(), data).scores)
     assert list(table["experiment"]) == ["Steps", "More steps", "Sweep"]
 
