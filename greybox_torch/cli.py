@@ -13,7 +13,7 @@ import typer
 
 from greybox_torch import __version__
 from greybox_torch.commands.exit_codes import Commands
-from greybox_torch.commands.option_types import DataSetFile, Device, Json, Model, Out, Precision, Seed
+from greybox_torch.commands.option_types import DataSetFile, Device, Json, Model, Out, Precision, Seed, Settings
 from greybox_torch.commands.options import Options
 
 app = typer.Typer(
@@ -146,6 +146,7 @@ def diagnose(
         float | None,
         typer.Option(min=1.0, metavar="SECONDS", help="When to stop searching and answer with the best found so far."),
     ] = None,
+    settings: Settings = None,
     model: Model = None,
     out: Out = None,
     seed: Seed = 0,
@@ -155,7 +156,7 @@ def diagnose(
     """Find the physics that is missing: where it acts, what it is, how sure that is, and the model with it."""
     from greybox_torch.commands import diagnose
 
-    diagnose.run(dataset, time_limit, Options(model, out, seed, device, json))
+    diagnose.run(dataset, time_limit, Options(model, out, seed, device, json), settings)
 
 
 @app.command()
@@ -217,6 +218,7 @@ def train(
 
 @app.command()
 def demo(
+    settings: Settings = None,
     model: Model = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Where to write results.", show_default="results/demo")
@@ -228,7 +230,7 @@ def demo(
     """Diagnose a small simulated arm with one concealed effect, which comes with the package."""
     from greybox_torch.commands import demo
 
-    demo.run(Options(model, out, seed, device, json))
+    demo.run(Options(model, out, seed, device, json), settings)
 
 
 def main() -> None:

@@ -17,7 +17,7 @@ from greybox_torch.api.arguments import (
 from greybox_torch.api.diagnosis_result import DiagnosisResult
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis import pipeline
-from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, settings_from_mapping
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel
 
@@ -27,8 +27,8 @@ def diagnose(
     data: DataSet,
     *,
     time_limit: float | None = None,
-    settings: DiagnosisSettings = DiagnosisSettings(),
-    budget: SearchBudget = SearchBudget(),
+    settings: DiagnosisSettings | None = None,
+    budget: SearchBudget | None = None,
     seed: int = 0,
     device: str = "cpu",
     progress: Callable[[str], None] = lambda text: None,
@@ -42,8 +42,8 @@ def diagnose(
         model: searched from the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else the
             declared ones. It stays as it is; the result's ``model`` is a copy with the effects that were found.
         time_limit: seconds after which the search stops and the best answer so far is given.
-        settings: the thresholds that it decides by.
-        budget: how much it may compute.
+        settings: the thresholds that it decides by; by default what the card's table [diagnosis] says, else the defaults.
+        budget: how much it may compute; likewise.
         seed: kept in the verdict; the search itself draws no random numbers.
         device: "cpu", "cuda" or "cuda:N".
         progress: is told what is being done.
@@ -59,14 +59,15 @@ def diagnose(
     limit = None if time_limit is None else check_seconds("time_limit", time_limit)
     check_estimation(check_data(data))
     make_problem(data, given, data.recordings)  # all of them fit the model, whatever the search takes first
+    own = settings_from_mapping(data.diagnosis, data.place("[diagnosis]"))
     found = pipeline.diagnose(
         data,
         given,
         seed=check_seed(seed),
         device=device,
         time_limit=limit,
-        settings=check_kind("settings", settings, DiagnosisSettings),
-        budget=check_kind("budget", budget, SearchBudget),
+        settings=own[0] if settings is None else check_kind("settings", settings, DiagnosisSettings),
+        budget=own[1] if budget is None else check_kind("budget", budget, SearchBudget),
         progress=progress,
     )
     return DiagnosisResult(data, given, found, device)

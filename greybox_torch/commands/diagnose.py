@@ -8,13 +8,24 @@ from greybox_torch.api.diagnose import diagnose
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.progress import stages
 from greybox_torch.commands.task import load_task
+from greybox_torch.diagnosis.settings import settings_from_file, settings_from_mapping
 
 
-def run(dataset: Path, time_limit: float | None, options: Options) -> None:
+def run(dataset: Path, time_limit: float | None, options: Options, settings: Path | None = None) -> None:
     """Diagnoses, writes the verdict, the report and the augmented model (all or nothing), and prints what was found."""
     task = load_task(dataset, options)
+    own = settings_from_mapping(task.data.diagnosis, task.data.place("[diagnosis]"))
+    if settings is not None:
+        own = settings_from_mapping(settings_from_file(settings), str(settings), own)
     with stages(f"diagnosing {task.data.name}") as progress:
         found = diagnose(
-            task.model, task.data, seed=options.seed, device=task.device, time_limit=time_limit, progress=progress
+            task.model,
+            task.data,
+            seed=options.seed,
+            device=task.device,
+            time_limit=time_limit,
+            settings=own[0],
+            budget=own[1],
+            progress=progress,
         )
     options.finish(found, task.folder)

@@ -22,6 +22,12 @@ Precision = Annotated[
     str,
     typer.Option(metavar="single|double", help="Numbers of 32 or 64 bits; double unless you know that single does."),
 ]
+Settings = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE.toml", help="Thresholds and budgets of the search, by name; win over [diagnosis] in the card."
+    ),
+]
 Json = Annotated[
     bool, typer.Option("--json", help="The result as JSON on standard output, all else on standard error.")
 ]

@@ -47,6 +47,7 @@ class DataSet:
     parameters: dict[str, ParameterEntry]
     initial: dict[str, InitialEntry]
     held_out_by_default: bool
+    diagnosis: dict[str, Any]
 
     def __init__(
         self,
@@ -60,6 +61,7 @@ class DataSet:
         parameters: Mapping[str, ParameterEntry | Mapping[str, Any] | float] | None = None,
         initial: Mapping[str, InitialEntry | Mapping[str, Any] | float] | None = None,
         held_out_by_default: bool | None = None,
+        diagnosis: Mapping[str, Any] | None = None,
     ) -> None:
         """A data set of recordings that are in memory.
 
@@ -74,6 +76,7 @@ class DataSet:
             initial: what is known of start states: a value, or {"value": …, "fixed": …}.
             held_out_by_default: by default decided here: where no recording has the role "validation", the last quarter of each becomes
                 one, called "<name> (held out)". Where it is given, recordings stay as they are.
+            diagnosis: settings of a diagnosis by name, as the card's table [diagnosis] has them; what is given to `diagnose` goes before.
 
         Raises:
             UserError: no recordings, two of one name, channels or units that differ between them, a channel without any sample in one
@@ -103,6 +106,7 @@ class DataSet:
             "parameters": entries("parameters", parameters, ParameterEntry),
             "initial": entries("initial", initial, InitialEntry),
             "held_out_by_default": hold_out or bool(held_out_by_default),
+            "diagnosis": dict(diagnosis or {}),
         }
         for field, value in own.items():
             object.__setattr__(self, field, value)

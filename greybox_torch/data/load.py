@@ -42,6 +42,7 @@ def load_dataset(path: str | PathLike[str]) -> DataSet:
         model=_absolute_model(card.model.name, path),
         parameters=card.model.parameters,
         initial=card.model.initial,
+        diagnosis=card.diagnosis,
     )
 
 

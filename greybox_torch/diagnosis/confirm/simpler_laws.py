@@ -21,6 +21,8 @@ from greybox_torch.simulation.side_by_side import side_by_side
 def with_simpler_laws(study: Study, state: SearchState, others: HeldOut) -> Stage[SearchState]:
     """Take the law that an effect's law contains instead, where the larger one predicts other experiments no better."""
     for effect in state.effects:
+        if effect.prefix not in state.prefixes:
+            continue  # pruned beside a simpler law
         for rival, simpler in _contained(study, state, effect):
             before, after = side_by_side(partial(others.fits, h) for h in (simpler, state.current))
             no_farther = gain(before, after).errors_away < study.settings.held_out_beyond_chance

@@ -34,7 +34,7 @@ def explore(study: Study, start: SearchState) -> Stage[SearchState]:
     price = partial(priced_score, settings=study.settings)
     if chosen_again and price(other.current) <= price(first.current) - study.settings.curve_margin:
         return other
-    return replace(first, plain=other.plain, named=other.named)
+    return replace(first, plain=other.plain)  # what else the rejected way knows is not about these effects
 
 
 def passed_over(study: Study, before: SearchState, done: SelectionStep) -> Candidate | None:

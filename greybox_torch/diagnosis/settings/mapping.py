@@ -14,9 +14,12 @@ from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.reading import read_toml
 
+Both = tuple[DiagnosisSettings, SearchBudget]
+DEFAULTS: Both = (DiagnosisSettings(), SearchBudget())
 
-def settings_from_mapping(mapping: Mapping[str, Any], where: str) -> tuple[DiagnosisSettings, SearchBudget]:
-    """Settings and budget with the fields that ``mapping`` names; the others as they are by default.
+
+def settings_from_mapping(mapping: Mapping[str, Any], where: str, base: Both = DEFAULTS) -> Both:
+    """Settings and budget with the fields that ``mapping`` names; the others as ``base`` has them, by default the defaults.
 
     Lists stand for several integers, tables (``{ iterations = 20, tolerance = 1e-4 }``) for the limits of an iteration.
 
@@ -26,20 +29,24 @@ def settings_from_mapping(mapping: Mapping[str, Any], where: str) -> tuple[Diagn
     Raises:
         UserError: a name is unknown, or a value is out of its bounds; the message names the field, what was found and what is expected.
     """
-    owner = {f.name: (kind, f) for kind in (DiagnosisSettings, SearchBudget) for f in dataclasses.fields(kind)}
-    given: dict[type, dict[str, Any]] = {DiagnosisSettings: {}, SearchBudget: {}}
+    owner = {f.name: (kind, f) for kind in base for f in dataclasses.fields(kind)}
+    given: dict[str, Any] = {}
     for name, value in mapping.items():
         if name not in owner:
             raise UserError(
                 f'{where}: "{name}" is not a setting{did_you_mean(name, owner)}; expected a field of DiagnosisSettings or SearchBudget'
             )
         kind, field = owner[name]
-        value = _as_field(value, field.default, f"{where}: {name}")
+        value = _as_field(value, getattr(kind, name), f"{where}: {name}")
         wrong = complaint(about(field), value)
         if wrong:
             raise UserError(f"{where}: {name}: {wrong}")
-        given[kind][name] = value
-    return DiagnosisSettings(**given[DiagnosisSettings]), SearchBudget(**given[SearchBudget])
+        given[name] = value
+    settings, budget = (
+        dataclasses.replace(kind, **{n: v for n, v in given.items() if owner[n][0] is kind}) for kind in base
+    )
+    assert isinstance(settings, DiagnosisSettings) and isinstance(budget, SearchBudget)
+    return settings, budget
 
 
 def settings_from_file(path: Path) -> dict[str, Any]:
