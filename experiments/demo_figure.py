@@ -17,7 +17,7 @@ def main(out: Path) -> None:
     data = gt.load_dataset(DATASET)
     found = gt.diagnose(gt.load_model(str(data.model)), data)
     print(found.sentence)
-    found.plot().savefig(out, dpi=110)
+    found.plot().savefig(out, dpi=80)
 
 
 if __name__ == "__main__":
