@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from greybox_torch.estimate.comparison import Score
+from greybox_torch.estimate.comparison import Score, fit_rows
 
 SCHEMA = "greybox-verdict/2"
-MODELS = ("start", "refit", "augmented")
 
 
 @dataclass(frozen=True)
@@ -202,15 +201,6 @@ class Verdict:
             "evidence": list(self.evidence),
             "stages": dict(self.stages),
         }
-
-
-def fit_rows(scores: Mapping[str, Sequence[Score]]) -> list[dict[str, Any]]:
-    """The rows ``fit`` of `verdict.json` from scores by model name ("start", "refit", "augmented"), each in the same order."""
-    rows = []
-    for of_one in zip(*(scores[m] for m in MODELS), strict=True):
-        row: dict[str, Any] = {n: getattr(of_one[0], n) for n in ("experiment", "role", "output")}
-        rows.append(row | {m: {"fit": s.fit, "rmse": s.rmse} for m, s in zip(MODELS, of_one, strict=True)})
-    return rows
 
 
 def spoken(mechanism: str) -> str:

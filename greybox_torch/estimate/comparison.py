@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.metrics import fit_percent, root_mean_square
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.simulation.simulator import Simulator
+
+MODELS = ("start", "refit", "augmented")
+"""The models that a diagnosis compares: with the card's values, re-estimated, and with the effects found."""
 
 
 @dataclass(frozen=True)
@@ -84,3 +88,12 @@ def compare(
                 )
             )
     return Comparison(tuple(scores), problem.records.names, tuple(simulated), tuple(problem.initial))
+
+
+def fit_rows(scores: Mapping[str, Sequence[Score]]) -> list[dict[str, Any]]:
+    """The rows ``fit`` of `verdict.json` from scores by model name ("start", "refit", "augmented"), each in the same order."""
+    rows = []
+    for of_one in zip(*(scores[m] for m in MODELS), strict=True):
+        row: dict[str, Any] = {n: getattr(of_one[0], n) for n in ("experiment", "role", "output")}
+        rows.append(row | {m: {"fit": s.fit, "rmse": s.rmse} for m, s in zip(MODELS, of_one, strict=True)})
+    return rows

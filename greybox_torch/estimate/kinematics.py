@@ -149,7 +149,8 @@ def _slopes(records: Records, output: int, samples: np.ndarray, half: int) -> np
     y, clock = records.y[output, near], np.concatenate([[0.0], np.cumsum(records.dt[:-1])])
     weight = (inside & ~np.isnan(y)).astype(float)
     time = clock[near] - clock[samples][:, None]
-    scale = np.maximum(np.abs(time * weight).max(axis=1), 1e-300)
+    reach = np.abs(time * weight).max(axis=1)
+    scale = np.where(reach > 0, reach, 1.0)
     powers = (time / scale[:, None])[..., None] ** np.arange(3)
     normal = np.einsum("wsi,wsj,ws->wij", powers, powers, weight)
     right = np.einsum("wsi,ws->wi", powers, np.where(weight > 0, y, 0.0))

@@ -170,7 +170,9 @@ def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: 
     spread = np.nanstd(states, axis=0)
     spread = np.where(spread > 1e-9, spread, max(float(np.nanstd(problem.records.y)), 1e-6))
     values = problem.expected[problem.free]
-    value_weights = np.where(values != 0.0, 10.0 * mean_square / np.where(values != 0.0, values, 1.0) ** 2, 0.0)
+    # What is expected to be next to nothing, as where an output never moves, is of no size by which it could be held.
+    sized = values**2 > np.finfo(float).tiny
+    value_weights = np.where(sized, 10.0 * mean_square / np.where(sized, values, 1.0) ** 2, 0.0)
     declared = {p.name: p.shrunk for p in problem.model.declared_parameters}
     shrunk = np.array([declared[n] for n in problem.free_names], dtype=bool)
     if shrunk.any():

@@ -13,8 +13,8 @@ from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.hypothesis.noise import output_floors
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
-from greybox_torch.diagnosis.verdict import Trace, fit_rows
-from greybox_torch.estimate.comparison import Comparison, Score, compare
+from greybox_torch.diagnosis.verdict import Trace
+from greybox_torch.estimate.comparison import Comparison, Score, compare, fit_rows
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.simulation.simulator import Simulator
@@ -65,14 +65,15 @@ class Judgement:
 
     def left(self, effects: bool) -> tuple[float, float]:
         """What the recommended model leaves of the validation experiments: the share of the refitted model's mean squared error beyond the
-        noise, and the root mean square error in units of the noise.
+        noise, and the root mean square error in units of the noise; NaN where no output shows how large that is.
         """
         floors = np.nan_to_num(output_floors(self.problem, self.settings))
         final = self.with_effects if effects else self.refit
         beyond = [self._energy(c, floors) for c in (self.refit, final)]
         roles = [r.role for r in self.recordings]
         of = [role == "validation" or "validation" not in roles for role in roles]
-        return beyond[1] / max(beyond[0], 1e-300), float(np.max(self._times_noise(final)[of]))
+        times = self._times_noise(final)[of]
+        return _share_left(*beyond), float(np.nanmax(times)) if np.isfinite(times).any() else np.nan
 
     def comparisons(self, effects: bool) -> dict[str, Comparison]:
         return {"start": self.start, "refit": self.refit, "augmented": self.with_effects if effects else self.refit}
@@ -113,7 +114,7 @@ class Judgement:
         """Root mean square errors in units of the noise, by experiment (E,), over the outputs whose noise is known; NaN where none is."""
         errors = np.array([s.rmse for s in comparison.scores]).reshape(len(self.recordings), -1)
         floors = output_floors(self.problem, self.settings)
-        known = np.isfinite(floors)
+        known = np.isfinite(floors) & (floors > 0)
         ratios = np.where(known, errors**2 / np.where(known, np.maximum(floors, 1e-300), 1.0), 0.0)
         count = known.sum(axis=1)
         return np.sqrt(np.where(count > 0, ratios.sum(axis=1) / np.maximum(count, 1), np.nan))
@@ -126,6 +127,7 @@ class Judgement:
             scores=tuple(s for s in comparison.scores if s.role == "validation" or "validation" not in roles),
         )
 
+    @np.errstate(over="ignore")
     def _energy(self, comparison: Comparison, floors: np.ndarray | None = None) -> float:
         """Sum of the mean squared validation errors, outputs in units of their spread, beyond ``floors`` (E, n_y) where those are given."""
         unit = self._units()
@@ -143,6 +145,13 @@ class Judgement:
             errors = [s.rmse for s in self.refit.scores if s.output == output.name and np.isfinite(s.rmse)]
             units[output.name] = float(np.nanstd(row)) or max(errors, default=0.0)
         return units
+
+
+def _share_left(before: float, after: float) -> float:
+    """What is left of an error: nothing where there was none beyond noise, all where free runs still overflow."""
+    if not np.isfinite(before):
+        return 0.0 if np.isfinite(after) else 1.0
+    return after / before if before > 0 else 0.0
 
 
 def _mean_fit(scores: Sequence[Score]) -> float:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from greybox_torch.diagnosis.confirm.free_runs import Judgement
 from greybox_torch.diagnosis.describe.residual_tests import Detection
 from greybox_torch.diagnosis.verdict import Left
@@ -21,5 +23,10 @@ def what_is_left(judged: Judgement, detected: Sequence[Detection], effects: bool
         if coloured
         else "it is white, as noise is"
     )
+    size = (
+        f"its error is {times:.2g} times the noise"
+        if np.isfinite(times)
+        else "how much of its error is noise does not show"
+    )
     whole = f"{100 * share:.2g} % of the mismatch remains" if effects else "The model as it stands is recommended"
-    return Left(share, times, f"{whole}: its error is {times:.2g} times the noise, and {how}.")
+    return Left(share, times, f"{whole}: {size}, and {how}.")
