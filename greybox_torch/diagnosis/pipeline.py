@@ -185,7 +185,7 @@ def _unexplained(study: Study, state: SearchState, others: HeldOut | None, judge
     less than simulations of one machine differ by.
     """
     settings = study.settings
-    if mismatch_share(state.plain, settings) < settings.least_mismatch:
+    if max(mismatch_share(state.plain, settings), judged.mismatch_share) < settings.least_mismatch:
         return None
     errors = [times_noise(study.problem, state.plain, settings)] if floor_known(study.problem, settings) else []
     if others is not None and floor_known(others.problem, settings):

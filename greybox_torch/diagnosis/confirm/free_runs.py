@@ -63,6 +63,15 @@ class Judgement:
         """How many times the sensors' noise the free runs' errors of the refitted model are, root mean square, by experiment (E,)."""
         return self._times_noise(self.refit)
 
+    @property
+    def mismatch_share(self) -> float:
+        """Root mean square error of the refitted model's free runs beyond the noise, in units of the spread: of the worst experiment."""
+        floors, unit = np.nan_to_num(output_floors(self.problem, self.settings)), self._units()
+        spread = np.array([unit[o.name] for o in self.problem.model.outputs])
+        errors = np.array([s.rmse for s in self.refit.scores]).reshape(len(self.recordings), -1)
+        beyond = np.maximum(errors**2 - floors, 0.0) / np.maximum(spread**2, 1e-300)
+        return float(np.sqrt(np.max(np.mean(beyond, axis=1))))
+
     def left(self, effects: bool) -> tuple[float, float]:
         """What the recommended model leaves of the validation experiments: the share of the refitted model's mean squared error beyond the
         noise, and the root mean square error in units of the noise; NaN where no output shows how large that is.

@@ -11,7 +11,7 @@ import numpy as np
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.profiles import explained_energy, law_curve, local_signals, most_of, profile
 from greybox_torch.diagnosis.hypothesis.final import Final
-from greybox_torch.diagnosis.select.posterior import for_all_that_is_left, shared
+from greybox_torch.diagnosis.select.posterior import by_comparison, for_all_that_is_left, shared
 from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.study import Study
@@ -73,9 +73,11 @@ def _effect(
 ) -> Effect:
     around = study.surroundings[attachment.port]
     taken = state.step_of(attachment.prefix)
-    probability, alternatives = (
-        (0.5, ()) if taken is None or taken.taken is None else shared(taken.taken, taken.ranked, study.settings)
-    )
+    if taken is None or taken.taken is None:
+        without = state.without.get(attachment.prefix, state.plain)
+        probability, alternatives = by_comparison(without, state.current, study.settings), ()
+    else:
+        probability, alternatives = shared(taken.taken, taken.ranked, study.settings)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     if not isinstance(attachment.mechanism, Unknown):
         share = remaining_share(state.plain, state.current, study.settings)

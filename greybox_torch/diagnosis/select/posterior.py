@@ -61,6 +61,16 @@ def shared(
     return round(highest / total, 4), found
 
 
+def by_comparison(without: Hypothesis, current: Hypothesis, settings: DiagnosisSettings) -> float:
+    """The probability of an effect whose rivals are not on record: from how surely it improves on the hypothesis without it.
+
+    The hypothesis without it is the only rival that is known: it has the weight that :func:`shared` gives a rival z standard errors behind.
+    """
+    behind = surely_better(without, current, settings)
+    weight = float(np.exp(-0.5 * (behind / settings.windows_temperature) ** 2))
+    return round(settings.highest_probability / (1.0 + weight), 4)
+
+
 def _weight(chosen: RankedCandidate, rival: RankedCandidate, settings: DiagnosisSettings) -> float:
     if rival.gain <= 0:
         return 0.0

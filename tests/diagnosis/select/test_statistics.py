@@ -12,7 +12,7 @@ from greybox_torch.diagnosis.hypothesis.significance import likelihood_ratio, si
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.choice import least_gain
-from greybox_torch.diagnosis.select.posterior import of_a_stopped_search, shared
+from greybox_torch.diagnosis.select.posterior import by_comparison, of_a_stopped_search, shared
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.verdict import Effect
 from greybox_torch.mechanisms.actuator import InputDelay
@@ -200,3 +200,12 @@ def test_a_delay_of_the_input_is_a_delay_of_the_output(fitted) -> None:
         chosen.fitted.problem.records.y, 2, axis=0
     )  # another sensor sees no delay
     assert shared(chosen, [chosen, twin], SETTINGS)[0] > 0.9
+
+
+def test_an_effect_whose_rivals_are_not_on_record_is_as_sure_as_its_comparison(fitted) -> None:
+    """What it does to the windows decides, not a constant."""
+    before = fitted(np.full(40, 1.0))
+    rng = np.random.default_rng(0)
+    better, alike = fitted(0.2 * rng.uniform(0.9, 1.1, 40)), fitted(rng.uniform(0.9, 1.1, 40))
+    assert by_comparison(before, better, SETTINGS) == SETTINGS.highest_probability
+    assert by_comparison(before, alike, SETTINGS) < 0.7
