@@ -26,7 +26,8 @@ def solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
     sound = np.nan_to_num(matrix, posinf=0.0, neginf=0.0)
     vector = right.ndim == matrix.ndim - 1
     target = np.nan_to_num(right[..., None] if vector else right, posinf=0.0, neginf=0.0)
-    found = pseudo_inverse(sound) @ target
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = np.nan_to_num(pseudo_inverse(sound) @ target, posinf=0.0, neginf=0.0)
     return found[..., 0] if vector else found
 
 
@@ -38,8 +39,10 @@ def least_squares(columns: np.ndarray, target: np.ndarray, rcond: float | None =
             return found
     except np.linalg.LinAlgError:
         pass
-    sound = np.nan_to_num(columns, posinf=0.0, neginf=0.0)
-    return solve(sound.T @ sound + _ridge(sound.T @ sound), sound.T @ np.nan_to_num(target, posinf=0.0, neginf=0.0))
+    sound, wanted = (np.nan_to_num(a, posinf=0.0, neginf=0.0) for a in (columns, target))
+    scale = max(float(np.abs(sound).max(initial=0.0)), 1e-300)
+    sound = sound / scale  # its square overflows later
+    return solve(sound.T @ sound + _ridge(sound.T @ sound), sound.T @ wanted) / scale
 
 
 def eigh(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

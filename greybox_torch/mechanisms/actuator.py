@@ -19,9 +19,9 @@ class InputLag(Mechanism):
 
     name = "input_lag"
     kinds = ("actuator",)
-    natural = ("T.lower",)
     needs = ("input",)
     fades = True
+    natural = ("T.lower",)
     explanation = "The input acts through a first-order lag (current loop, valve)."
     source = "L. Ljung, System Identification, 2nd ed., 1999"
     experiment = "a step or a chirp of the input, to tell a lag from a delay"

@@ -17,10 +17,10 @@ class PreslidingHysteresis(Mechanism):
 
     name = "presliding_hysteresis"
     kinds = ("body",)
-    natural = ("z_0.lower",)
     needs = ("speed",)
     generalises = ("coulomb_friction",)
     includes = generalises
+    natural = ("z_0.lower",)
     explanation = "Before sliding, friction acts like a spring that yields (bristles bend, then slip)."
     source = "P. R. Dahl, Aerospace Corp. TOR-0158, 1968; C. Canudas de Wit et al., IEEE TAC 40(3), 1995"
     experiment = "tiny reversals around standstill"

@@ -16,9 +16,9 @@ class SensorLag(Mechanism):
 
     name = "sensor_lag"
     kinds = ("sensor",)
-    natural = ("T.lower",)
     needs = ("output",)
     fades = True
+    natural = ("T.lower",)
     explanation = "The output is recorded through a first-order lag (filter, sensor dynamics)."
     source = "L. Ljung, System Identification, 2nd ed., 1999"
     experiment = "a second sensor, or a known motion"
@@ -51,10 +51,10 @@ class OutputDelay(Mechanism):
 
     name = "output_delay"
     kinds = ("sensor",)
-    natural = ("T.lower",)
     needs = ("output",)
     fades = True
     twins = ("input_delay",)
+    natural = ("T.lower",)
     explanation = "The output is recorded after a dead time (sampling, bus, filter)."
     source = "H. Padé, 1892; L. Ljung, System Identification, 2nd ed., 1999"
     experiment = "an input whose own timing is known; without one a delay of the output is a delay of the input"

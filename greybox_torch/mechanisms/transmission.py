@@ -125,8 +125,8 @@ class NonlinearDamping(Mechanism):
 
     name = "nonlinear_damping"
     kinds = ("coupling",)
-    natural = ("r_0.lower",)
     needs = ("rate",)
+    natural = ("r_0.lower",)
     explanation = (
         "The coupling's damping is not proportional to the rate of deflection, or differs between the two directions."
     )

@@ -87,7 +87,7 @@ def test_every_model_is_measured_and_nothing_twice(folder: Path, capsys: pytest.
     ("options", "expected"),
     [
         (("--networks", "friction"), "--networks friction: expected KIND:PORT:SIGNAL"),
-        (("--networks", "friction:rotary:speed"), "--port rotary: model Motor has no such port"),
+        (("--networks", "friction:rotary:speed"), "port: found 'rotary', model Motor has no such port"),
     ],
 )
 def test_networks_that_cannot_be(

@@ -75,7 +75,6 @@ def test_sound_parameters_are_not_objected_to(name: str, around: Surroundings) -
         ("additional_mode", {"omega": 3500.0}, "omega = 3.5e+03 rad/s is above the Nyquist frequency, 3.14e+03 rad/s"),
         ("torque_saturation", {"limit": 6.0}, "limit = 6 is at its upper bound"),
         ("coulomb_friction", {"v_0": 6.0}, "v_0 = 6 is at its upper bound"),
-        ("input_lag", {"T": 0.00045}, "T = 0.00045 is at its lower bound"),
     ],
 )
 def test_what_lies_outside_of_the_recordings_is_said(name: str, change: dict[str, float], said: str, around) -> None:

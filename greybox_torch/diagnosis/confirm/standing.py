@@ -12,7 +12,6 @@ import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
-from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 
@@ -35,10 +34,8 @@ def sizes(study: Study, state: SearchState, gains: Mapping[str, Gain]) -> dict[s
 
 def least_size(study: Study, state: SearchState, others: HeldOut | None) -> float:
     """The size from which an effect is a finding: much less where with all of them hardly more than noise is left."""
-    if others is not None and floor_known(others.problem, study.settings):
+    if others is not None:
         left = float(np.max(others.times_noise(state.current)))
-    elif others is None and floor_known(study.problem, study.settings):
-        left = times_noise(study.problem, state.current, study.settings)
     else:
-        left = np.inf
+        left = times_noise(study.problem, state.current, study.settings)
     return study.settings.least_size_at_noise if left < study.settings.above_noise else study.settings.least_size

@@ -7,9 +7,9 @@ from functools import partial
 
 from greybox_torch.diagnosis.hypothesis.above_noise import only_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
-from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
+from greybox_torch.diagnosis.select.remaining import completes
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import Stage, only_if
 from greybox_torch.diagnosis.study import Study
@@ -37,12 +37,12 @@ def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> St
 
 
 def _done(study: Study, state: SearchState) -> bool:
-    """Whether noise alone is left, or so little that no effect can be a finding and none could be seen to complete the model."""
+    """Whether noise alone is left, or so little that no effect can be a finding and the model is as complete as can be seen."""
     settings = study.settings
     if mismatch_share(state.plain, settings) < settings.least_mismatch:
         return True
-    hidden = little_is_left(study, state) and not floor_known(study.problem, settings)
-    return hidden or only_noise(study.problem, state.current, settings)
+    complete = little_is_left(study, state) and completes(state.current, settings)
+    return complete or only_noise(study.problem, state.current, settings)
 
 
 def _fine_curves_may_help(study: Study, state: SearchState, curves: bool) -> bool:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.hypothesis.noise import noise_floor, reaches_noise
+from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 
@@ -25,8 +25,9 @@ def remaining_share(plain: Hypothesis, fitted: Hypothesis, settings: DiagnosisSe
 
 
 def completes(fitted: Hypothesis, settings: DiagnosisSettings) -> bool:
-    """Whether a hypothesis leaves hardly more than noise at every window length, where the recordings tell how much of it there is."""
-    return all(reaches_noise(fit.problem, fit, settings, settings.above_noise) for fit in fitted.fits)
+    """Whether a hypothesis leaves hardly more than noise at every window length (an upper bound, where part of the floor is motion)."""
+    most = settings.above_noise**2
+    return all(fit.mean_square < most * noise_floor(fit.problem, settings) for fit in fitted.fits)
 
 
 def difference(plain: Hypothesis, simpler: Hypothesis, better: Hypothesis, settings: DiagnosisSettings) -> float:
