@@ -47,6 +47,7 @@ class NonlinearStiffness(Mechanism):
     name = "nonlinear_stiffness"
     kinds = ("coupling",)
     needs = ("deflection",)
+    natural = ("d_0",)
     explanation = "The spring stiffens or softens with deflection."
     source = "T. Tuttle, W. Seering, IEEE Trans. Robotics and Automation 12(3), 1996 (harmonic drives)"
     experiment = "static loads up to the largest"
@@ -126,7 +127,7 @@ class NonlinearDamping(Mechanism):
     name = "nonlinear_damping"
     kinds = ("coupling",)
     needs = ("rate",)
-    natural = ("r_0.lower",)
+    natural = ("r_0",)
     explanation = (
         "The coupling's damping is not proportional to the rate of deflection, or differs between the two directions."
     )

@@ -36,7 +36,7 @@ class ConfirmationSettings:
         unit=HELD_OUT_SHARE,
     )
     least_mismatch: float = share(
-        3e-4,
+        3e-5,
         "Error of the plain model beyond the noise below which nothing is looked for: simulations of one machine differ by as much.",
         unit="share of the outputs' spread (root mean square)",
         chosen_by="the difference between simulators of first and of fourth order at usual steps",
