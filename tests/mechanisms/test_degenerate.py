@@ -108,6 +108,16 @@ def test_zero_is_a_natural_bound_and_so_is_true_sticking(around: Surroundings) -
     assert law_of("end_stop").degenerate(around, values, small(values)) is None
 
 
+@pytest.mark.parametrize(("name", "shape"), [("nonlinear_stiffness", "d_0"), ("nonlinear_damping", "r_0")])
+@pytest.mark.parametrize("end", [0, 1])
+def test_the_shape_of_a_part_that_is_not_needed_may_sit_at_its_end(name: str, shape: str, end: int, around) -> None:
+    """With nothing of that part, where it gives way says nothing of the others."""
+    bounds = {p.name: p.bounds for p in law_of(name).parameters(around)}
+    values = {**{p.name: 1.0 for p in law_of(name).parameters(around)}, shape: bounds[shape][end]}
+    assert np.isfinite(values[shape])
+    assert law_of(name).degenerate(around, values, small(values)) is None
+
+
 @pytest.mark.parametrize("law", [pytest.param(law, id=law.name) for law in (*LIBRARY.values(), *LEARNED.values())])
 def test_every_mechanism_answers(law: type[Mechanism], around: Surroundings) -> None:
     mechanism = Unknown("speed") if law is Unknown else law()
