@@ -7,13 +7,10 @@ from weakref import WeakKeyDictionary
 
 import torch
 
-from greybox_torch.model.signals import Signals
+from greybox_torch.model.random_points import random_points
 
 if TYPE_CHECKING:
     from greybox_torch.model.greybox_model import GreyBoxModel
-
-POINTS = 16
-"""Random states and inputs at which the outputs are looked at."""
 
 _KNOWN: WeakKeyDictionary[GreyBoxModel, dict[str, str]] = WeakKeyDictionary()
 
@@ -30,10 +27,7 @@ def sensed_states(model: GreyBoxModel) -> dict[str, str]:
 
 
 def _found(model: GreyBoxModel) -> dict[str, str]:
-    draw = torch.Generator().manual_seed(0)
-    x = torch.randn(len(model.states), POINTS, generator=draw, dtype=torch.float64)
-    u = torch.randn(len(model.inputs), POINTS, generator=draw, dtype=torch.float64)
-    p = Signals("parameter", {q.name: torch.tensor(q.value, dtype=torch.float64) for q in model.declared_parameters})
+    x, u, p = random_points(model)
     with torch.no_grad():
         y = model.measured(x, u, p)
     names = [o.name for o in model.outputs]

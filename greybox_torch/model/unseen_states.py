@@ -10,21 +10,16 @@ from typing import TYPE_CHECKING
 
 import torch
 
+from greybox_torch.model.random_points import random_points
 from greybox_torch.model.signals import Signals
 
 if TYPE_CHECKING:
     from greybox_torch.model.greybox_model import GreyBoxModel
 
-POINTS = 16
-"""Random states and inputs at which the equations are looked at."""
-
 
 def unseen_states(model: GreyBoxModel) -> tuple[str, ...]:
     """Names of the states that no rate and no output of ``model`` depends on, while nothing is attached."""
-    draw = torch.Generator().manual_seed(0)
-    x = torch.randn(len(model.states), POINTS, generator=draw, dtype=torch.float64)
-    u = torch.randn(len(model.inputs), POINTS, generator=draw, dtype=torch.float64)
-    p = Signals("parameter", {q.name: torch.tensor(q.value, dtype=torch.float64) for q in model.declared_parameters})
+    x, u, p = random_points(model)
     outputs = {o.name for o in model.outputs}
     with torch.no_grad():
         before = torch.cat([model.rates(x, u, p), model.measured(x, u, p)])

@@ -26,9 +26,10 @@ def sizes(study: Study, state: SearchState, gains: Mapping[str, Gain]) -> dict[s
     found = {prefix: together / len(state.effects) for prefix in state.prefixes}
     for prefix in state.without:
         gain = gains.get(prefix)
-        idle = gain is None or abs(gain.share) + gain.error < study.settings.unexercised or not np.isfinite(gain.size)
-        own = size(state.plain.fits, state.without[prefix].fits, state.current.fits, study.settings)
-        found[prefix] = own if gain is None or idle else gain.size
+        if gain is None or abs(gain.share) + gain.error < study.settings.unexercised or not np.isfinite(gain.size):
+            found[prefix] = size(state.plain.fits, state.without[prefix].fits, state.current.fits, study.settings)
+        else:
+            found[prefix] = gain.size
     return found
 
 
