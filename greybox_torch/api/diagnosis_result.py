@@ -20,8 +20,9 @@ from greybox_torch.api.scores import score_rows, score_table
 from greybox_torch.api.verdict_summary import effect_table, notes, print_verdict, verdict_scores
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.pipeline import Diagnosis
-from greybox_torch.diagnosis.verdict import Effect, Verdict
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.problem import with_card
 from greybox_torch.files import json_text
 from greybox_torch.mechanisms.stored import stored_effects

@@ -10,7 +10,8 @@ from rich.text import Text
 
 from greybox_torch.api.scores import print_scores
 from greybox_torch.data import DataSet
-from greybox_torch.diagnosis.verdict import Effect, Verdict
+from greybox_torch.diagnosis.effect import Effect
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.tables import print_table
 

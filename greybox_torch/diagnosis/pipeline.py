@@ -19,6 +19,7 @@ from greybox_torch.diagnosis.describe.evidence import sentences
 from greybox_torch.diagnosis.describe.left import what_is_left
 from greybox_torch.diagnosis.describe.ranking import ranking
 from greybox_torch.diagnosis.describe.residual_tests import detect
+from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.findings import Findings, find, find_with_more
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
@@ -29,7 +30,7 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import Deadline, or_else
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study, silent
-from greybox_torch.diagnosis.verdict import Effect, Verdict
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.stored import attachment_json

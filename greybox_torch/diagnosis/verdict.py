@@ -8,88 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from greybox_torch.diagnosis.effect import Effect, spoken
 from greybox_torch.estimate.comparison import Score, fit_rows
 
 SCHEMA = "greybox-verdict/2"
-
-
-@dataclass(frozen=True)
-class Alternative:
-    """A hypothesis that was considered and not chosen, with its probability."""
-
-    port: str
-    mechanism: str
-    probability: float
-
-
-@dataclass(frozen=True)
-class Profile:
-    """Where an effect's gain lies along one signal: bin edges (n + 1,) in the signal's unit, share of the explained energy per bin (n,)."""
-
-    signal: str
-    unit: str
-    edges: np.ndarray
-    share: np.ndarray
-
-
-@dataclass(frozen=True)
-class Timeline:
-    """Where an effect's gain lies along one experiment: window edges (n + 1,) in s, each window's share of all experiments' gain (n,)."""
-
-    experiment: str
-    edges: np.ndarray
-    share: np.ndarray
-
-    @property
-    def intensity(self) -> float:
-        """Share per second."""
-        return float(self.share.sum() / (self.edges[-1] - self.edges[0]))
-
-
-@dataclass(frozen=True)
-class Curve:
-    """The effect's own law: ``force`` (n,) over ``signal`` (n,); ``force_unit`` as at the port. ``spread`` (n,) one standard deviation."""
-
-    signal: str
-    unit: str
-    values: np.ndarray
-    force: np.ndarray
-    force_unit: str
-    spread: np.ndarray | None = None
-
-
-@dataclass(frozen=True)
-class Effect:
-    """One finding. ``explained`` is the share of the repeatable validation error that it removes.
-
-    ``ceiling`` is the share of the best free curve's gain that a named effect reaches; None where no curve was fitted beside it.
-    """
-
-    port: str
-    mechanism: str
-    probability: float
-    signals: tuple[str, ...]
-    where: str
-    parameters: Mapping[str, Mapping[str, Any]]
-    explained: float
-    alternatives: tuple[Alternative, ...]
-    curve: Curve | None
-    profiles: tuple[Profile, ...] = ()
-    explanation: str = ""
-    source: str = ""
-    separating_experiment: str = ""
-    ceiling: float | None = None
-    timelines: tuple[Timeline, ...] = ()
-    size: float = float("nan")
-    """Share of the mean squared held-out mismatch of the refitted plain model that leaving the effect out brings back."""
-
-    @property
-    def sentence(self) -> str:
-        """What a reader has to know of it where it is no finding."""
-        return (
-            f"{spoken(self.mechanism)} at {self.port} accounts for {100 * self.size:.2g} % of the whole mismatch: "
-            "too little to be told from what the laws found lack to be exactly the machine's"
-        )
 
 
 @dataclass(frozen=True)
@@ -192,8 +114,8 @@ class Verdict:
             "complete": self.complete,
             "confidence": self.confidence,
             "sentence": self.sentence,
-            "effects": [_effect(e) for e in self.effects],
-            "refinements": [_refinement(e) for e in self.refinements],
+            "effects": [e.as_json() for e in self.effects],
+            "refinements": [e.as_refinement_json() for e in self.refinements],
             "left": None
             if self.left is None
             else {n: getattr(self.left, n) for n in ("share", "times_noise", "sentence")},
@@ -201,46 +123,3 @@ class Verdict:
             "evidence": list(self.evidence),
             "stages": dict(self.stages),
         }
-
-
-def spoken(mechanism: str) -> str:
-    return "an unknown effect" if mechanism == "unknown" else mechanism.replace("_", " ")
-
-
-def _refinement(effect: Effect) -> dict[str, Any]:
-    return {
-        "port": effect.port,
-        "mechanism": effect.mechanism,
-        "size": effect.size,
-        "probability": effect.probability,
-        "sentence": f"{effect.sentence}.",
-        "parameters": {n: dict(v) for n, v in effect.parameters.items()},
-    }
-
-
-def _effect(effect: Effect) -> dict[str, Any]:
-    result: dict[str, Any] = {
-        "port": effect.port,
-        "mechanism": effect.mechanism,
-        "probability": effect.probability,
-        "size": effect.size,
-        "signals": list(effect.signals),
-        "where": effect.where,
-        "parameters": {n: dict(v) for n, v in effect.parameters.items()},
-        "explained": effect.explained,
-        "alternatives": [
-            {"port": a.port, "mechanism": a.mechanism, "probability": a.probability} for a in effect.alternatives
-        ],
-    }
-    if effect.ceiling is not None:
-        result["ceiling"] = effect.ceiling
-    if effect.curve is not None and effect.mechanism == "unknown":
-        curve = effect.curve
-        result["curve"] = {
-            "signal": curve.signal,
-            "unit": curve.unit,
-            "values": [float(v) for v in curve.values],
-            "force": [float(v) for v in curve.force],
-            "force_unit": curve.force_unit,
-        }
-    return result

@@ -17,8 +17,9 @@ from greybox_torch.checkpoint import load_checkpoint
 from greybox_torch.cli import app
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis import pipeline
+from greybox_torch.diagnosis.effect import Alternative, Curve, Effect
 from greybox_torch.diagnosis.stopping import Deadline
-from greybox_torch.diagnosis.verdict import Alternative, Curve, Effect, Trace, Verdict
+from greybox_torch.diagnosis.verdict import Trace, Verdict
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.files import json_text

@@ -11,8 +11,8 @@ import pytest
 
 from greybox_torch.diagnosis import pipeline
 from greybox_torch.diagnosis.contradictions import contradictions, worse_than_refit
+from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.pipeline import diagnose
-from greybox_torch.diagnosis.verdict import Effect
 from greybox_torch.errors import NumericalError
 from greybox_torch.files import json_text
 

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.verdict import Alternative, Curve, Effect, Left, Verdict
+from greybox_torch.diagnosis.effect import Alternative, Curve, Effect
+from greybox_torch.diagnosis.verdict import Left, Verdict
 from greybox_torch.estimate.comparison import Score
 
 BACKLASH = Effect(

@@ -8,7 +8,8 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.verdict import Timeline, Verdict
+from greybox_torch.diagnosis.effect import Timeline
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.about import About
 from greybox_torch.report.page import render_page

@@ -10,11 +10,11 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.start_positions import placed
+from greybox_torch.diagnosis.effect import Timeline
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, lengths
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.study import Study
-from greybox_torch.diagnosis.verdict import Timeline
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows

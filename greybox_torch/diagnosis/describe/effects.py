@@ -10,12 +10,12 @@ import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.profiles import explained_energy, law_curve, local_signals, most_of, profile
+from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.select.posterior import by_comparison, for_all_that_is_left, shared
 from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.study import Study
-from greybox_torch.diagnosis.verdict import Effect, Profile, Timeline
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.unknown import Unknown

@@ -9,13 +9,13 @@ import numpy as np
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest
+from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
-from greybox_torch.diagnosis.verdict import Effect
 from greybox_torch.mechanisms.attachment import Attachment
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import torch
 
+from greybox_torch.diagnosis.effect import Curve, Profile
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.window_errors import window_errors
-from greybox_torch.diagnosis.verdict import Curve, Profile
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit, states_along
 from greybox_torch.mechanisms.attachment import Attachment

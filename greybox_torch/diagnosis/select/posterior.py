@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from greybox_torch.diagnosis.effect import Alternative, Effect
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import surely_better
@@ -14,7 +15,6 @@ from greybox_torch.diagnosis.refit.rank import RankedCandidate
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
-from greybox_torch.diagnosis.verdict import Alternative, Effect
 
 
 def of_a_stopped_search(effects: Sequence[Effect], settings: DiagnosisSettings) -> tuple[Effect, ...]:

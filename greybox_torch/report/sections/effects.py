@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup
 
-from greybox_torch.diagnosis.verdict import Curve, Effect, Profile, Timeline, Verdict
+from greybox_torch.diagnosis.effect import Curve, Effect, Profile, Timeline
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report import text
 from greybox_torch.report.chart.marks import band, bars, line
 from greybox_torch.report.chart.panel import Chart, Panel, side_by_side

@@ -7,7 +7,7 @@ import pytest
 
 from greybox_torch.diagnosis.confirm.held_out import timelines
 from greybox_torch.diagnosis.describe.effects import where
-from greybox_torch.diagnosis.verdict import Profile, Timeline
+from greybox_torch.diagnosis.effect import Profile, Timeline
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.windows import cut
 

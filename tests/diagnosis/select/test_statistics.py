@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, gain
+from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.significance import likelihood_ratio, significance
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.posterior import by_comparison, of_a_stopped_search, shared
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
-from greybox_torch.diagnosis.verdict import Effect
 from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple

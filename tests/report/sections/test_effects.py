@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from greybox_torch.diagnosis.verdict import Timeline, Verdict
+from greybox_torch.diagnosis.effect import Timeline
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report.sections.effects import Effects
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from greybox_torch.diagnosis.verdict import Effect, Left
+from greybox_torch.diagnosis.effect import Effect
+from greybox_torch.diagnosis.verdict import Left
 from greybox_torch.report.sections.remains import Remains
 
 

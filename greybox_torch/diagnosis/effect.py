@@ -1,0 +1,135 @@
+"""One effect that a diagnosis found: its parts, and its entry in `verdict.json` (contract, sections 4 and 8)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """A hypothesis that was considered and not chosen, with its probability."""
+
+    port: str
+    mechanism: str
+    probability: float
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Where an effect's gain lies along one signal: bin edges (n + 1,) in the signal's unit, share of the explained energy per bin (n,)."""
+
+    signal: str
+    unit: str
+    edges: np.ndarray
+    share: np.ndarray
+
+
+@dataclass(frozen=True)
+class Timeline:
+    """Where an effect's gain lies along one experiment: window edges (n + 1,) in s, each window's share of all experiments' gain (n,)."""
+
+    experiment: str
+    edges: np.ndarray
+    share: np.ndarray
+
+    @property
+    def intensity(self) -> float:
+        """Share per second."""
+        return float(self.share.sum() / (self.edges[-1] - self.edges[0]))
+
+
+@dataclass(frozen=True)
+class Curve:
+    """The effect's own law: ``force`` (n,) over ``signal`` (n,); ``force_unit`` as at the port. ``spread`` (n,) one standard deviation."""
+
+    signal: str
+    unit: str
+    values: np.ndarray
+    force: np.ndarray
+    force_unit: str
+    spread: np.ndarray | None = None
+
+    def as_json(self) -> dict[str, Any]:
+        """Its entry `curve` of an effect that has no name."""
+        return {
+            "signal": self.signal,
+            "unit": self.unit,
+            "values": [float(v) for v in self.values],
+            "force": [float(v) for v in self.force],
+            "force_unit": self.force_unit,
+        }
+
+
+@dataclass(frozen=True)
+class Effect:
+    """One finding. ``explained`` is the share of the repeatable validation error that it removes.
+
+    ``ceiling`` is the share of the best free curve's gain that a named effect reaches; None where no curve was fitted beside it.
+    """
+
+    port: str
+    mechanism: str
+    probability: float
+    signals: tuple[str, ...]
+    where: str
+    parameters: Mapping[str, Mapping[str, Any]]
+    explained: float
+    alternatives: tuple[Alternative, ...]
+    curve: Curve | None
+    profiles: tuple[Profile, ...] = ()
+    explanation: str = ""
+    source: str = ""
+    separating_experiment: str = ""
+    ceiling: float | None = None
+    timelines: tuple[Timeline, ...] = ()
+    size: float = float("nan")
+    """Share of the mean squared held-out mismatch of the refitted plain model that leaving the effect out brings back."""
+
+    @property
+    def sentence(self) -> str:
+        """What a reader has to know of it where it is no finding."""
+        return (
+            f"{spoken(self.mechanism)} at {self.port} accounts for {100 * self.size:.2g} % of the whole mismatch: "
+            "too little to be told from what the laws found lack to be exactly the machine's"
+        )
+
+    def as_json(self) -> dict[str, Any]:
+        """Its entry under `effects`."""
+        result: dict[str, Any] = {
+            "port": self.port,
+            "mechanism": self.mechanism,
+            "probability": self.probability,
+            "size": self.size,
+            "signals": list(self.signals),
+            "where": self.where,
+            "parameters": {n: dict(v) for n, v in self.parameters.items()},
+            "explained": self.explained,
+            "alternatives": [
+                {"port": a.port, "mechanism": a.mechanism, "probability": a.probability} for a in self.alternatives
+            ],
+        }
+        if self.ceiling is not None:
+            result["ceiling"] = self.ceiling
+        if self.curve is not None and self.mechanism == "unknown":
+            result["curve"] = self.curve.as_json()
+        return result
+
+    def as_refinement_json(self) -> dict[str, Any]:
+        """Its entry under `refinements`, where it is too small for a finding."""
+        return {
+            "port": self.port,
+            "mechanism": self.mechanism,
+            "size": self.size,
+            "probability": self.probability,
+            "sentence": f"{self.sentence}.",
+            "parameters": {n: dict(v) for n, v in self.parameters.items()},
+        }
+
+
+def spoken(mechanism: str) -> str:
+    """A mechanism's name in a sentence."""
+    return "an unknown effect" if mechanism == "unknown" else mechanism.replace("_", " ")
