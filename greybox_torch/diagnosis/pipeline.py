@@ -157,6 +157,8 @@ def _as_found(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int,
         unexplained=unexplained,
         refinements=refinements,
         left=what_is_left(judged, detected, bool(effects)),
+        settings=study.settings,
+        budget=study.budget,
     )
     final = judged.augmented if effects else judged.plain
     chosen = state.current if effects else state.plain

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.diagnosis.effect import Effect, spoken
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
 from greybox_torch.estimate.comparison import Score, fit_rows
 
 SCHEMA = "greybox-verdict/2"
@@ -66,6 +67,9 @@ class Verdict:
     refinements: tuple[Effect, ...] = ()
     """What is significant and small beside the findings; in the model where there are findings, never in the headline."""
     left: Left | None = None
+    settings: DiagnosisSettings = DiagnosisSettings()
+    """By what it was decided, and with ``budget`` how much was computed for it."""
+    budget: SearchBudget = SearchBudget()
 
     @property
     def mismatch(self) -> bool:
@@ -103,7 +107,7 @@ class Verdict:
         return f"; with {them} the validation fit goes from {before:.1f} % to {after:.1f} %"
 
     def as_json(self) -> dict[str, Any]:
-        """The dictionary of `verdict.json` (contract section 4)."""
+        """The dictionary of `verdict.json` (contract sections 4 and 8), and beside it "settings": those that differ from their default."""
         return {
             "schema": SCHEMA,
             "dataset": self.dataset,
@@ -122,4 +126,5 @@ class Verdict:
             "fit": fit_rows(self.scores),
             "evidence": list(self.evidence),
             "stages": dict(self.stages),
+            "settings": changed_settings(self.settings, self.budget),
         }

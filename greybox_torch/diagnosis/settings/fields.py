@@ -60,7 +60,7 @@ def counts(default: tuple[int, ...], meaning: str, *, unit: str = "", chosen_by:
 
 def iteration(default: Settings, meaning: str, *, chosen_by: str = CASES) -> Any:
     """A field for the limits of a Levenberg-Marquardt iteration."""
-    unit = "iterations, relative change of the cost, trial steps"
+    unit = "iterations, relative change of the cost, trial steps, damping to begin with"
     return _field(default, About(meaning, unit, chosen_by, 0.0, math.inf, "iteration"))
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from greybox_torch.diagnosis.settings import SettingRow, setting_rows
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report import text
 from greybox_torch.report.about import About
@@ -33,8 +34,14 @@ class Making:
     facts: tuple[tuple[str, str], ...]
     stages: tuple[Stage, ...]
     values: tuple[Value, ...]
+    settings: tuple[SettingRow, ...]
     command: str
     template: str = "making.html.j2"
+
+    @property
+    def changed(self) -> tuple[SettingRow, ...]:
+        """The settings that differ from their default."""
+        return tuple(row for row in self.settings if row.changed)
 
     @classmethod
     def of(cls, verdict: Verdict, about: About) -> Making:
@@ -49,7 +56,8 @@ class Making:
         )
         longest = max([*verdict.stages.values(), 1e-12])
         stages = [Stage(text.words(n), text.seconds(s), 100.0 * s / longest) for n, s in verdict.stages.items()]
-        return cls(facts, tuple(stages), tuple(_values(about)), about.command)
+        rows = setting_rows(verdict.settings, verdict.budget)
+        return cls(facts, tuple(stages), tuple(_values(about)), rows, about.command)
 
 
 def _values(about: About) -> list[Value]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from greybox_torch.diagnosis.settings import (
     DiagnosisSettings,
     SearchBudget,
+    changed_settings,
     setting_rows,
     settings_from_file,
     settings_from_mapping,
@@ -88,3 +90,12 @@ def test_a_file_of_settings(tmp_path: Path) -> None:
         settings_from_file(wrong)
     with pytest.raises(UserError, match=r"absent\.toml: no such file"):
         settings_from_file(tmp_path / "absent.toml")
+
+
+def test_what_differs_makes_the_same_settings_again() -> None:
+    iterations = dataclasses.replace(SearchBudget().polish_iterations, iterations=20)
+    given = DiagnosisSettings(runaway=500.0), SearchBudget(window_factors=(1, 8), polish_iterations=iterations)
+    told = json.loads(json.dumps(changed_settings(*given)))
+    assert set(told) == {"runaway", "window_factors", "polish_iterations"}
+    assert settings_from_mapping(told, "verdict.json") == given
+    assert changed_settings(DiagnosisSettings(), SearchBudget()) == {}
