@@ -13,7 +13,7 @@ import numpy as np
 from greybox_torch.data import DataSet
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.comparison import Comparison, compare
-from greybox_torch.estimate.overflow import avoidance, first_overflow, remedies
+from greybox_torch.estimate.overflow import avoidance, first_overflow, suggestions
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.residuals import Residuals, residuals_of
 from greybox_torch.estimate.simulators import simulator_for
@@ -115,7 +115,7 @@ def evaluated(data: DataSet, model: GreyBoxModel, *, device: str = "cpu", precis
         time = next(r.time[found.sample] for r in data.recordings if r.name == found.experiment)
         overflow = (
             f"the simulation of '{found.experiment}' overflows at {time:.6g} s; "
-            f"{avoidance(remedies(problem, simulator))}; "
+            f"{avoidance(suggestions(problem, simulator))}; "
             "try parameters and start states nearer to the truth, tighter bounds, or a smaller sample time"
         )
     return Evaluation(data, model_reference(model), problem, comparison, simulator.substeps, overflow)

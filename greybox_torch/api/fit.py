@@ -72,9 +72,9 @@ def fit(
     names = check_names("profiles", profiles)
     check_profiled(names, problem.free_names, problem.names, given.title)
     simulator = simulator_for(problem, SimulationOptions(device, precision))
-    weaknesses = _at_start(problem, simulator)
-    for weakness in weaknesses:
-        progress(f"At the start values: {weakness.sentence}.")
+    unidentifiable = _at_start(problem, simulator)
+    for one in unidentifiable:
+        progress(f"At the start values: {one.sentence}.")
     found = estimate(
         problem,
         simulator=simulator,
@@ -88,7 +88,7 @@ def fit(
         drawn[name] = profile(found, simulator, name, settings=settings_for(precision, SETTINGS))
         progress(f"profile of {name}: {len(drawn[name].values)} points")
     comparisons = _compared(data, given, found, simulator)
-    return FitResult(data, found, comparisons, drawn, weaknesses, precision, time.perf_counter() - began)
+    return FitResult(data, found, comparisons, drawn, unidentifiable, precision, time.perf_counter() - began)
 
 
 def _at_start(problem: Problem, simulator: Simulator) -> tuple[Unidentifiable, ...]:

@@ -47,16 +47,14 @@ def status(termination: Termination) -> str:
 def identifiability_json(before: Sequence[Unidentifiable], after: Sequence[Unidentifiable]) -> list[dict[str, Any]]:
     """What the data do not determine, and whether it was seen at the start values, at the optimum, or at both."""
     result = []
-    for where, weaknesses in (("start", before), ("optimum", after)):
-        for weakness in weaknesses:
-            same = [
-                row for row in result if (row["kind"], row["parameters"]) == (weakness.kind, list(weakness.parameters))
-            ]
+    for where, unidentifiable in (("start", before), ("optimum", after)):
+        for one in unidentifiable:
+            same = [row for row in result if (row["kind"], row["parameters"]) == (one.kind, list(one.parameters))]
             entry = {
-                "kind": weakness.kind,
-                "parameters": list(weakness.parameters),
-                "direction": list(weakness.direction),
-                "sentence": weakness.sentence,
+                "kind": one.kind,
+                "parameters": list(one.parameters),
+                "direction": list(one.direction),
+                "sentence": one.sentence,
                 "at": [*(same[0]["at"] if same else []), where],
             }
             result = [row for row in result if row not in same] + [entry]

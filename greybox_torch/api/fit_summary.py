@@ -88,7 +88,7 @@ def warnings(found: Estimation) -> list[str]:
         lines.append(
             f"The data do not determine {', '.join(lost)}, alone or together: fix one of them, or excite the machine more."
         )
-    lines += [f"{weakness.sentence}." for weakness in found.identifiability]
+    lines += [f"{one.sentence}." for one in found.identifiability]
     for note in found.notes:
         if note.kind is Termination.at_bound:
             lines.append(f"At a bound: {note.detail}; the standard deviations there mean little.")

@@ -50,7 +50,7 @@ class Estimation:
         if self.uncertainty is None:
             return {}
         values = self.uncertainty.deviations(kind)
-        lost = {name for weakness in self.identifiability if weakness.undetermined for name in weakness.parameters}
+        lost = {name for one in self.identifiability if one.undetermined for name in one.parameters}
         named = zip(self.problem.free_names, map(float, values), strict=False)
         return {name: float("inf") if name in lost else value for name, value in named}
 
@@ -95,10 +95,10 @@ def fit(
     found = descend(problem, way, starts)
     if found is None:
         raise overflow_error("estimating", problem, way.fine_enough(problem))
-    weaknesses = ()
+    unidentifiable = ()
     if with_uncertainty:
-        weaknesses = identifiability(found.run, found.optimum.point, found.optimum.model)
-    return _result(found, problem.samples, with_uncertainty, weaknesses)
+        unidentifiable = identifiability(found.run, found.optimum.point, found.optimum.model)
+    return _result(found, problem.samples, with_uncertainty, unidentifiable)
 
 
 def _unmoved(run: FreeRun, samples: int) -> Estimation:
@@ -109,7 +109,9 @@ def _unmoved(run: FreeRun, samples: int) -> Estimation:
     return Estimation(run.problem, mse, mse, samples, 0, 1, Termination.nothing_free, None, run.simulator.substeps)
 
 
-def _result(found: Descent, samples: int, with_uncertainty: bool, weaknesses: tuple[Unidentifiable, ...]) -> Estimation:
+def _result(
+    found: Descent, samples: int, with_uncertainty: bool, unidentifiable: tuple[Unidentifiable, ...]
+) -> Estimation:
     run, optimum = found.run, found.optimum
     mse = 2 * optimum.model.cost / samples
     share, problem = len(optimum.point) / samples, run.at(optimum.point)
@@ -123,6 +125,6 @@ def _result(found: Descent, samples: int, with_uncertainty: bool, weaknesses: tu
         termination=optimum.termination,
         uncertainty=uncertainty(run, optimum.point) if with_uncertainty else None,
         substeps=run.simulator.substeps,
-        identifiability=weaknesses,
-        notes=notes(problem, weaknesses),
+        identifiability=unidentifiable,
+        notes=notes(problem, unidentifiable),
     )

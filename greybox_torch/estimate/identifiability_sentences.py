@@ -9,7 +9,7 @@ import numpy as np
 
 from greybox_torch.estimate.termination import listed
 
-REMEDY = "fix one of them, or measure it by other means"
+SUGGESTION = "fix one of them, or measure it by other means"
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Direction:
 
 
 def sentence(kind: str, step: Direction, *, zeros: Sequence[str] = (), deviation: float = np.nan) -> str:
-    """One sentence or two on a weakness of this kind, see :class:`greybox_torch.estimate.identifiability.Unidentifiable`.
+    """One sentence or two on a finding of this kind, see :class:`greybox_torch.estimate.identifiability.Unidentifiable`.
 
     Args:
         zeros: the parameters whose being zero takes the others' effect away.
@@ -42,14 +42,14 @@ def sentence(kind: str, step: Direction, *, zeros: Sequence[str] = (), deviation
     if kind == "weak":
         return _weak(step, deviation)
     if step.law == "factor":
-        return f"{names}: {_of_factors(step)}; {REMEDY}"
+        return f"{names}: {_of_factors(step)}; {SUGGESTION}"
     if step.law == "shift" and len(step.names) == 2 and np.allclose(np.abs(step.absolute), 1.0, rtol=1e-3):
         what = "sum" if step.absolute[0] * step.absolute[1] < 0 else "difference"
         other = "lowering" if what == "sum" else "raising"
         first, second = step.names
-        return f"{names}: only their {what} is determined (raising {first} and {other} {second} by as much changes nothing); {REMEDY}"
+        return f"{names}: only their {what} is determined (raising {first} and {other} {second} by as much changes nothing); {SUGGESTION}"
     near = "" if step.law == "shift" else " as long as the changes are small"
-    return f"{names}: cannot be told apart ({_moved(step, 1.0)} changes nothing{near}); {REMEDY}"
+    return f"{names}: cannot be told apart ({_moved(step, 1.0)} changes nothing{near}); {SUGGESTION}"
 
 
 def _of_factors(step: Direction) -> str:
@@ -102,4 +102,4 @@ def _weak(step: Direction, deviation: float) -> str:
         what = f"weakly determined, its standard deviation is about {deviation:.2g} times its value"
         return f"{step.names[0]}: {what}; fix it, or record an experiment in which it acts more"
     change = _moved(step, 100.0)
-    return f"{listed(step.names)}: hardly told apart ({change} shows no more than the errors do); {REMEDY}"
+    return f"{listed(step.names)}: hardly told apart ({change} shows no more than the errors do); {SUGGESTION}"

@@ -9,9 +9,9 @@ from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.termination import Outcome, Termination, listed
 
 
-def notes(problem: Problem, weaknesses: Sequence[Unidentifiable]) -> tuple[Outcome, ...]:
+def notes(problem: Problem, unidentifiable: Sequence[Unidentifiable]) -> tuple[Outcome, ...]:
     """Whether the data leave some of the free parameters undetermined, and whether some ended at a bound; which ones."""
-    lost = {name for weakness in weaknesses if weakness.undetermined for name in weakness.parameters}
+    lost = {name for one in unidentifiable if one.undetermined for name in one.parameters}
     at_bound = at_bounds(problem)
     found = []
     if lost:

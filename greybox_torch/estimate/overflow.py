@@ -55,7 +55,7 @@ def first_overflow(problem: Problem, simulated: Sequence[np.ndarray]) -> Overflo
     return None
 
 
-def remedies(problem: Problem, simulator: Simulator) -> tuple[Suggestion, ...]:
+def suggestions(problem: Problem, simulator: Simulator) -> tuple[Suggestion, ...]:
     """Parameter values, one changed at a time and within its bounds, with which no experiment overflows: the nearest to the present ones.
 
     Tried on the free parameters, or on all where none is free; empty where no single one helps.
@@ -78,13 +78,13 @@ def remedies(problem: Problem, simulator: Simulator) -> tuple[Suggestion, ...]:
 
 
 def avoidance(found: Sequence[Suggestion]) -> str:
-    """The remedies as a clause."""
+    """The suggestions as a clause."""
     if not found:
         return (
             f"changing one parameter alone, by up to {max(FACTORS):g} times, does not avoid it: "
             "check units, scales and signs in the card and in the equations"
         )
-    return f"it does not with {listed([str(remedy) for remedy in found[:3]], 'or')}"
+    return f"it does not with {listed([str(suggestion) for suggestion in found[:3]], 'or')}"
 
 
 def overflow_error(doing: str, problem: Problem, simulator: Simulator) -> NumericalError:
@@ -98,7 +98,7 @@ def overflow_error(doing: str, problem: Problem, simulator: Simulator) -> Numeri
         detail = "the outputs stay finite, their sensitivities do not"
     else:
         where = f"at t = {found.time:.6g} s in '{found.experiment}'"
-        detail = f"{where}; {avoidance(remedies(problem, simulator))}"
+        detail = f"{where}; {avoidance(suggestions(problem, simulator))}"
     return NumericalError(f"{doing} {problem.model.title}: {Outcome(Termination.overflow, detail).sentence}")
 
 

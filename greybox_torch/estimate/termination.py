@@ -46,8 +46,8 @@ class Outcome:
     @property
     def sentence(self) -> str:
         """What happened with its detail, then what to try."""
-        what, separator, remedy = self.kind.value.partition("; ")
-        return f"{what} ({self.detail}){separator}{remedy}" if self.detail else self.kind.value
+        what, separator, suggestion = self.kind.value.partition("; ")
+        return f"{what} ({self.detail}){separator}{suggestion}" if self.detail else self.kind.value
 
 
 def listed(names: Sequence[str], conjunction: str = "and") -> str:

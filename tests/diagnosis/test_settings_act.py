@@ -102,7 +102,7 @@ def test_effects_that_pruning_dropped_are_not_asked_for_simpler_laws(monkeypatch
 
     monkeypatch.setattr(simpler_laws, "_contained", contained)
     monkeypatch.setattr(simpler_laws, "side_by_side", lambda _: ((), ()))
-    monkeypatch.setattr(simpler_laws, "likelihood_ratio", lambda *_: 0.0)
+    monkeypatch.setattr(simpler_laws, "likelihood_significance", lambda *_: 0.0)
     monkeypatch.setattr(simpler_laws, "_with_rival", lambda state, *_: state)
     monkeypatch.setattr(simpler_laws, "drop_superfluous", dropped)
     study: Any = SimpleNamespace(settings=DiagnosisSettings())

@@ -114,7 +114,7 @@ def problem_of(data: DataSet, model: GreyBoxModel) -> Problem:
     return make_problem(data, model, data.estimation())
 
 
-def look(problem: Problem, precision: str = "double", **values: float) -> tuple[Unidentifiable, ...]:
+def found_in(problem: Problem, precision: str = "double", **values: float) -> tuple[Unidentifiable, ...]:
     numbers = [values.get(n, v) for n, v in zip(problem.names, problem.values, strict=True)]
     problem = problem.with_values(np.array(numbers))
     run = FreeRun(problem, Simulator.of(problem.model, problem.free_names, SimulationOptions(precision=precision)))
@@ -131,7 +131,7 @@ def test_gain_inertia_and_friction_only_up_to_a_factor(
     inertia = damping * (0.05 + inertia / 100)
     model = load_model(f"{machines / 'motor.py'}:Motor")
     problem = problem_of(data_set(UNITS, experiments, parameters={"k": {"fixed": False}}), model)
-    found = [w for w in look(problem, precision, J=inertia, k=gain, b=damping) if w.kind != "weak"]
+    found = [w for w in found_in(problem, precision, J=inertia, k=gain, b=damping) if w.kind != "weak"]
     assert [(w.kind, w.parameters) for w in found] == [("together", ("J", "k", "b"))]
     np.testing.assert_allclose(found[0].direction, 1.0, rtol=1e-3 if precision == "double" else 0.1)
     assert found[0].undetermined
@@ -144,7 +144,7 @@ def test_gain_inertia_and_friction_only_up_to_a_factor(
 
 def test_nothing_to_say_of_a_sound_problem(machines: Path, experiments: list[Any], data_set: Any) -> None:
     model = load_model(f"{machines / 'motor.py'}:Motor")
-    assert look(problem_of(data_set(UNITS, experiments), model)) == ()
+    assert found_in(problem_of(data_set(UNITS, experiments), model)) == ()
 
 
 @pytest.mark.parametrize(
@@ -159,14 +159,14 @@ def test_nothing_to_say_of_a_sound_problem(machines: Path, experiments: list[Any
 def test_pairs(
     experiments: list[Any], data_set: Any, model: GreyBoxModel, direction: tuple[float, ...], expected: str
 ) -> None:
-    (found,) = look(problem_of(data_set(UNITS, experiments), model))
+    (found,) = found_in(problem_of(data_set(UNITS, experiments), model))
     assert (found.kind, found.parameters) == ("together", ("a", "b"))
     np.testing.assert_allclose(found.direction, direction, rtol=1e-3)
     assert found.sentence.startswith(f"a and b: {expected}")
 
 
 def test_equal_values_do_not_make_a_sum_a_product(experiments: list[Any], data_set: Any) -> None:
-    (found,) = look(problem_of(data_set(UNITS, experiments), Sum()), a=2.0, b=2.0)
+    (found,) = found_in(problem_of(data_set(UNITS, experiments), Sum()), a=2.0, b=2.0)
     assert "only their sum is determined" in found.sentence
 
 
@@ -174,7 +174,7 @@ def test_equal_values_do_not_make_a_sum_a_product(experiments: list[Any], data_s
 def test_what_no_recording_shows(experiments: list[Any], data_set: Any, model: GreyBoxModel) -> None:
     """Not at all, as against weakly: neither an unused parameter, nor one of a range that is never visited."""
     problem = problem_of(data_set(UNITS, experiments), model)
-    (found,) = look(problem)
+    (found,) = found_in(problem)
     assert (found.kind, found.parameters) == ("unmoved", ("b",))
     assert "nothing in these recordings depends on it" in found.sentence
     fitted = fit(problem)
@@ -186,21 +186,21 @@ def test_what_no_recording_shows(experiments: list[Any], data_set: Any, model: G
 
 def test_where_it_starts_is_to_blame(experiments: list[Any], data_set: Any) -> None:
     """A shape without effect while its amplitude is zero; the amplitude itself, zero too, is seen by the data."""
-    (found,) = look(problem_of(data_set(UNITS, experiments), Shape()), a=0.0)
+    (found,) = found_in(problem_of(data_set(UNITS, experiments), Shape()), a=0.0)
     assert (found.kind, found.parameters, found.undetermined) == ("start", ("b",), False)
     assert found.sentence.startswith("b: has no effect at these values while a is zero, but it has elsewhere")
-    assert look(problem_of(data_set(UNITS, experiments), Shape()), a=-0.5) == ()
+    assert found_in(problem_of(data_set(UNITS, experiments), Shape()), a=-0.5) == ()
 
 
 def test_an_amplitude_known_to_be_zero_is_not(experiments: list[Any], data_set: Any) -> None:
     data = data_set(UNITS, experiments, parameters={"a": {"value": 0.0, "fixed": True}})
-    (found,) = look(problem_of(data, Shape()))
+    (found,) = found_in(problem_of(data, Shape()))
     assert (found.kind, found.parameters) == ("unmoved", ("b",))
 
 
 def test_what_is_weak_is_not_said_to_be_lost(experiments: list[Any], data_set: Any) -> None:
     problem = problem_of(data_set(UNITS, experiments), Faint())
-    (found,) = look(problem)
+    (found,) = found_in(problem)
     assert (found.kind, found.parameters, found.undetermined) == ("weak", ("b",), False)
     assert "weakly determined, its standard deviation is about" in found.sentence
     assert np.isfinite(fit(problem).parameter_deviations()["b"])
@@ -210,14 +210,14 @@ def test_parameters_and_start_states(experiments: list[Any], data_set: Any) -> N
     """Two experiments: raising the offset by one is the same as lowering the angle at the start of both."""
     units = {**UNITS, "angle": "rad"}
     turned = [{**e, "angle": 0.7 + np.cumsum(e["speed"]) * 0.01} for e in experiments]
-    (found,) = look(problem_of(data_set(units, turned), Offset()))
+    (found,) = found_in(problem_of(data_set(units, turned), Offset()))
     assert found.kind == "together"
     assert found.parameters == ("b", "angle at the start of 'run 1'", "angle at the start of 'run 2'")
     assert "cannot be told apart" in found.sentence
 
 
 def test_a_start_that_overflows_is_left_to_the_fit(experiments: list[Any], data_set: Any) -> None:
-    assert look(problem_of(data_set(UNITS, experiments), Product()), T=-1e-4) == ()
+    assert found_in(problem_of(data_set(UNITS, experiments), Product()), T=-1e-4) == ()
 
 
 @given(st.integers(0, 2**31), st.integers(1, 3), st.integers(1, 3))

@@ -10,7 +10,7 @@ import pytest
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.fit import fit
 from greybox_torch.estimate.free_run import simulate
-from greybox_torch.estimate.overflow import avoidance, first_overflow, overflow_error, remedies
+from greybox_torch.estimate.overflow import avoidance, first_overflow, overflow_error, suggestions
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.simulation.simulator import Simulator
@@ -53,7 +53,7 @@ def test_where_and_when(problem: Problem) -> None:
 
 def test_start_values_that_avoid_it(problem: Problem) -> None:
     simulator = Simulator.of(problem.model, problem.free_names)
-    (found,) = remedies(problem, simulator)
+    (found,) = suggestions(problem, simulator)
     assert (found.name, found.before, found.unit) == ("a", 400.0, "1/s")
     assert found.value < 200.0
     there = problem.with_values(np.array([found.value, 1.0]))
@@ -64,7 +64,7 @@ def test_start_values_that_avoid_it(problem: Problem) -> None:
 def test_none_avoids_it(problem: Problem) -> None:
     held = problem.with_values(np.array([4e6, 1.0]))
     held = make_narrow(held)
-    assert remedies(held, Simulator.of(problem.model, problem.free_names)) == ()
+    assert suggestions(held, Simulator.of(problem.model, problem.free_names)) == ()
     assert "check units, scales and signs" in avoidance(())
 
 

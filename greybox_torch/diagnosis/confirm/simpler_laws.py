@@ -7,7 +7,7 @@ from functools import partial
 
 from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.hypothesis.significance import likelihood_ratio
+from greybox_torch.diagnosis.hypothesis.significance import likelihood_significance
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.select.backward import drop_superfluous
@@ -28,7 +28,7 @@ def with_simpler_laws(study: Study, state: SearchState, others: HeldOut) -> Stag
             no_farther = gain(before, after).errors_away < study.settings.held_out_beyond_chance
             if (
                 no_farther
-                and likelihood_ratio(simpler, state.current, study.settings) < study.settings.least_significance
+                and likelihood_significance(simpler, state.current, study.settings) < study.settings.least_significance
             ):
                 state = _with_rival(state, rival, simpler, effect)
                 yield state
@@ -41,7 +41,7 @@ def _contained(study: Study, state: SearchState, effect: Attachment) -> list[tup
     """Laws that the law of ``effect`` contains, of those that were refitted beside it, and each in its place beside the others."""
     done, found = state.step_of(effect.prefix), []
     for rival in done.ranked if done is not None else ():
-        other = rival.leader.attachment
+        other = rival.candidate.attachment
         inside = other.port == effect.port and other.mechanism.name in effect.mechanism.generalises
         if inside and other.prefix not in state.prefixes:
             study.working_on(f"refitting {other.prefix} in the place of {effect.prefix}")

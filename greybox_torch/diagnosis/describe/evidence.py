@@ -49,7 +49,7 @@ def sentences(
             f"(95 % interval {100 * low:.1f} to {100 * high:.1f} %)."
         )
     kept = {(e.port, e.mechanism) for e in effects}
-    taken = [done.taken.leader.attachment for done in state.steps if done.taken is not None]
+    taken = [done.taken.candidate.attachment for done in state.steps if done.taken is not None]
     lost = [_name(a) for a in taken if (a.port, a.mechanism.name) not in kept]
     if lost:
         lines.append(f"Taken back, as the other experiments or effects do not bear it out: {', '.join(lost)}.")
@@ -66,14 +66,14 @@ def _step_sentence(done: SelectionStep, settings: DiagnosisSettings) -> str:
     """What a forward step took, or why it took nothing."""
     if done.taken is not None:
         return (
-            f"{_name(done.taken.leader.attachment)} lowers the mean squared error by a factor {np.exp(done.taken.gain):.3g}, "
+            f"{_name(done.taken.candidate.attachment)} lowers the mean squared error by a factor {np.exp(done.taken.gain):.3g}, "
             f"{done.taken.significance:.1f} standard errors away from chance."
         )
     if not done.ranked:
         return "No candidate explains any of the remaining error."
     best = done.ranked[0]
     return (
-        f"The best further candidate, {_name(best.leader.attachment)}, would lower it by {100 * (1 - np.exp(-best.gain)):.2g} % "
+        f"The best further candidate, {_name(best.candidate.attachment)}, would lower it by {100 * (1 - np.exp(-best.gain)):.2g} % "
         f"({best.significance:.1f} standard errors); claimed is what exceeds {100 * least_gain(best.fitted, settings):.0f} % and chance."
     )
 

@@ -1,4 +1,4 @@
-"""How sure it is that one hypothesis is better than another: by windows or, at the noise, by likelihood."""
+"""How significantly one hypothesis is better than another: by windows or, at the noise, by likelihood."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from greybox_torch.diagnosis.hypothesis.noise import reaches_noise
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 
-def surely_better(worse: Hypothesis, better: Hypothesis, settings: DiagnosisSettings) -> float:
+def overall_significance(worse: Hypothesis, better: Hypothesis, settings: DiagnosisSettings) -> float:
     """How many standard errors ``better`` is better: by windows or, at the noise, by likelihood."""
-    return max(significance(worse, better, settings), likelihood_ratio(worse, better, settings))
+    return max(window_significance(worse, better, settings), likelihood_significance(worse, better, settings))
 
 
-def likelihood_ratio(worse: Hypothesis, better: Hypothesis, settings: DiagnosisSettings) -> float:
+def likelihood_significance(worse: Hypothesis, better: Hypothesis, settings: DiagnosisSettings) -> float:
     """Standard errors by which the likelihood of white noise puts ``worse`` behind; zero where more than that is left."""
     return float(np.sqrt(max(0.0, white_samples(better, settings) * (worse.score - better.score))))
 
@@ -27,7 +27,7 @@ def white_samples(fitted: Hypothesis, settings: DiagnosisSettings) -> int:
     return int(np.sum(~np.isnan(fitted.problem.records.y)))
 
 
-def significance(before: Hypothesis, after: Hypothesis, settings: DiagnosisSettings) -> float:
+def window_significance(before: Hypothesis, after: Hypothesis, settings: DiagnosisSettings) -> float:
     """How many standard errors the improvement is away from none: the largest over the window lengths.
 
     Judged over windows, so that errors which are correlated within a window count once: by the mean difference of the windows'

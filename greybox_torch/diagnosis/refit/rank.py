@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, augmented, lengths, score_of, without_free
-from greybox_torch.diagnosis.hypothesis.significance import significance, white_samples
+from greybox_torch.diagnosis.hypothesis.significance import white_samples, window_significance
 from greybox_torch.diagnosis.refit.curve import laws_on_curve
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.screen.shortlist import Candidate
@@ -23,9 +23,11 @@ from greybox_torch.simulation.windows import cut
 
 @dataclass(frozen=True)
 class RankedCandidate:
-    """A refitted hypothesis with its newest effect, its score (lower is better) and how significance it improves on the one before."""
+    """A refitted hypothesis with its newest effect; ``gain``: by how much its score is below that of the one before, ``significance``: by
+    how many standard errors over windows.
+    """
 
-    leader: Candidate
+    candidate: Candidate
     fitted: Hypothesis
     gain: float
     significance: float
@@ -34,12 +36,12 @@ class RankedCandidate:
 
     @property
     def unknown(self) -> bool:
-        return self.leader.unknown
+        return self.candidate.unknown
 
     @property
     def size(self) -> int:
         """How many parameters the newest effect has to adjust."""
-        start = f"{self.leader.attachment.prefix}."
+        start = f"{self.candidate.attachment.prefix}."
         return sum(name.startswith(start) for name in self.fitted.problem.free_names)
 
 
@@ -98,7 +100,9 @@ def judged(
     candidate: Candidate, before: Hypothesis, fitted: Hypothesis, settings: DiagnosisSettings
 ) -> RankedCandidate:
     """A refit compared with the hypothesis ``before`` it."""
-    return RankedCandidate(candidate, fitted, before.score - fitted.score, significance(before, fitted, settings))
+    return RankedCandidate(
+        candidate, fitted, before.score - fitted.score, window_significance(before, fitted, settings)
+    )
 
 
 def _laws_behind_curve(
@@ -116,7 +120,7 @@ def _laws_behind_curve(
         fitted = fit(study, effects, candidate.starts, shorter, limits=limits, frozen=frozen)
         return None if fitted is None else judged(candidate, current, fitted, study.settings)
 
-    laws = laws_on_curve(study.problem.model, best.fitted, best.leader.attachment, study.surroundings, study.card)
+    laws = laws_on_curve(study.problem.model, best.fitted, best.candidate.attachment, study.surroundings, study.card)
     return [r for r in side_by_side(partial(tried, law) for law in laws) if r is not None]
 
 

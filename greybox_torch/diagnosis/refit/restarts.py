@@ -20,7 +20,7 @@ def restarts(
 
     Of the shapes that explain about as much, some from end to end: between them the optimum may be narrower than the probes' grid.
     """
-    most, effect, values = study.budget.most_shapes, ranked.leader.attachment, ranked.fitted.values()
+    most, effect, values = study.budget.most_shapes, ranked.candidate.attachment, ranked.fitted.values()
     explained: dict[tuple[tuple[str, float], ...], float] = {}
     for score in (k for at in screened for k in at if identity_of(k.attachment) == identity_of(effect)):
         shape = tuple(sorted((f"{effect.prefix}.{n}", v) for n, v in score.probe.values.items() if n != "order"))

@@ -33,7 +33,7 @@ def rank_by_likelihood(
     if best is None or not samples:
         return list(ranked)
     tied = [r for r in named if r.fitted.score < best.fitted.score + settings.score_tie][: budget.most_tied]
-    if len({r.leader.attachment.prefix for r in tied}) < 2:
+    if len({r.candidate.attachment.prefix for r in tied}) < 2:
         return list(ranked)
     costs = [_cost(r) for r in tied]
     within = min(costs) + 0.5 * settings.score_tie * samples

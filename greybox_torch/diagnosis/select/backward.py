@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.hypothesis.significance import significance
+from greybox_torch.diagnosis.hypothesis.significance import window_significance
 from greybox_torch.diagnosis.refit.curve import absorbed
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.select.choice import least_gain
@@ -44,7 +44,7 @@ def _made_up_for(study: Study, state: SearchState, without: Hypothesis) -> bool:
     gain = without.score - state.current.score
     few = (
         gain < least_gain(state.current, settings)
-        or significance(without, state.current, settings) < settings.least_significance
+        or window_significance(without, state.current, settings) < settings.least_significance
     )
     return len(state.effects) > 1 and few
 

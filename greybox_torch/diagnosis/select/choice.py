@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.hypothesis.significance import surely_better, white_samples
+from greybox_torch.diagnosis.hypothesis.significance import overall_significance, white_samples
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
 from greybox_torch.diagnosis.select.remaining import completes, difference
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -48,17 +48,18 @@ def simplest(
     best = next(iter(ranked), None)
     if best is None:
         return None
-    contained = best.leader.attachment.mechanism.generalises
+    contained = best.candidate.attachment.mechanism.generalises
     simpler = (
         r
         for r in ranked
-        if r.leader.attachment.mechanism.name in contained and r.leader.attachment.port == best.leader.attachment.port
+        if r.candidate.attachment.mechanism.name in contained
+        and r.candidate.attachment.port == best.candidate.attachment.port
     )
     alone = completes(best.fitted, settings)
 
     def as_good(r: RankedCandidate) -> bool:
         small = difference(plain, r.fitted, best.fitted, settings) < settings.least_size
-        by_chance = surely_better(r.fitted, best.fitted, settings) < settings.least_significance
+        by_chance = overall_significance(r.fitted, best.fitted, settings) < settings.least_significance
         return by_chance or (small and not alone)
 
     return next((r for r in simpler if as_good(r)), best)

@@ -45,7 +45,7 @@ def compare(
     fitted = [*polish, *(r.fitted for r in rest)]
     pairs = zip([*front, *rest], fitted, strict=True)
     return Comparison(
-        parent, tuple(in_order([judged(r.leader, parent, one, study.settings) for r, one in pairs], study.settings))
+        parent, tuple(in_order([judged(r.candidate, parent, one, study.settings) for r, one in pairs], study.settings))
     )
 
 

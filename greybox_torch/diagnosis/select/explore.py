@@ -61,7 +61,7 @@ def passed_over(study: Study, before: SearchState, done: SelectionStep) -> Candi
         ),
         best,
     )
-    taken = _explained(shortest, done.taken.leader.attachment)
+    taken = _explained(shortest, done.taken.candidate.attachment)
     return best if taken < settings.passed_over_ratio * shares[best.attachment.prefix] else None
 
 

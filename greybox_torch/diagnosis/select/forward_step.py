@@ -46,7 +46,7 @@ def take_best(
     compared = compare(study, state.current, screened, ranked)
     state = with_better_fit(state, compared.parent)
     sound = [
-        r for r in compared.ranked if degenerate(r.leader.attachment, study.surroundings, r.fitted.values()) is None
+        r for r in compared.ranked if degenerate(r.candidate.attachment, study.surroundings, r.fitted.values()) is None
     ]
     in_turn = rank_by_likelihood(sound, settings, study.budget)
     paying = [
@@ -118,4 +118,4 @@ def _at_other_ports(
     ):
         return []
     known = [k.attachment for k in found]
-    return at_other_ports(study, best.leader.attachment, known, screened, state.current.fits)
+    return at_other_ports(study, best.candidate.attachment, known, screened, state.current.fits)

@@ -68,5 +68,5 @@ def _offered(study: Study, state: SearchState, curves: bool) -> list[Attachment]
 def orders_before(study: Study, state: SearchState) -> list[float]:
     """Orders that refits of earlier steps came to: what is there now may hide the one that is right from a scan."""
     ranked = [r for done in state.steps for r in done.ranked if r.gain > study.settings.least_gain]
-    values = ((r.fitted.values(), f"{r.leader.attachment.prefix}.order") for r in ranked)
+    values = ((r.fitted.values(), f"{r.candidate.attachment.prefix}.order") for r in ranked)
     return [found[name] for found, name in values if name in found]

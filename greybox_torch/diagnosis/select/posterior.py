@@ -10,7 +10,7 @@ import numpy as np
 from greybox_torch.diagnosis.effect import Alternative, Effect
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.hypothesis.significance import surely_better
+from greybox_torch.diagnosis.hypothesis.significance import overall_significance
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -47,10 +47,10 @@ def shared(
     """
     weights: dict[tuple[str, str], float] = {}
     for rival in ranked:
-        key = (rival.leader.attachment.port, rival.leader.attachment.mechanism.name)
+        key = (rival.candidate.attachment.port, rival.candidate.attachment.mechanism.name)
         same = (
-            rival.leader.attachment.port == chosen.leader.attachment.port
-            and key[1] == chosen.leader.attachment.mechanism.name
+            rival.candidate.attachment.port == chosen.candidate.attachment.port
+            and key[1] == chosen.candidate.attachment.mechanism.name
         )
         if not same:
             weights[key] = max(weights.get(key, 0.0), _weight(chosen, rival, settings))
@@ -62,11 +62,11 @@ def shared(
 
 
 def by_comparison(without: Hypothesis, current: Hypothesis, settings: DiagnosisSettings) -> float:
-    """The probability of an effect whose rivals are not on record: from how surely it improves on the hypothesis without it.
+    """The probability of an effect whose rivals are not on record: from how significant its improvement on the hypothesis without it is.
 
     The hypothesis without it is the only rival that is known: it has the weight that :func:`shared` gives a rival z standard errors behind.
     """
-    behind = surely_better(without, current, settings)
+    behind = overall_significance(without, current, settings)
     weight = float(np.exp(-0.5 * (behind / settings.windows_temperature) ** 2))
     return round(settings.highest_probability / (1.0 + weight), 4)
 
@@ -83,7 +83,7 @@ def _weight(chosen: RankedCandidate, rival: RankedCandidate, settings: Diagnosis
 def _behind(chosen: RankedCandidate, rival: RankedCandidate, settings: DiagnosisSettings) -> float:
     """Standard errors by which the chosen one is better: by the likelihood of whole records, where that told them apart."""
     if chosen.cost is None or rival.cost is None:
-        return surely_better(rival.fitted, chosen.fitted, settings)
+        return overall_significance(rival.fitted, chosen.fitted, settings)
     return float(np.sqrt(2.0 * max(0.0, rival.cost - chosen.cost)))
 
 
@@ -91,7 +91,7 @@ def _twins(chosen: RankedCandidate, rival: RankedCandidate) -> bool:
     """Whether two laws do the same to one input and one output; then what sets their fits apart is how each is computed."""
     records = chosen.fitted.problem.records
     alone = len(records.u) == 1 and len(records.y) == 1
-    return alone and rival.leader.attachment.mechanism.name in chosen.leader.attachment.mechanism.twins
+    return alone and rival.candidate.attachment.mechanism.name in chosen.candidate.attachment.mechanism.twins
 
 
 def confidence(

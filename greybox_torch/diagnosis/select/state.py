@@ -66,7 +66,7 @@ class SearchState:
     def step_of(self, prefix: str) -> SelectionStep | None:
         """The step in which an effect was taken, the last one where it was chosen anew beside the others."""
         return next(
-            (s for s in reversed(self.steps) if s.taken is not None and s.taken.leader.attachment.prefix == prefix),
+            (s for s in reversed(self.steps) if s.taken is not None and s.taken.candidate.attachment.prefix == prefix),
             None,
         )
 

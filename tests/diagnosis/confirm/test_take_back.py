@@ -48,7 +48,7 @@ def test_the_contained_law_is_meant_where_the_larger_one_predicts_no_better(chos
     state = result_of(with_simpler_laws(search.study, search.state, others))
     (effect,) = state.effects
     assert effect.mechanism.name == meant
-    assert state.steps[0].taken.leader.attachment.mechanism.name == meant
+    assert state.steps[0].taken.candidate.attachment.mechanism.name == meant
     assert state.step_of(effect.prefix) is state.steps[0]
 
 

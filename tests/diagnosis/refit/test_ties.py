@@ -45,11 +45,11 @@ def ranked(stub) -> Callable[..., RankedCandidate]:
 
 
 def names(found: list[RankedCandidate]) -> list[str]:
-    return [r.leader.attachment.mechanism.name for r in found]
+    return [r.candidate.attachment.mechanism.name for r in found]
 
 
 def costing(monkeypatch, **costs: float) -> None:
-    monkeypatch.setattr(ties, "_cost", lambda r: costs[r.leader.attachment.mechanism.name])
+    monkeypatch.setattr(ties, "_cost", lambda r: costs[r.candidate.attachment.mechanism.name])
 
 
 @pytest.mark.parametrize(("gravity", "first"), [(98.0, "constant_bias"), (90.0, "gravity")])

@@ -32,9 +32,9 @@ def looks(dead_zone_search, screen) -> list[list[ScreenScore]]:
 def test_the_effect_that_is_there_explains_most(looks) -> None:
     for at_length in looks:
         best = {}
-        for look in at_length:
-            name = look.attachment.mechanism.name
-            best[name] = max(best.get(name, -np.inf), look.explained)
+        for score in at_length:
+            name = score.attachment.mechanism.name
+            best[name] = max(best.get(name, -np.inf), score.explained)
         ranked = sorted(best, key=lambda name: -best[name])
         assert best["actuator_deadzone"] > 0.6
         assert "actuator_deadzone" in ranked[:2], "at most a free curve at the same place explains more"
@@ -42,31 +42,31 @@ def test_the_effect_that_is_there_explains_most(looks) -> None:
 
 
 def test_shares_are_shares(looks) -> None:
-    for look in (look for at_length in looks for look in at_length):
-        assert np.isfinite(look.size).all() and len(look.size) == len(look.probe.directions)
-        assert -1e-6 < look.explained <= 1.0
+    for score in (score for at_length in looks for score in at_length):
+        assert np.isfinite(score.size).all() and len(score.size) == len(score.probe.directions)
+        assert -1e-6 < score.explained <= 1.0
 
 
 def test_what_a_parameter_takes_up_already_explains_nothing(looks) -> None:
     """Viscous friction and a gain of the input are the motor's own b and k / J: projected out."""
-    taken = [look for at in looks for look in at if look.attachment.mechanism.name == "viscous_friction"]
-    assert taken and all(abs(look.explained) < 0.01 for look in taken)
+    taken = [score for at in looks for score in at if score.attachment.mechanism.name == "viscous_friction"]
+    assert taken and all(abs(score.explained) < 0.01 for score in taken)
 
 
 def test_size_of_the_effect_is_near_the_truth(looks) -> None:
     """At zero width the tangent is that of a bias against the sign of the voltage: its size is the half width."""
     for at_length in looks:
-        (look,) = [
+        (score,) = [
             x
             for x in at_length
             if x.attachment.mechanism.name == "actuator_deadzone" and x.probe.directions == ("half_width",)
         ]
-        assert look.size[0] == pytest.approx(0.5, rel=0.25)
+        assert score.size[0] == pytest.approx(0.5, rel=0.25)
 
 
 def test_no_effect_no_share(motor_data, motor, begun, screen) -> None:
     clean = begun(motor_data(), motor)
-    explained = [look.explained for fit in clean.plain.fits[:1] for look in screen.scores(fit)]
+    explained = [score.explained for fit in clean.plain.fits[:1] for score in screen.scores(fit)]
     assert max(explained) < 0.02
 
 

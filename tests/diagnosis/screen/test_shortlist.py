@@ -16,7 +16,7 @@ from greybox_torch.mechanisms.mechanism import SHARE, Probe
 from greybox_torch.mechanisms.unknown import Unknown
 
 
-def look(mechanism, explained: float, *size: float, directions=(), port="rotor", **values: float) -> ScreenScore:
+def score(mechanism, explained: float, *size: float, directions=(), port="rotor", **values: float) -> ScreenScore:
     probe = Probe(directions or ("bias",), values)
     return ScreenScore(Attachment(port, mechanism), probe, 100, explained, np.array(size))
 
@@ -38,59 +38,59 @@ def found(dead_zone_search, fit, stub):
 
 
 def names(found) -> list[str]:
-    return [leader.attachment.mechanism.name for leader in found]
+    return [candidate.attachment.mechanism.name for candidate in found]
 
 
 def test_friction_that_would_drive_is_passed_over(found) -> None:
-    driving = look(CoulombFriction(), 0.9, -1.0, directions=("F_c",), v_0=0.1)
-    opposing = look(CoulombFriction(), 0.3, 1.0, directions=("F_c",), v_0=0.2)
+    driving = score(CoulombFriction(), 0.9, -1.0, directions=("F_c",), v_0=0.1)
+    opposing = score(CoulombFriction(), 0.3, 1.0, directions=("F_c",), v_0=0.2)
     assert found([driving]) == []
-    (leader,) = found([driving, opposing])
-    assert leader.explained == 0.3
-    assert leader.starts[0]["rotor.coulomb_friction.v_0"] == 0.2
+    (candidate,) = found([driving, opposing])
+    assert candidate.explained == 0.3
+    assert candidate.starts[0]["rotor.coulomb_friction.v_0"] == 0.2
 
 
 def test_one_physical_direction_of_several_is_enough_and_starts_stay_in_bounds(found) -> None:
-    (leader,) = found([look(StribeckFriction(), 0.4, -0.2, 0.5, directions=("F_c", "F_s"), v_s=1.0, v_0=0.2)])
-    assert leader.starts[0]["rotor.stribeck_friction.F_c"] == 0.0
-    assert leader.starts[0]["rotor.stribeck_friction.F_s"] == 0.5
+    (candidate,) = found([score(StribeckFriction(), 0.4, -0.2, 0.5, directions=("F_c", "F_s"), v_s=1.0, v_0=0.2)])
+    assert candidate.starts[0]["rotor.stribeck_friction.F_c"] == 0.0
+    assert candidate.starts[0]["rotor.stribeck_friction.F_s"] == 0.5
 
 
 def test_share_of_an_effect_is_not_negative_and_no_parameter(found) -> None:
-    lag = look(InputLag(), 0.5, 0.8, directions=(SHARE,), port="actuator", T=0.06)
-    assert found([look(InputLag(), 0.5, -0.8, directions=(SHARE,), port="actuator", T=0.06)]) == []
-    (leader,) = found([lag])
-    assert leader.starts[0] == {"J": 0.01, "b": 0.1, "actuator.input_lag.T": 0.06}
+    lag = score(InputLag(), 0.5, 0.8, directions=(SHARE,), port="actuator", T=0.06)
+    assert found([score(InputLag(), 0.5, -0.8, directions=(SHARE,), port="actuator", T=0.06)]) == []
+    (candidate,) = found([lag])
+    assert candidate.starts[0] == {"J": 0.01, "b": 0.1, "actuator.input_lag.T": 0.06}
 
 
 def test_starts_are_the_card_and_the_fit(found) -> None:
-    (leader,) = found([look(ConstantBias(), 0.5, 0.3)])
-    assert leader.starts == (
+    (candidate,) = found([score(ConstantBias(), 0.5, 0.3)])
+    assert candidate.starts == (
         {"J": 0.01, "b": 0.1, "rotor.constant_bias.bias": 0.3},
         {"J": 0.02, "b": 0.05, "rotor.constant_bias.bias": 0.3},
     )
 
 
 def test_the_same_at_two_lengths_is_one_hypothesis(found) -> None:
-    short, long = look(ConstantBias(), 0.1, 0.3), look(ConstantBias(), 0.6, 0.4)
-    (leader,) = found([short], [long])
-    assert leader.explained == 0.6
-    assert [s["rotor.constant_bias.bias"] for s in leader.starts] == [0.4, 0.4, 0.3, 0.3]
+    short, long = score(ConstantBias(), 0.1, 0.3), score(ConstantBias(), 0.6, 0.4)
+    (candidate,) = found([short], [long])
+    assert candidate.explained == 0.6
+    assert [s["rotor.constant_bias.bias"] for s in candidate.starts] == [0.4, 0.4, 0.3, 0.3]
 
 
 def test_best_first_nothing_tiny_not_all_and_a_curve_beside_the_named(found) -> None:
-    ripples = [look(TorqueRipple(k + 2.0), 0.9 - 0.05 * k, 1.0, 1.0, directions=("a", "b")) for k in range(10)]
-    curve = look(Unknown("speed"), 0.01, *np.ones(14), directions=tuple(f"w_{k}" for k in range(14)))
-    tiny = look(ConstantBias(), 1e-4, 0.3)
+    ripples = [score(TorqueRipple(k + 2.0), 0.9 - 0.05 * k, 1.0, 1.0, directions=("a", "b")) for k in range(10)]
+    curve = score(Unknown("speed"), 0.01, *np.ones(14), directions=tuple(f"w_{k}" for k in range(14)))
+    tiny = score(ConstantBias(), 1e-4, 0.3)
     chosen = found([*ripples, curve, tiny])
     assert names(chosen)[0] == "torque_ripple" and names(chosen)[-1] == "unknown"
     assert "constant_bias" not in names(chosen)
-    shares = [leader.explained for leader in chosen]
+    shares = [candidate.explained for candidate in chosen]
     assert shares == sorted(shares, reverse=True) and len(shares) < 10
 
 
 def test_numbers_that_are_not_are_passed_over(found) -> None:
-    assert found([look(ConstantBias(), np.nan, 0.3)]) == []
+    assert found([score(ConstantBias(), np.nan, 0.3)]) == []
 
 
 def test_identity() -> None:

@@ -37,18 +37,18 @@ from greybox_torch.mechanisms.varying_friction import FrictionWarmup
 SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
 
 
-def look(motor, explained: float) -> ScreenScore:
+def score(motor, explained: float) -> ScreenScore:
     return ScreenScore(attach(motor, "rotor", ConstantBias()), Probe(("bias",)), 31, explained, np.ones(1))
 
 
 def test_what_ties_with_the_best_look_is_followed_as_well(motor, stub) -> None:
     study = stub(settings=SETTINGS, budget=BUDGET)
-    few = [look(motor, 0.8 - 0.2 * k) for k in range(4)]
+    few = [score(motor, 0.8 - 0.2 * k) for k in range(4)]
     assert _with_ties(study, few) == few
-    clear = [look(motor, 0.9), *[look(motor, 0.3)] * 9]
+    clear = [score(motor, 0.9), *[score(motor, 0.3)] * 9]
     assert len(_with_ties(study, clear)) == BUDGET.named_per_length
-    assert len(_with_ties(study, [look(motor, 0.8)] * 6)) == 6
-    assert len(_with_ties(study, [look(motor, 0.8)] * 30)) == BUDGET.most_screen_ties
+    assert len(_with_ties(study, [score(motor, 0.8)] * 6)) == 6
+    assert len(_with_ties(study, [score(motor, 0.8)] * 30)) == BUDGET.most_screen_ties
     assert _with_ties(study, []) == []
 
 
@@ -86,9 +86,9 @@ def test_hypotheses_keep_their_fits_where_the_order_is_not_that_of_the_gains(mot
         effect = attach(motor, "rotor", law)
         fitted = search.refitted((effect,), search.plain)
         ranked.append(replace(judged(Candidate(effect, (), 0.5), search.plain, fitted, SETTINGS), gain=gain))
-    again = compare(search.study, search.plain, [[look(motor, 0.5)]], ranked).ranked
-    assert {r.leader.attachment.prefix for r in again} == {r.leader.attachment.prefix for r in ranked}
-    assert all(r.fitted.effects == (r.leader.attachment,) for r in again)
+    again = compare(search.study, search.plain, [[score(motor, 0.5)]], ranked).ranked
+    assert {r.candidate.attachment.prefix for r in again} == {r.candidate.attachment.prefix for r in ranked}
+    assert all(r.fitted.effects == (r.candidate.attachment,) for r in again)
 
 
 def test_orders_of_earlier_rounds_are_looked_at_again(motor_data, motor, begun) -> None:

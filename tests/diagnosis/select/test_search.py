@@ -70,12 +70,12 @@ def test_a_curve_is_also_refitted_from_a_part_of_it(dead_zone_search) -> None:
     fit: WindowFit = search.plain.fits[0]
     curve = attach(search.problem.model, "rotor", Unknown("speed"))
     probe = curve.mechanism.probes(search.surroundings["rotor"])[0]
-    look = ScreenScore(curve, probe, 31, 0.4, np.arange(1.0, 15.0))
-    (leader,) = shortlist(search.study, [[look]], [fit])
-    whole, part = leader.starts[:2]
+    score = ScreenScore(curve, probe, 31, 0.4, np.arange(1.0, 15.0))
+    (candidate,) = shortlist(search.study, [[score]], [fit])
+    whole, part = candidate.starts[:2]
     heights = [f"{curve.prefix}.w_{k}" for k in range(14)]
-    assert [whole[n] for n in heights] == list(look.size)
-    assert [part[n] for n in heights] == pytest.approx(BUDGET.part_of_curve * look.size)
+    assert [whole[n] for n in heights] == list(score.size)
+    assert [part[n] for n in heights] == pytest.approx(BUDGET.part_of_curve * score.size)
 
 
 def test_what_repeats_once_per_turn_is_not_offered_on_a_length(motor, dead_zone_search) -> None:
@@ -106,7 +106,7 @@ def test_windows_that_fail_are_passed_over_and_probes_that_fail_are_dropped() ->
 
 
 def test_what_a_law_lacks_is_not_a_curve_of_its_own(dead_zone_search, ranked) -> None:
-    """Of a mismatch of 1, a curve must explain two per cent, however significance it does."""
+    """Of a mismatch of 1, a curve must explain two per cent, however significant that is."""
     search, left = dead_zone_search, np.full(WINDOWS, 0.1)
     fits = tuple(replace(f, mean_square=1.0) for f in search.plain.fits)
     now = tuple(replace(f, mean_square=0.1) for f in search.plain.fits)

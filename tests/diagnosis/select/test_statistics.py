@@ -9,7 +9,7 @@ import pytest
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, gain
 from greybox_torch.diagnosis.effect import Effect
-from greybox_torch.diagnosis.hypothesis.significance import likelihood_ratio, significance
+from greybox_torch.diagnosis.hypothesis.significance import likelihood_significance, window_significance
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.choice import least_gain
@@ -51,19 +51,19 @@ def test_chance_is_not_sure(fitted) -> None:
     for seed in range(200):
         before = energies(seed)
         after = before + np.random.default_rng(seed + 1000).normal(0, 0.01, 64)
-        high += significance(fitted(before), fitted(after), SETTINGS) > 3.0
+        high += window_significance(fitted(before), fitted(after), SETTINGS) > 3.0
     assert high <= 4
 
 
 def test_everywhere_is_sure(fitted) -> None:
     before = energies(0)
-    assert significance(fitted(before), fitted(0.7 * before), SETTINGS) > 10.0
+    assert window_significance(fitted(before), fitted(0.7 * before), SETTINGS) > 10.0
 
 
 def test_an_effect_that_varies_by_orders_of_magnitude_is_sure(fitted) -> None:
     before = energies(0) * np.geomspace(1.0, 1e6, 64)
     after = before * np.random.default_rng(1).uniform(0.6, 0.9, 64)
-    assert significance(fitted(before), fitted(after), SETTINGS) > 5.0
+    assert window_significance(fitted(before), fitted(after), SETTINGS) > 5.0
 
 
 def test_one_window_is_sure(fitted) -> None:
@@ -71,18 +71,18 @@ def test_one_window_is_sure(fitted) -> None:
     before = energies(0)
     after = before * noise
     before[20] += 5.0
-    assert significance(fitted(before), fitted(after), SETTINGS) > 3.0
+    assert window_significance(fitted(before), fitted(after), SETTINGS) > 3.0
 
 
 def test_worse_is_not_sure(fitted) -> None:
     before = energies(0)
-    assert significance(fitted(before), fitted(1.3 * before), SETTINGS) < 0.5
+    assert window_significance(fitted(before), fitted(1.3 * before), SETTINGS) < 0.5
 
 
 def test_few_windows_say_nothing_and_the_surest_length_counts(fitted) -> None:
     few, many = energies(0, 4), energies(1)
-    assert significance(fitted(few), fitted(0.1 * few), SETTINGS) == 0.0
-    assert significance(fitted(many, few), fitted(0.7 * many, few), SETTINGS) == significance(
+    assert window_significance(fitted(few), fitted(0.1 * few), SETTINGS) == 0.0
+    assert window_significance(fitted(many, few), fitted(0.7 * many, few), SETTINGS) == window_significance(
         fitted(many), fitted(0.7 * many), SETTINGS
     )
 
@@ -176,8 +176,8 @@ def test_at_the_noise_likelihood_tells_laws_apart_that_windows_do_not(fitted, no
     less = same * jitter * 0.9975 * same.mean() / (same * jitter).mean()
     small = ranked(ConstantBias(), fitted, 1.0, same, noise=noise)
     large = ranked(CoulombAsymmetry(), fitted, 1.0, less, size=2, noise=noise)
-    assert in_order([small, large], SETTINGS)[0].leader.attachment.mechanism.name == first
-    away = likelihood_ratio(small.fitted, large.fitted, SETTINGS)
+    assert in_order([small, large], SETTINGS)[0].candidate.attachment.mechanism.name == first
+    away = likelihood_significance(small.fitted, large.fitted, SETTINGS)
     assert away == pytest.approx(np.sqrt(-SAMPLES * np.log(0.9975)) if noise == 1.0 else 0.0)
     assert (shared(large, [large, small], SETTINGS)[0] > 0.9) == (noise == 1.0)
 
