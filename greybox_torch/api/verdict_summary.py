@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from rich.console import Console
 from rich.text import Text
@@ -11,6 +11,7 @@ from rich.text import Text
 from greybox_torch.api.scores import print_scores
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.effect import Effect
+from greybox_torch.diagnosis.one_of import Alternative
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.tables import print_table
@@ -72,8 +73,15 @@ def _deviation(value: float | None) -> str | float:
 def _notes(effect: Effect) -> list[str]:
     head = f"{effect.mechanism} at {effect.port}"
     lines = [f"{head}: {effect.where}"] if effect.where else []
-    if effect.alternatives:
-        rivals = ", ".join(f"{a.mechanism} at {a.port} ({a.probability:.2f})" for a in effect.alternatives)
-        advice = f"; to tell them apart: {effect.separating_experiment}" if effect.separating_experiment else ""
-        lines.append(f"{head}: it could also be {rivals}{advice}")
+    advice = f"; to tell them apart: {effect.separating_experiment}" if effect.separating_experiment else ""
+    together = () if effect.one_of is None else effect.one_of.members
+    if effect.one_of is not None:
+        lines.append(f"these recordings do not tell apart: {_listed(together)}{advice}")
+    others = [a for a in effect.alternatives if (a.port, a.mechanism) not in {(m.port, m.mechanism) for m in together}]
+    if others:
+        lines.append(f"{head}: it could also be {_listed(others)}{'' if together else advice}")
     return lines
+
+
+def _listed(hypotheses: Sequence[Alternative]) -> str:
+    return ", ".join(f"{h.mechanism} at {h.port} ({h.probability:.2f})" for h in hypotheses)

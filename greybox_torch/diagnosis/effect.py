@@ -8,14 +8,7 @@ from typing import Any
 
 import numpy as np
 
-
-@dataclass(frozen=True)
-class Alternative:
-    """A hypothesis that was considered and not chosen, with its probability."""
-
-    port: str
-    mechanism: str
-    probability: float
+from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken
 
 
 @dataclass(frozen=True)
@@ -89,6 +82,16 @@ class Effect:
     size: float = float("nan")
     """Share of the mean squared held-out mismatch of the refitted plain model that leaving the effect out brings back."""
 
+    one_of: OneOf | None = None
+    """What these recordings cannot tell from it, as one statement; None where it stands alone."""
+
+    @property
+    def headline(self) -> str:
+        """The finding as a headline has it: the statement of what cannot be told apart, or the law and its place."""
+        if self.one_of is None:
+            return f"{spoken(self.mechanism)} at {self.port} (probability {self.probability:.2f})"
+        return f"{self.one_of.statement} (probability {self.one_of.probability:.2f}: {self.one_of.spoken_members})"
+
     @property
     def sentence(self) -> str:
         """What a reader has to know of it where it is no finding."""
@@ -108,10 +111,10 @@ class Effect:
             "where": self.where,
             "parameters": {n: dict(v) for n, v in self.parameters.items()},
             "explained": self.explained,
-            "alternatives": [
-                {"port": a.port, "mechanism": a.mechanism, "probability": a.probability} for a in self.alternatives
-            ],
+            "alternatives": [a.as_json() for a in self.alternatives],
         }
+        if self.one_of is not None:
+            result["one_of"] = self.one_of.as_json()
         if self.ceiling is not None:
             result["ceiling"] = self.ceiling
         if self.curve is not None and self.mechanism == "unknown":
@@ -128,8 +131,3 @@ class Effect:
             "sentence": f"{self.sentence}.",
             "parameters": {n: dict(v) for n, v in self.parameters.items()},
         }
-
-
-def spoken(mechanism: str) -> str:
-    """A mechanism's name in a sentence."""
-    return "an unknown effect" if mechanism == "unknown" else mechanism.replace("_", " ")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from greybox_torch.diagnosis.effect import Effect, spoken
+from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
 from greybox_torch.estimate.comparison import Score, fit_rows
 
@@ -90,9 +90,10 @@ class Verdict:
             return f"Nothing was found to be missing from {self.model} before the search was stopped: no answer yet."
         if not self.effects:
             return f"Nothing is missing from {self.model} that these recordings can show (confidence {self.confidence:.2f})."
-        parts = [f"{spoken(e.mechanism)} at {e.port} (probability {e.probability:.2f})" for e in self.effects]
+        parts = [e.headline for e in self.effects]
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
-        return f"The mismatch is {found}{self._gain()}."
+        start = "The mismatch is" if all(e.one_of is None for e in self.effects) else "The mismatch:"
+        return f"{start} {found}{self._gain()}."
 
     def _gain(self) -> str:
         pairs = [

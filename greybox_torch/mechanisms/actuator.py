@@ -22,6 +22,7 @@ class InputLag(Mechanism):
     needs = ("input",)
     fades = True
     natural = ("T.lower",)
+    nature = "a time shift"
     explanation = "The input acts through a first-order lag (current loop, valve)."
     source = "L. Ljung, System Identification, 2nd ed., 1999"
     experiment = "a step or a chirp of the input, to tell a lag from a delay"
@@ -56,6 +57,7 @@ class InputDelay(Mechanism):
     kinds = ("actuator",)
     needs = ("input", "delayed")
     twins = ("output_delay",)
+    nature = "a time shift"
     explanation = "The input acts after a dead time (computation, bus, transport)."
     source = "L. Ljung, System Identification, 2nd ed., 1999"
     experiment = "a step or a chirp of the input, to tell a lag from a delay"
@@ -79,6 +81,7 @@ class InputBias(LinearLaw):
 
     name = "input_bias"
     kinds = ("actuator",)
+    nature = "a constant offset"
     explanation = "The input that acts is off by a constant (amplifier offset)."
     source = "A. Janot, M. Gautier, M. Brunot, Data set and reference models of EMPS, 2019"
     experiment = "a record with zero input"
@@ -94,6 +97,7 @@ class InputGain(LinearLaw):
     name = "input_gain"
     kinds = ("actuator",)
     needs = ("input",)
+    nature = "another gain than recorded"
     explanation = "The input acts with another gain than recorded (current sensor, torque constant)."
     source = "M. Gautier, S. Briot, J. Dyn. Sys. Meas. Control 136, 2014"
     experiment = "a known load: from force to motion a gain cannot be told from mass and friction"
@@ -109,6 +113,7 @@ class TorqueSaturation(Mechanism):
     name = "torque_saturation"
     kinds = ("actuator",)
     needs = ("input",)
+    nature = "an input that acts in part only"
     explanation = "The input that acts is limited (current limit, valve fully open)."
     source = "H. K. Khalil, Nonlinear Systems, 3rd ed., 2002"
     experiment = "large inputs of both signs"
@@ -134,6 +139,7 @@ class ActuatorDeadzone(Mechanism):
     name = "actuator_deadzone"
     kinds = ("actuator",)
     needs = ("input",)
+    nature = "an input that acts in part only"
     explanation = "Small inputs do nothing (valve overlap, amplifier dead band)."
     source = "G. Tao, P. V. Kokotović, Adaptive Control of Systems with Actuator and Sensor Nonlinearities, 1996"
     experiment = "small inputs around zero"

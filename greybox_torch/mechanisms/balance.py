@@ -20,6 +20,7 @@ class LinearLeak(Mechanism):
     needs = ("level",)
     generalises = ("constant_bias",)
     natural = ("reference",)
+    nature = "a flow that depends on the level"
     explanation = (
         "Something leaks in proportion to how far the level is from a reference (heat loss to a room, seepage)."
     )
@@ -55,6 +56,7 @@ class ThresholdFlow(Mechanism):
     name = "threshold_flow"
     kinds = ("balance",)
     needs = ("level",)
+    nature = "a flow that depends on the level"
     explanation = "Above a level something flows off (overflow, relief valve)."
     source = (
         "M. Schoukens, J. P. Noël, Three benchmarks addressing open challenges in nonlinear identification, IFAC 2017"

@@ -18,6 +18,7 @@ class ConstantBias(LinearLaw):
 
     name = "constant_bias"
     kinds = ("body", "balance")
+    nature = "a constant offset"
     explanation = "A constant force acts (offset of an amplifier, unbalanced weight, preload)."
     source = "A. Janot, M. Gautier, M. Brunot, Data set and reference models of EMPS, 2019"
     experiment = "standstill and reversals without load: a bias pushes at rest, an asymmetry does not"
@@ -33,6 +34,7 @@ class TorqueRipple(Mechanism):
     name = "torque_ripple"
     kinds = ("body",)
     needs = ("position",)
+    nature = "a force that depends on position"
     explanation = "The drive's force varies periodically with position (cogging, commutation)."
     source = "T. M. Jahns, W. L. Soong, IEEE Trans. Industrial Electronics 43(2), 1996"
     experiment = "slow constant speed over several turns, in both directions"
@@ -66,6 +68,7 @@ class EndStop(Mechanism):
     name = "end_stop"
     kinds = ("body",)
     needs = ("position", "speed")
+    nature = "a force that depends on position"
     explanation = "Past a position something stiff pushes back (mechanical stop, cable)."
     source = "F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts, 1996"
     experiment = "slow approach to the ends of travel"
@@ -116,6 +119,7 @@ class AdditionalMode(Mechanism):
     kinds = ("body",)
     needs = ("speed",)
     natural = ("zeta",)
+    nature = "one more mass on a spring"
     explanation = "One more mass hangs on this body by a spring and a damper (an unmodelled resonance)."
     source = "E. Wernholt, S. Gunnarsson, SYSID 2006; J. P. Den Hartog, Mechanical Vibrations, 1956"
     experiment = "broadband excitation around the resonance"

@@ -20,6 +20,7 @@ class ViscousFriction(LinearLaw):
     name = "viscous_friction"
     kinds = ("body",)
     needs = ("speed",)
+    nature = "friction that grows with speed"
     explanation = "A force proportional to speed opposes the motion (lubricant, back-EMF, air at low speed)."
     source = "B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30(7), 1994"
     experiment = "several constant speeds in each direction"
@@ -35,6 +36,7 @@ class CoulombFriction(DryLaw):
     name = "coulomb_friction"
     kinds = ("body",)
     needs = ("speed",)
+    nature = "dry friction"
     explanation = "A constant force opposes the motion, whatever its speed (dry friction)."
     source = "C. A. Coulomb, 1785; B. Armstrong-Hélouvry et al., Automatica 30(7), 1994"
     experiment = "slow reversals at constant speed"
@@ -54,6 +56,7 @@ class StribeckFriction(Mechanism):
     includes = generalises
     essential = ("F_s",)
     natural = ("v_0.lower",)
+    nature = "dry friction"
     explanation = (
         "Friction is highest near standstill and falls with speed before viscous friction takes over (Stribeck effect)."
     )
@@ -94,6 +97,7 @@ class CoulombAsymmetry(DryLaw):
     kinds = ("body",)
     needs = ("speed",)
     generalises = ("constant_bias",)
+    nature = "dry friction"
     explanation = (
         "The Coulomb level differs between the two directions of motion (preloaded bearings, seals, gear flanks)."
     )
@@ -114,6 +118,7 @@ class QuadraticDrag(LinearLaw):
     name = "quadratic_drag"
     kinds = ("body",)
     needs = ("speed",)
+    nature = "friction that grows with speed"
     explanation = "A force growing with the square of speed opposes the motion (air or oil churning)."
     source = "B. Armstrong-Hélouvry et al., Automatica 30(7), 1994"
     experiment = "constant speeds up to the highest"

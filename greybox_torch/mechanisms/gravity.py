@@ -21,6 +21,7 @@ class Gravity(Mechanism):
     name = "gravity"
     kinds = ("body",)
     needs = ("position",)
+    nature = "a force that depends on position"
     explanation = "Weight pulls with a torque that depends on the angle, once per turn."
     source = "W. Khalil, E. Dombre, Modeling, Identification and Control of Robots, 2002"
     experiment = "slow motion over a full turn"

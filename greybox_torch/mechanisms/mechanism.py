@@ -54,6 +54,8 @@ class Mechanism:
     """Amplitudes without which this would be another law; by default it is absent only where all are zero."""
     natural: ClassVar[tuple[str, ...]] = ()
     """Parameters whose bounds are ends that they may well have (``NAME``, ``NAME.lower`` or ``NAME.upper``); zero always is."""
+    nature: ClassVar[str] = ""
+    """What it has in common with its look-alikes, as a noun, for a statement about several that cannot be told apart."""
     explanation: ClassVar[str] = ""
     source: ClassVar[str] = ""
     experiment: ClassVar[str] = ""

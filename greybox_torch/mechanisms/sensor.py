@@ -19,6 +19,7 @@ class SensorLag(Mechanism):
     needs = ("output",)
     fades = True
     natural = ("T.lower",)
+    nature = "a time shift"
     explanation = "The output is recorded through a first-order lag (filter, sensor dynamics)."
     source = "L. Ljung, System Identification, 2nd ed., 1999"
     experiment = "a second sensor, or a known motion"
@@ -55,6 +56,7 @@ class OutputDelay(Mechanism):
     fades = True
     twins = ("input_delay",)
     natural = ("T.lower",)
+    nature = "a time shift"
     explanation = "The output is recorded after a dead time (sampling, bus, filter)."
     source = "H. Padé, 1892; L. Ljung, System Identification, 2nd ed., 1999"
     experiment = "an input whose own timing is known; without one a delay of the output is a delay of the input"
@@ -88,6 +90,7 @@ class SensorBias(LinearLaw):
 
     name = "sensor_bias"
     kinds = ("sensor",)
+    nature = "a constant offset"
     explanation = "The recorded output is off by a constant (sensor offset)."
     source = "J. J. Craig, Introduction to Robotics, 3rd ed., 2005"
     experiment = "a record at standstill"
@@ -103,6 +106,7 @@ class SensorGain(LinearLaw):
     name = "sensor_gain"
     kinds = ("sensor",)
     needs = ("output",)
+    nature = "another gain than recorded"
     explanation = "The output is recorded with another gain (scale factor)."
     source = "J. J. Craig, Introduction to Robotics, 3rd ed., 2005"
     experiment = "a second sensor, or a known motion"

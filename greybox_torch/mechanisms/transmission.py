@@ -24,6 +24,7 @@ class Backlash(Mechanism):
     kinds = ("coupling",)
     needs = ("deflection",)
     kinematic = True
+    nature = "a coupling that is no linear spring"
     explanation = "There is play: within a gap the coupling transmits nothing."
     source = "M. Nordin, P.-O. Gutman, Automatica 38(10), 2002"
     experiment = "reversals at low torque, so that the gap is crossed slowly"
@@ -48,6 +49,7 @@ class NonlinearStiffness(Mechanism):
     kinds = ("coupling",)
     needs = ("deflection",)
     natural = ("d_0",)
+    nature = "a coupling that is no linear spring"
     explanation = "The spring stiffens or softens with deflection."
     source = "T. Tuttle, W. Seering, IEEE Trans. Robotics and Automation 12(3), 1996 (harmonic drives)"
     experiment = "static loads up to the largest"
@@ -83,6 +85,7 @@ class HystereticSpring(Mechanism):
     kinds = ("coupling",)
     needs = ("rate",)
     natural = ("sharpness", "z_0.lower")
+    nature = "a coupling that is no linear spring"
     explanation = "The coupling remembers: loading and unloading follow different curves (micro-slip, rubber)."
     source = "R. Bouc, 1967; Y.-K. Wen, J. Eng. Mech. 102(2), 1976; M. Ruderman, F. Hoffmann, T. Bertram, IEEE TIE 56(10), 2009"
     experiment = "slow loading and unloading between several limits"
@@ -128,6 +131,7 @@ class NonlinearDamping(Mechanism):
     kinds = ("coupling",)
     needs = ("rate",)
     natural = ("r_0",)
+    nature = "damping that is not proportional to the rate"
     explanation = (
         "The coupling's damping is not proportional to the rate of deflection, or differs between the two directions."
     )

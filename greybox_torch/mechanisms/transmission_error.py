@@ -25,6 +25,7 @@ class TransmissionError(Mechanism):
     needs = ("deflection", "position")
     kinematic = True
     natural = ("reaction",)
+    nature = "a coupling that is no linear spring"
     explanation = "The gear's output does not follow its input exactly: a kinematic error periodic in position."
     source = "T. Tuttle, W. Seering, IEEE Trans. Robotics and Automation 12(3), 1996"
     experiment = "slow constant speed over several turns, in both directions"

@@ -20,6 +20,7 @@ class LoadDependentFriction(DryLaw):
     name = "load_dependent_friction"
     kinds = ("body",)
     needs = ("speed", "load")
+    nature = "dry friction"
     explanation = "Friction grows with the load carried (gear meshes, bearings under force)."
     source = "P. Hamon, M. Gautier, P. Garrec, IEEE/RSJ IROS, 2010; A. C. Bittencourt, S. Gunnarsson, J. Dyn. Sys. Meas. Control 134, 2012"
     experiment = "the same speeds under different loads"
@@ -37,6 +38,7 @@ class PositionDependentFriction(Mechanism):
     needs = ("speed", "position")
     generalises = ("coulomb_friction",)
     natural = ("v_0.lower",)
+    nature = "dry friction"
     explanation = "The friction level varies periodically with position (bent shaft, eccentric bearing)."
     source = "M. R. Popović, A. A. Goldenberg, IEEE Trans. Robotics and Automation 14(1), 1998"
     experiment = "the same positions passed in both directions"
@@ -72,6 +74,7 @@ class FrictionWarmup(Mechanism):
     kinds = ("body",)
     needs = ("speed", "time")
     natural = ("v_0.lower",)
+    nature = "dry friction"
     explanation = "The friction level drifts as the machine warms up."
     source = "A. C. Bittencourt, S. Gunnarsson, J. Dyn. Sys. Meas. Control 134, 2012"
     experiment = "the same motion repeated from cold to warm"

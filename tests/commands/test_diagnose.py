@@ -17,7 +17,8 @@ from greybox_torch.checkpoint import load_checkpoint
 from greybox_torch.cli import app
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis import pipeline
-from greybox_torch.diagnosis.effect import Alternative, Curve, Effect
+from greybox_torch.diagnosis.effect import Curve, Effect
+from greybox_torch.diagnosis.one_of import Alternative
 from greybox_torch.diagnosis.stopping import Deadline
 from greybox_torch.diagnosis.verdict import Trace, Verdict
 from greybox_torch.errors import NumericalError

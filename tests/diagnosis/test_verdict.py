@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.effect import Alternative, Curve, Effect
+from greybox_torch.diagnosis.effect import Curve, Effect
+from greybox_torch.diagnosis.one_of import Alternative, OneOf
 from greybox_torch.diagnosis.verdict import Left, Verdict
 from greybox_torch.estimate.comparison import Score
 
@@ -79,6 +80,26 @@ def test_keys_are_those_of_the_contract() -> None:
 def test_share_of_the_ceiling_where_it_is_known() -> None:
     first, second = verdict(BACKLASH, replace(BACKLASH, ceiling=0.9)).as_json()["effects"]
     assert "ceiling" not in first and second["ceiling"] == 0.9
+
+
+def test_what_cannot_be_told_apart_is_the_headline() -> None:
+    members = (Alternative("gear_spring", "backlash", 0.6), Alternative("arm_spring", "backlash", 0.35))
+    whole = OneOf("a coupling that is no linear spring at gear_spring or arm_spring", 0.95, members)
+    told = verdict(replace(BACKLASH, probability=0.6, one_of=whole))
+    assert told.sentence.startswith(
+        "The mismatch: a coupling that is no linear spring at gear_spring or arm_spring "
+        "(probability 0.95: backlash at gear_spring 0.60, backlash at arm_spring 0.35); with it"
+    )
+    (effect,) = json.loads(json.dumps(told.as_json()))["effects"]
+    assert effect["probability"] == 0.6
+    assert effect["one_of"] == {
+        "statement": "a coupling that is no linear spring at gear_spring or arm_spring",
+        "probability": 0.95,
+        "members": [
+            {"port": "gear_spring", "mechanism": "backlash", "probability": 0.6},
+            {"port": "arm_spring", "mechanism": "backlash", "probability": 0.35},
+        ],
+    }
 
 
 def test_refinements_and_what_is_left_stand_beside_the_findings() -> None:

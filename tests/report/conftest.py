@@ -7,7 +7,8 @@ from datetime import UTC, datetime
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.effect import Alternative, Curve, Effect, Profile
+from greybox_torch.diagnosis.effect import Curve, Effect, Profile
+from greybox_torch.diagnosis.one_of import Alternative
 from greybox_torch.diagnosis.verdict import Trace, Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.estimate.metrics import fit_percent, root_mean_square

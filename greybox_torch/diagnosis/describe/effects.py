@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import Gain
+from greybox_torch.diagnosis.describe.indistinguishable import one_of
 from greybox_torch.diagnosis.describe.profiles import explained_energy, law_curve, local_signals, most_of, profile
 from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
@@ -85,6 +86,7 @@ def _effect(
     profiles = _profiles(study, state, model, attachment, site)
     timelines = () if gain is None else gain.timelines
     mechanism = attachment.mechanism
+    members = None if taken is None else one_of(model.base, taken, probability, study.settings)
     return Effect(
         port=attachment.port,
         mechanism=mechanism.name,
@@ -101,6 +103,7 @@ def _effect(
         separating_experiment=mechanism.experiment,
         ceiling=None if taken is None else ceiling_share(taken),
         timelines=timelines,
+        one_of=members,
     )
 
 

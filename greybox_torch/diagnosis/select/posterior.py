@@ -7,10 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from greybox_torch.diagnosis.effect import Alternative, Effect
+from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import overall_significance
+from greybox_torch.diagnosis.one_of import Alternative
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -45,20 +46,31 @@ def shared(
     Rivals that the data cannot tell apart share it: a rival that the chosen one beats by z standard errors has the weight
     exp(−(z / temperature)² / 2), times the share of the gain that it reaches, and 1/e for every parameter that it has more.
     """
-    weights: dict[tuple[str, str], float] = {}
-    for rival in ranked:
-        key = (rival.candidate.attachment.port, rival.candidate.attachment.mechanism.name)
-        same = (
-            rival.candidate.attachment.port == chosen.candidate.attachment.port
-            and key[1] == chosen.candidate.attachment.mechanism.name
-        )
-        if not same:
-            weights[key] = max(weights.get(key, 0.0), _weight(chosen, rival, settings))
     highest = settings.highest_probability
-    total = 1.0 + sum(weights.values())
-    rivals = sorted(((highest * w / total, *key) for key, w in weights.items()), reverse=True)
-    found = tuple(Alternative(port, name, round(p, 4)) for p, port, name in rivals if p > settings.least_alternative)
-    return round(highest / total, 4), found
+    rivals = shares(chosen, ranked, settings)
+    own = round(highest - sum(p for _, p in rivals), 4)
+    listed = [(r.candidate.attachment, p) for r, p in rivals if p > settings.least_alternative]
+    return own, tuple(Alternative(a.port, a.mechanism.name, round(p, 4)) for a, p in listed)
+
+
+def shares(
+    chosen: RankedCandidate, ranked: Sequence[RankedCandidate], settings: DiagnosisSettings
+) -> list[tuple[RankedCandidate, float]]:
+    """The rivals of the chosen hypothesis of a step with their probabilities, the likeliest first; of each law at a port the best one."""
+    weights: dict[tuple[str, str], tuple[float, RankedCandidate]] = {}
+    for rival in ranked:
+        if (key := _key(rival)) != _key(chosen):
+            weight = _weight(chosen, rival, settings)
+            if key not in weights or weight > weights[key][0]:
+                weights[key] = (weight, rival)
+    total = 1.0 + sum(weight for weight, _ in weights.values())
+    highest = settings.highest_probability
+    found = [(rival, highest * weight / total) for weight, rival in weights.values()]
+    return sorted(found, key=lambda pair: (pair[1], _key(pair[0])), reverse=True)
+
+
+def _key(candidate: RankedCandidate) -> tuple[str, str]:
+    return candidate.candidate.attachment.port, candidate.candidate.attachment.mechanism.name
 
 
 def by_comparison(without: Hypothesis, current: Hypothesis, settings: DiagnosisSettings) -> float:

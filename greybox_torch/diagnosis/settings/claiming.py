@@ -91,6 +91,18 @@ class ProbabilitySettings:
     least_alternative: float = share(
         0.005, "Probability from which a rival is listed.", unit="probability", chosen_by="legibility"
     )
+    least_class_share: float = share(
+        0.05,
+        "Probability from which a rival is told together with the finding, as one statement, wherever its fitted outputs lie.",
+        unit="probability",
+        chosen_by="19 to 1 counts as decided",
+    )
+    visible_divergence: float = number(
+        3.0,
+        "Log-likelihood ratio below which the difference of two hypotheses' fitted outputs cannot be seen.",
+        unit="nats",
+        chosen_by="20 to 1, strong evidence by H. Jeffreys, Theory of Probability, 1961",
+    )
     confidence_missing_unnamed: float = share(
         0.8, 'Confidence in "something is missing" where the size of the error alone says so.', unit="probability"
     )

@@ -29,21 +29,25 @@ class ParameterRow:
 
 @dataclass(frozen=True)
 class Share:
-    """A hypothesis and its probability. ``rest`` marks what is left over for hypotheses that are not listed."""
+    """A hypothesis and its probability. ``together``: the recordings do not tell it from the chosen one; ``rest`` is left over for all
+    hypotheses that are not listed.
+    """
 
     mechanism: str
     port: str
     probability: float
     chosen: bool = False
+    together: bool = False
     rest: bool = False
 
 
 @dataclass(frozen=True)
 class Card:
-    """An effect as its card shows it."""
+    """An effect as its card shows it; ``statement`` where it stands for several that cannot be told apart, with their ``probability``."""
 
     title: str
     port: str
+    statement: str
     probability: float
     explanation: str
     where: str
@@ -77,7 +81,8 @@ def _card(effect: Effect) -> Card:
     return Card(
         title="An unknown effect" if unknown else text.first_capital(text.mechanism(effect.mechanism)),
         port=effect.port,
-        probability=effect.probability,
+        statement="" if effect.one_of is None else text.first_capital(effect.one_of.statement),
+        probability=effect.probability if effect.one_of is None else effect.one_of.probability,
         explanation=effect.explanation,
         where=effect.where,
         signals=effect.signals,
@@ -109,11 +114,17 @@ def _parameters(effect: Effect) -> tuple[ParameterRow, ...]:
 
 def _shares(effect: Effect) -> tuple[Share, ...]:
     """The chosen hypothesis, its rivals, and what probability is left for all others."""
-    rivals = sorted(effect.alternatives, key=lambda a: -a.probability)
+    members = () if effect.one_of is None else effect.one_of.members
+    inside = {(m.port, m.mechanism) for m in members}
+    rivals = {(a.port, a.mechanism): a for a in (*members, *effect.alternatives)}
+    rivals.pop((effect.port, effect.mechanism), None)
     if not rivals:
         return ()
     listed = [Share(text.mechanism(effect.mechanism), effect.port, effect.probability, chosen=True)]
-    listed += [Share(text.mechanism(a.mechanism), a.port, a.probability) for a in rivals]
+    listed += [
+        Share(text.mechanism(a.mechanism), a.port, a.probability, together=place in inside)
+        for place, a in sorted(rivals.items(), key=lambda item: -item[1].probability)
+    ]
     left = 1.0 - sum(share.probability for share in listed)
     return (*listed, Share("anything else", "", left, rest=True)) if left > 0.005 else tuple(listed)
 

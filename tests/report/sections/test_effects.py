@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from greybox_torch.diagnosis.effect import Timeline
+from greybox_torch.diagnosis.one_of import Alternative, OneOf
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report.sections.effects import Effects
 
@@ -26,6 +27,22 @@ def test_a_named_effect(of_kind: Callable[[str], Verdict]) -> None:
     ((panel,),) = card.curve.columns
     assert (panel.x_label, panel.y_label) == ("gear twist [rad]", "effect [N·m]")
     assert [mark.kind for mark in panel.marks] == ["area", "line"]
+
+
+def test_what_cannot_be_told_apart_stands_first(of_kind: Callable[[str], Verdict]) -> None:
+    (effect,) = of_kind("found").effects
+    members = (Alternative("gear_spring", "backlash", 0.9), Alternative("arm_spring", "backlash", 0.05))
+    whole = OneOf("a coupling that is no linear spring at gear_spring or arm_spring", 0.95, members)
+    effects = Effects.of(replace(of_kind("found"), effects=(replace(effect, probability=0.9, one_of=whole),)))
+    assert effects is not None
+    (card,) = effects.cards
+    assert (card.statement[:10], card.title, card.probability) == ("A coupling", "Backlash", 0.95)
+    assert [(s.mechanism, s.port, s.together, round(s.probability, 3)) for s in card.shares] == [
+        ("backlash", "gear_spring", False, 0.9),
+        ("backlash", "arm_spring", True, 0.05),
+        ("nonlinear stiffness", "gear_spring", False, 0.04),
+        ("anything else", "", False, 0.01),
+    ]
 
 
 def test_share_of_the_ceiling(of_kind: Callable[[str], Verdict]) -> None:

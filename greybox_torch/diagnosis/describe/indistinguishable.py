@@ -1,0 +1,66 @@
+"""Which hypotheses these recordings do not tell from a finding, and what they say together."""
+
+from __future__ import annotations
+
+from greybox_torch.diagnosis.describe.divergence import divergence
+from greybox_torch.diagnosis.describe.statement import Member, statement
+from greybox_torch.diagnosis.one_of import Alternative, OneOf
+from greybox_torch.diagnosis.refit.rank import RankedCandidate
+from greybox_torch.diagnosis.select.posterior import shares
+from greybox_torch.diagnosis.select.state import SelectionStep
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.model import GreyBoxModel
+
+
+def one_of(model: GreyBoxModel, step: SelectionStep, probability: float, settings: DiagnosisSettings) -> OneOf | None:
+    """The finding of a step with its rivals whose fitted outputs differ from its own by less than could be seen, or between which these
+    recordings are undecided; None where it stands alone.
+
+    A law that contains the whole force of the one found says the same, where it fits as well: it is no rival. Nor is a free curve.
+
+    Args:
+        model: the plain one, whose inputs and outputs the ports belong to.
+        probability: of the finding.
+    """
+    taken = step.taken
+    if taken is None or taken.unknown:
+        return None
+    found = [(taken, probability)]
+    for rival, share in shares(taken, step.ranked, settings):
+        attachment = rival.candidate.attachment
+        same_law = taken.candidate.attachment.mechanism.name in attachment.mechanism.includes
+        if rival.unknown or (same_law and attachment.port == taken.candidate.attachment.port):
+            continue
+        if share >= settings.least_class_share or divergence(taken.fitted, rival.fitted) < settings.visible_divergence:
+            found.append((rival, share))
+    if len(found) == 1:
+        return None
+    members = tuple(_member(model, candidate, share) for candidate, share in found)
+    told = tuple(Alternative(m.port, m.mechanism, m.probability) for m in members)
+    return OneOf(
+        statement(members), round(min(sum(m.probability for m in members), settings.highest_probability), 4), told
+    )
+
+
+def _member(model: GreyBoxModel, candidate: RankedCandidate, probability: float) -> Member:
+    attachment = candidate.candidate.attachment
+    site = next(p for p in model.all_ports if p.name == attachment.port)
+    size, unit = _size(candidate, attachment)
+    return Member(
+        attachment.port,
+        attachment.mechanism.name,
+        attachment.mechanism.nature,
+        round(probability, 4),
+        signal=getattr(site, "input", "") or getattr(site, "output", ""),
+        is_sensor=site.kind == "sensor",
+        size=size,
+        unit=unit,
+    )
+
+
+def _size(candidate: RankedCandidate, attachment: Attachment) -> tuple[float | None, str]:
+    """The first parameter of a law with its unit, which is what it is mostly about: a time, a force, a gain."""
+    prefix = f"{attachment.prefix}."
+    own = [p for p in candidate.fitted.model.declared_parameters if p.name.startswith(prefix)]
+    return (candidate.fitted.values()[own[0].name], own[0].unit) if own else (None, "")

@@ -1,0 +1,47 @@
+"""What recordings cannot tell apart, said as one statement (contract section 8)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """A hypothesis with its probability."""
+
+    port: str
+    mechanism: str
+    probability: float
+
+    def as_json(self) -> dict[str, Any]:
+        return {"port": self.port, "mechanism": self.mechanism, "probability": self.probability}
+
+
+@dataclass(frozen=True)
+class OneOf:
+    """Hypotheses of which one is right, and that these recordings do not tell apart.
+
+    ``statement`` says what they share; ``probability`` is that of the whole; ``members``, the likeliest first, share it.
+    """
+
+    statement: str
+    probability: float
+    members: tuple[Alternative, ...]
+
+    @property
+    def spoken_members(self) -> str:
+        """The members with their shares, for a reader."""
+        return ", ".join(f"{spoken(m.mechanism)} at {m.port} {m.probability:.2f}" for m in self.members)
+
+    def as_json(self) -> dict[str, Any]:
+        return {
+            "statement": self.statement,
+            "probability": self.probability,
+            "members": [m.as_json() for m in self.members],
+        }
+
+
+def spoken(mechanism: str) -> str:
+    """A mechanism's name as a sentence has it."""
+    return "an unknown effect" if mechanism == "unknown" else mechanism.replace("_", " ")

@@ -1,0 +1,78 @@
+"""Which rivals of a finding are told together with it."""
+
+from __future__ import annotations
+
+import pytest
+
+from greybox_torch.diagnosis.describe import indistinguishable
+from greybox_torch.diagnosis.describe.indistinguishable import one_of
+from greybox_torch.diagnosis.select.state import SelectionStep
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.forces import ConstantBias
+from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction, StribeckFriction
+from greybox_torch.mechanisms.unknown import Unknown
+
+SETTINGS = DiagnosisSettings()
+
+
+@pytest.fixture
+def told(stub, monkeypatch):
+    """What is told of the first of some hypotheses: (port, law, share, divergence from the first) each."""
+
+    def make(*hypotheses, probability=0.6):
+        ranked = [
+            stub(
+                candidate=stub(attachment=Attachment(port, law)),
+                unknown=isinstance(law, Unknown),
+                fitted=stub(away=away, values=lambda: {}, model=stub(declared_parameters=())),
+            )
+            for port, law, _, away in hypotheses
+        ]
+        pairs = [(r, h[2]) for r, h in zip(ranked[1:], hypotheses[1:], strict=True)]
+        monkeypatch.setattr(indistinguishable, "shares", lambda taken, of, settings: pairs)
+        monkeypatch.setattr(indistinguishable, "divergence", lambda one, other: other.away)
+        ports = [stub(name=name, kind="body") for name in ("motor", "arm")]
+        step = SelectionStep((), stub(), tuple(ranked), ranked[0])
+        return one_of(stub(all_ports=ports), step, probability, SETTINGS)
+
+    return make
+
+
+def test_outputs_that_differ_by_less_than_could_be_seen(told) -> None:
+    found = told(("motor", CoulombFriction(), 0.6, 0.0), ("arm", CoulombFriction(), 0.02, 1.0))
+    assert found is not None
+    assert found.statement == "dry friction at motor or arm" and found.probability == 0.62
+    assert [(m.port, m.mechanism, m.probability) for m in found.members] == [
+        ("motor", "coulomb_friction", 0.6),
+        ("arm", "coulomb_friction", 0.02),
+    ]
+
+
+def test_outputs_that_differ_and_evidence_that_is_undecided(told) -> None:
+    found = told(("motor", CoulombFriction(), 0.6, 0.0), ("motor", ConstantBias(), 0.3, 40.0))
+    assert found is not None and found.statement == "coulomb friction or constant bias at motor"
+
+
+def test_a_finding_that_stands_alone(told) -> None:
+    assert told(("motor", CoulombFriction(), 0.9, 0.0), ("arm", CoulombFriction(), 0.02, 40.0)) is None
+    assert told(("motor", CoulombFriction(), 0.9, 0.0)) is None
+
+
+def test_a_law_that_contains_the_whole_of_the_one_found_says_the_same(told) -> None:
+    assert told(("motor", CoulombFriction(), 0.9, 0.0), ("motor", StribeckFriction(), 0.05, 0.0)) is None
+    elsewhere = told(("motor", CoulombFriction(), 0.9, 0.0), ("arm", StribeckFriction(), 0.05, 0.0))
+    assert elsewhere is not None
+    another = told(("motor", ConstantBias(), 0.5, 0.0), ("motor", CoulombAsymmetry(), 0.4, 0.0))
+    assert another is not None and another.statement == "constant bias or coulomb asymmetry at motor"
+
+
+def test_curves_are_no_rivals_and_have_none(told) -> None:
+    curve = Unknown("speed")
+    assert told(("motor", CoulombFriction(), 0.6, 0.0), ("motor", curve, 0.3, 0.0)) is None
+    assert told(("motor", curve, 0.6, 0.0), ("motor", CoulombFriction(), 0.3, 0.0)) is None
+
+
+def test_no_more_is_claimed_than_the_most_that_ever_is(told) -> None:
+    found = told(("motor", CoulombFriction(), 0.6, 0.0), ("arm", CoulombFriction(), 0.6, 0.0))
+    assert found is not None and found.probability == SETTINGS.highest_probability
