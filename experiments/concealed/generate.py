@@ -12,7 +12,7 @@ others one each, going round the catalogue; --cases is the total. With --effects
 turn ("none" and pairs "a+b" are allowed). A case depends on the seed, its number, its plan and the number of samples alone.
 
 With --family (mujoco, own, or the name of one machine of `machines/`) the cases are as in the proof, keys beside: 12 by default, effects
-going round, one case in four without, strengths weak, moderate, dominant, overwhelming (encoder-grade noise), or drawn.
+going round, one case in four without (workshop: eight machines of everyday, which are in no proof), strengths weak, moderate, dominant, overwhelming (encoder-grade noise), or drawn.
 """
 
 from __future__ import annotations
@@ -68,6 +68,9 @@ def listed_effects(listed: str) -> list[tuple[str, ...]]:
     return [() if word == "none" else tuple(word.split("+")) for word in listed.split(",") if word]
 
 
+WORKSHOP = "workshop"
+
+
 def generate(
     out: Path, plans: list[tuple[str, ...]], *, seed: int, samples: int, strength: str = "moderate", block: int = 96
 ) -> list[Case]:
@@ -113,6 +116,11 @@ def _fresh(options: argparse.Namespace) -> int:
     from experiments.concealed.fresh import fresh_plans, write_fresh
 
     count = 12 if options.cases is None else options.cases
+    if options.family == WORKSHOP:
+        from experiments.concealed.workshop.draw import write_workshop
+
+        write_workshop(options.seed, count, options.out, strength=options.strength, tell=print)
+        return 0
     effects = listed_effects(options.effects or "")
     planned = fresh_plans(options.family, options.seed, count, effects=effects, strength=options.strength)
     write_fresh(
@@ -129,7 +137,9 @@ def _parser() -> argparse.ArgumentParser:
 
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=Path)
-    parser.add_argument("--family", choices=FAMILIES, metavar="FAMILY", help=", ".join(FAMILIES))
+    parser.add_argument(
+        "--family", choices=[*FAMILIES, WORKSHOP], metavar="FAMILY", help=", ".join([*FAMILIES, WORKSHOP])
+    )
     parser.add_argument("--cases", type=int)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--effects", help="comma-separated names, 'none', or pairs joined by '+'")
