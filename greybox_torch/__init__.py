@@ -16,6 +16,8 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from greybox_torch.api.check import check
+    from greybox_torch.api.check_result import CheckResult
     from greybox_torch.api.compare import ComparisonResult, compare
     from greybox_torch.api.diagnose import diagnose
     from greybox_torch.api.diagnosis_result import DiagnosisResult
@@ -50,6 +52,7 @@ __version__ = "0.1.0"
 __all__ = [
     "Balance",
     "Body",
+    "CheckResult",
     "Checkpoint",
     "ComparisonResult",
     "Coupling",
@@ -80,6 +83,7 @@ __all__ = [
     "TrainingResult",
     "TrainingSettings",
     "UserError",
+    "check",
     "compare",
     "diagnose",
     "evaluate",
@@ -109,6 +113,7 @@ __all__ = [
 _HOME_OF = {
     "Balance": "greybox_torch.model",
     "Body": "greybox_torch.model",
+    "CheckResult": "greybox_torch.api.check_result",
     "Checkpoint": "greybox_torch.checkpoint",
     "ComparisonResult": "greybox_torch.api.compare",
     "Coupling": "greybox_torch.model",
@@ -139,6 +144,7 @@ _HOME_OF = {
     "TrainingResult": "greybox_torch.api.train_result",
     "TrainingSettings": "greybox_torch.training",
     "UserError": "greybox_torch.errors",
+    "check": "greybox_torch.api.check",
     "compare": "greybox_torch.api.compare",
     "diagnose": "greybox_torch.api.diagnose",
     "evaluate": "greybox_torch.evaluation",

@@ -12,6 +12,7 @@ from typing import Annotated
 import typer
 
 from greybox_torch import __version__
+from greybox_torch.commands import first_steps
 from greybox_torch.commands.exit_codes import Commands
 from greybox_torch.commands.option_types import DataSetFile, Device, Json, Model, Out, Precision, Seed, Settings
 from greybox_torch.commands.options import Options
@@ -38,6 +39,9 @@ def greybox(
     ] = False,
 ) -> None:
     pass
+
+
+first_steps.declare(app)
 
 
 @app.command()

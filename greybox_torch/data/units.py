@@ -49,6 +49,17 @@ def slip(found: str, given: str) -> float | None:
     return None if abs(factor - 1.0) < 1e-9 and offset == 0.0 else factor
 
 
+def dimensionality(unit: str) -> dict[str, float]:
+    """Powers of the base quantities ("[length]", "[time]", …) in a unit; none for an angle.
+
+    Raises ValueError where it is no unit.
+    """
+    try:
+        return {str(name): float(power) for name, power in _registry().Unit(_written(unit)).dimensionality.items()}
+    except Exception as error:  # pint's parser raises what its tokenizer does
+        raise ValueError(f'"{unit:.40}" is not a unit') from error
+
+
 def _written(unit: str) -> str:
     if not _PLAIN.fullmatch(unit) or _LONG_NUMBER.search(unit):
         raise ValueError("not a unit")
@@ -64,4 +75,5 @@ def _registry() -> Any:
     registry = pint.UnitRegistry()
     registry.define("rev = turn")
     registry.define("Nm = newton * meter")
+    registry.define("Ohm = ohm")
     return registry

@@ -52,12 +52,21 @@ def explain(model: GreyBoxModel, error: Exception) -> str:
     return f"{place}the equations of {model.title} raised {type(error).__name__}: {error}{hint}"
 
 
-def _place(model: GreyBoxModel, error: Exception) -> str:
-    """The last line on the way to the error that is in a method of the model's own file."""
+def line_of(model: GreyBoxModel, error: BaseException) -> int | None:
+    """The last line on the way to the error that is in a file of the model's equations."""
+    frame = _frame(model, error)
+    return None if frame is None else frame.lineno
+
+
+def _place(model: GreyBoxModel, error: BaseException) -> str:
+    frame = _frame(model, error)
+    return f"{Path(frame.filename).name}, line {frame.lineno}: " if frame else ""
+
+
+def _frame(model: GreyBoxModel, error: BaseException) -> traceback.FrameSummary | None:
     files = {
         code.co_filename
         for m in ("derivative", "output")
         if (code := getattr(getattr(type(model), m), "__code__", None))
     }
-    lines = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename in files]
-    return f"{Path(lines[-1].filename).name}, line {lines[-1].lineno}: " if lines else ""
+    return next((f for f in reversed(traceback.extract_tb(error.__traceback__)) if f.filename in files), None)

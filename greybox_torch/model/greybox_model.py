@@ -191,8 +191,9 @@ class GreyBoxModel(torch.nn.Module):
 
 
 def _key(name: str) -> str:
-    """A parameter's name as a key of torch.nn.ParameterDict, which reserves the dot."""
-    return name.replace(".", "/")
+    """A parameter's name as a key of torch.nn.ParameterDict, which reserves the dot and the names of its own methods."""
+    key = name.replace(".", "/")
+    return f"{key}/" if hasattr(torch.nn.ParameterDict, key) else key
 
 
 def _stacked(values: Mapping[str, Any], names: list[str], like: torch.Tensor, where: str) -> torch.Tensor:

@@ -26,14 +26,35 @@ def load_model(name: str) -> GreyBoxModel:
     """
     if name in BUILT_IN:
         return _named(BUILT_IN[name](), name)
+    found = model_class(name)
+    file, _, class_name = name.rpartition(":")
+    path = Path(file)
+    place = f"model file {file}, class {class_name}"
+    try:
+        with users_code(path, place, "creating it"):
+            model = found()
+        with users_code(path, place, "trying its equations"):
+            check_equations(model)
+        return _named(model, f"{path.resolve()}:{class_name}")
+    except UserError as error:
+        raise UserError(str(error) if str(error).startswith(place) else f"{place}: {error}") from None
+
+
+def model_class(name: str) -> type[GreyBoxModel]:
+    """The class called ``name``, of which no object is made yet.
+
+    Raises:
+        UserError: no such built-in system, no such file, or the file raises or does not define the class.
+    """
+    if name in BUILT_IN:
+        return BUILT_IN[name]
     file, separator, class_name = name.rpartition(":")
     if not separator or not file.endswith(".py"):
         known = ", ".join(BUILT_IN)
         raise UserError(
             f"model '{name}' is unknown; expected a built-in system ({known}) or a file and class such as my_motor.py:Motor"
         )
-    path = Path(file)
-    module = _run(path)
+    module = _run(Path(file))
     found = getattr(module, class_name, None)
     if not (isinstance(found, type) and issubclass(found, GreyBoxModel)):
         classes = [
@@ -44,15 +65,7 @@ def load_model(name: str) -> GreyBoxModel:
         have = f"it defines {', '.join(classes)}" if classes else "it defines no GreyBoxModel"
         what = "is not a GreyBoxModel" if found is not None else "is not defined"
         raise UserError(f"model file {file}: class '{class_name}' {what}; {have}")
-    place = f"model file {file}, class {class_name}"
-    try:
-        with users_code(path, place, "creating it"):
-            model = found()
-        with users_code(path, place, "trying its equations"):
-            check_equations(model)
-        return _named(model, f"{path.resolve()}:{class_name}")
-    except UserError as error:
-        raise UserError(str(error) if str(error).startswith(place) else f"{place}: {error}") from None
+    return found
 
 
 def _named(model: GreyBoxModel, name: str) -> GreyBoxModel:

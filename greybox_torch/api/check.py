@@ -1,0 +1,78 @@
+"""What is wrong with a model, before any data."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from greybox_torch.api.check_result import CheckResult
+from greybox_torch.checking.examine import Examination, examine
+from greybox_torch.checking.finding import Finding, in_order
+from greybox_torch.data import DataSet
+from greybox_torch.errors import ArgumentError, Kind, UserError
+from greybox_torch.estimate.problem import make_problem
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.systems import model_class
+from greybox_torch.systems.user_code import users_code
+
+
+def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None = None) -> CheckResult:
+    """Look for what is wrong with a model: names, code that cannot be compiled, units, and what moves no output.
+
+    Equations are read and run on made-up values; nothing is estimated.
+
+    Args:
+        model: an object, its class, or a name as :func:`greybox_torch.load_model` takes it.
+        data: a data set whose channels, parameters and start states are to be compared with the model's.
+
+    Raises:
+        UserError: no such model, or a file that raises when it is run. What is wrong with the model itself is among the findings.
+
+    Example:
+        >>> import torch
+        >>> from greybox_torch import GreyBoxModel, Input, Output, Parameter, State
+        >>> class Lag(GreyBoxModel):
+        ...     states, inputs, outputs = [State("y", "V")], [Input("v", "V")], [Output("y", "V")]
+        ...     parameters = [Parameter("T", 0.1, unit="s", lower=1e-3)]
+        ...     def derivative(self, x, u, p, port):
+        ...         return {"y": u.v - x.y / p.T}
+        ...     def output(self, x, u, p):
+        ...         return {"y": x.y}
+        >>> print(check(Lag()).findings[0].found)
+        subtracts `u.v`, in V, and `x.y / p.T`, in V/s
+    """
+    name, given = _given(model)
+    with users_code(_file(given), f"model {name}", "checking it"):
+        examined = examine(given)
+    findings = list(examined.findings)
+    if data is not None and examined.model is not None and not any(f.level == "error" for f in findings):
+        findings += _with_data(data, examined)
+    return CheckResult(name, replace(examined, findings=in_order(findings)), in_order(findings))
+
+
+def _given(model: Any) -> tuple[str, GreyBoxModel | type[GreyBoxModel]]:
+    if isinstance(model, str):
+        return Path(model).name, model_class(model)
+    held = model if isinstance(model, type | GreyBoxModel) else getattr(model, "model", None)
+    if isinstance(held, type) and issubclass(held, GreyBoxModel):
+        return held.__name__, held
+    if isinstance(held, GreyBoxModel):
+        return held.plain.title, held.plain
+    raise ArgumentError("model", Kind.of(model), "expected a model, its class, or its name")
+
+
+def _file(given: GreyBoxModel | type[GreyBoxModel]) -> Path:
+    """Where the class stands, for messages."""
+    from greybox_torch.checking.source import source_of
+
+    return source_of(given if isinstance(given, type) else type(given)).file or Path("model")
+
+
+def _with_data(data: DataSet, examined: Examination) -> list[Finding]:
+    assert examined.model is not None
+    try:
+        make_problem(data, examined.model, data.recordings)
+    except UserError as error:
+        return [Finding("error", "card", str(error), "the names that the model declares", data.path)]
+    return []

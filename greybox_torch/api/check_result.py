@@ -1,0 +1,138 @@
+"""What a check of a model found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.text import Text
+
+from greybox_torch.api.result import Result
+from greybox_torch.checking.examine import Examination
+from greybox_torch.checking.finding import Finding
+from greybox_torch.report import notebook
+from greybox_torch.report.tables import print_table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_STYLE = {"error": "bold red", "warning": "yellow", "note": "dim"}
+_COLUMNS = ["kind", "name", "unit", "value", "moves"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CheckResult(Result):
+    """``findings`` say where, what and what to write instead, errors first; ``usable`` is False where one is an error.
+
+    ``compiled`` is False where equations work but have no compiled form, which makes a diagnosis far too slow.
+    """
+
+    name: str
+    examined: Examination
+    findings: tuple[Finding, ...]
+
+    @property
+    def usable(self) -> bool:
+        return not any(finding.level == "error" for finding in self.findings)
+
+    @property
+    def compiled(self) -> bool:
+        return self.examined.compiled
+
+    @property
+    def sentence(self) -> str:
+        """The result in one sentence."""
+        counts = {level: sum(f.level == level for f in self.findings) for level in ("error", "warning", "note")}
+        told = ", ".join(f"{count} {level}{'s' * (count != 1)}" for level, count in counts.items() if count)
+        if not self.usable:
+            return f"{self.name} cannot be used: {told}."
+        return f"{self.name} can be used" + (
+            f": {told}." if told else "; nothing is wrong with it that shows without data."
+        )
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """A row for every state, input, parameter and port: kind, name, unit, value, and the outputs that it moves (None: unknown)."""
+        model, moved = self.examined.model, self.examined.influence
+        if model is None:
+            return []
+        values = {p.name: p.value for p in model.declared_parameters}
+        items = {
+            "state": model.states,
+            "input": model.inputs,
+            "parameter": model.declared_parameters,
+            "port": model.ports,
+        }
+        return [
+            {
+                "kind": kind,
+                "name": item.name,
+                "unit": getattr(item, "unit", ""),
+                "value": values[item.name] if kind == "parameter" else None,
+                "moves": None if moved is None else moved.outputs(kind, i, model),
+            }
+            for kind, of in items.items()
+            for i, item in enumerate(of)
+        ]
+
+    def __repr__(self) -> str:
+        return f"<check: {self.sentence}>"
+
+    def content(self, folder: Path) -> dict[str, Any]:
+        return {
+            "schema": "greybox-check/1",
+            "model": self.name,
+            "usable": self.usable,
+            "compiled": self.compiled,
+            "findings": [
+                {
+                    "level": f.level,
+                    "topic": f.topic,
+                    "file": None if f.file is None else str(f.file),
+                    "line": f.line,
+                    "found": f.found,
+                    "write": f.write,
+                }
+                for f in self.findings
+            ],
+            "parts": self.rows,
+        }
+
+    def show(self, console: Console) -> None:
+        if self.rows:
+            print_table(console, _COLUMNS, self._table())
+        for finding in self.findings:
+            told = f"{finding.level}: {finding.place}{finding.found}"
+            console.print(Text(told, style=_STYLE[finding.level]), soft_wrap=True)
+            console.print(Text(f"    write: {finding.write}"), soft_wrap=True)
+        console.print(Text(self.sentence, style="bold"), soft_wrap=True)
+
+    def files(self, folder: Path) -> dict[Path, str | bytes]:
+        """Nothing: a check is looked at."""
+        return {}
+
+    def plot(self) -> Figure:
+        """Which part moves which output, as a picture."""
+        from greybox_torch.report.influence import plot_influence  # matplotlib takes half a second
+
+        outputs = [] if self.examined.model is None else [o.name for o in self.examined.model.outputs]
+        return plot_influence(self.rows, outputs, self.name)
+
+    def _repr_html_(self) -> str:
+        told = [notebook.sentence(f"{f.level}: {f}", "found" if f.level == "error" else "note") for f in self.findings]
+        table = notebook.table(_COLUMNS, self._table()) if self.rows else ""
+        return notebook.page(self.sentence, *told, table)
+
+    def _table(self) -> list[list[str | float]]:
+        return [
+            [
+                row["kind"],
+                row["name"],
+                row["unit"],
+                "" if row["value"] is None else f"{row['value']:.5g}",
+                "not known" if row["moves"] is None else ", ".join(row["moves"]) or "nothing",
+            ]
+            for row in self.rows
+        ]

@@ -1,0 +1,59 @@
+"""What a class declares, looked at before an object of it is made."""
+
+from __future__ import annotations
+
+import keyword
+from collections.abc import Iterator
+
+from greybox_torch.checking.finding import Finding
+from greybox_torch.checking.source import Source
+from greybox_torch.errors import did_you_mean
+from greybox_torch.model import GreyBoxModel, Signals
+
+_METHODS = {name for name in dir(Signals) if not name.startswith("_")}
+
+
+def missing_methods(made: type[GreyBoxModel], source: Source) -> Iterator[Finding]:
+    """Findings for equations that are not defined."""
+    for name, arguments in (("derivative", "self, x, u, p, port"), ("output", "self, x, u, p")):
+        if getattr(made, name) is getattr(GreyBoxModel, name):
+            write = f"def {name}({arguments}): return {{…}}, a dictionary by name"
+            yield Finding("error", "declaration", f"{name}() is not defined", write, source.file, source.line)
+
+
+def unusable_names(made: type[GreyBoxModel], source: Source) -> Iterator[Finding]:
+    """Findings for names that equations cannot use as `x.name`."""
+    for item in (*made.states, *made.inputs, *made.declared_parameters, *made.ports):
+        line = source.line_of(f'"{item.name}"')
+        if item.name in _METHODS:
+            found = f"'{item.name}' is a method of what the equations are handed, so `.{item.name}` is not the value"
+            yield Finding(
+                "error", "declaration", found, f'another name, or ["{item.name}"] everywhere', source.file, line
+            )
+        elif not item.name.isidentifier() or keyword.iskeyword(item.name):
+            found = f"'{item.name}' cannot be written as `.{item.name}` in Python"
+            yield Finding("warning", "declaration", found, f'["{item.name}"], or another name', source.file, line)
+
+
+def port_signals(made: type[GreyBoxModel], source: Source) -> Iterator[Finding]:
+    """Findings for ports whose signal names no state."""
+    states = [s.name for s in made.states]
+    for port in made.ports:
+        for name, signal in port.signals.items():
+            if isinstance(signal, str) and signal not in states:
+                yield Finding(
+                    "error",
+                    "name",
+                    f"port '{port.name}': {name} = \"{signal}\" is not a state{did_you_mean(signal, states)}",
+                    f"one of {', '.join(states)}, or {name}=lambda x, u, p: …",
+                    source.file,
+                    source.line_of(f'"{port.name}"'),
+                )
+
+
+def no_ports(made: type[GreyBoxModel], source: Source) -> Iterator[Finding]:
+    """A note where only inputs and outputs are places for what is missing."""
+    if not made.ports:
+        found = "ports is empty: missing physics is looked for at the inputs and outputs alone"
+        write = 'ports = [Body("…", speed="…")], and port.… among the forces in derivative()'
+        yield Finding("note", "declaration", found, write, source.file, source.line)

@@ -1,0 +1,87 @@
+"""Dimensions of units, as powers of the base quantities; plane angle has none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from greybox_torch.data.units import dimensionality
+
+_BASE = {
+    "[mass]": "kg",
+    "[length]": "m",
+    "[time]": "s",
+    "[current]": "A",
+    "[temperature]": "K",
+    "[substance]": "mol",
+    "[luminosity]": "cd",
+}
+_NAMED = (
+    "N m",
+    "N",
+    "W",
+    "Pa",
+    "V",
+    "rad/s",
+    "rad/s^2",
+    "m/s",
+    "m/s^2",
+    "N m s/rad",
+    "N s/m",
+    "N/m",
+    "V/s",
+    "A/s",
+    "K/s",
+    "W/K",
+)
+"""How dimensions are shown where one of these has them."""
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """Powers of base quantities, none of them zero."""
+
+    powers: tuple[tuple[str, Fraction], ...] = ()
+
+    @staticmethod
+    def of(powers: Mapping[str, Fraction]) -> Dimension:
+        return Dimension(tuple(sorted((name, power) for name, power in powers.items() if power)))
+
+    def times(self, other: Dimension, power: int | Fraction = 1) -> Dimension:
+        """This dimension multiplied by a power of another."""
+        powers = dict(self.powers)
+        for name, own in other.powers:
+            powers[name] = powers.get(name, Fraction(0)) + own * power
+        return Dimension.of(powers)
+
+    def to_the(self, power: Fraction) -> Dimension:
+        return NONE.times(self, power)
+
+    def __str__(self) -> str:
+        """The dimension as a unit of its own."""
+        for unit in _NAMED:
+            if dimension_of(unit) == self:
+                return unit
+        above = " ".join(_term(name, power) for name, power in self.powers if power > 0)
+        below = " ".join(_term(name, -power) for name, power in self.powers if power < 0)
+        return (above or "1") + (f"/({below})" if " " in below else f"/{below}" if below else "")
+
+
+NONE = Dimension()
+SECOND = Dimension((("[time]", Fraction(1)),))
+WATT = Dimension.of({"[mass]": Fraction(1), "[length]": Fraction(2), "[time]": Fraction(-3)})
+
+
+def _term(name: str, power: Fraction) -> str:
+    unit = _BASE.get(name, name)
+    return unit if power == 1 else f"{unit}^{power}"
+
+
+def dimension_of(unit: str) -> Dimension | None:
+    """The dimension of a unit as it is written; None where nothing is written. Raises ValueError for what is no unit."""
+    if not unit.strip():
+        return None
+    if unit.strip() in ("1", "-", "–"):
+        return NONE
+    return Dimension.of({name: Fraction(power).limit_denominator(12) for name, power in dimensionality(unit).items()})

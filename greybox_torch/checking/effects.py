@@ -1,0 +1,91 @@
+"""Parameters, ports, inputs and states that no output depends on, and points where the equations are no numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from greybox_torch.checking.finding import Finding
+from greybox_torch.checking.influence import Influence
+from greybox_torch.checking.points import Points
+from greybox_torch.checking.source import Source
+from greybox_torch.checking.tracing import Traced
+from greybox_torch.model import GreyBoxModel
+
+
+def without_effect(
+    model: GreyBoxModel, influence: Influence, traced: Traced | None, source: Source
+) -> Iterator[Finding]:
+    """Findings for whatever moves no output."""
+    for i, parameter in enumerate(model.declared_parameters):
+        if not influence.moves["parameter"][i].any():
+            stepwise = traced is not None and _appears(traced, "p", i)
+            yield Finding(
+                "note" if parameter.fixed else "warning",
+                "influence",
+                f"parameter '{parameter.name}' moves no output"
+                + (
+                    ": it stands only where a change of it has no slope (a condition, a sign, a floor)"
+                    if stepwise
+                    else ""
+                ),
+                "a smooth form, such as torch.sigmoid((a - b) / width), or fixed=True"
+                if stepwise
+                else f"p.{parameter.name} in derivative() or output(), or nothing of it",
+                source.file,
+                source.line_of(f'"{parameter.name}"'),
+            )
+    for i, port in enumerate(model.ports):
+        if not influence.moves["port"][i].any():
+            yield Finding(
+                "warning",
+                "influence",
+                f"port '{port.name}' reaches no output: nothing that is attached there could be found",
+                f"port.{port.name} among the forces in derivative()",
+                source.file,
+                source.line_of(f'"{port.name}"'),
+            )
+    for i, signal in enumerate(model.inputs):
+        if not influence.moves["input"][i].any():
+            found, write = f"input '{signal.name}' moves no output", f"u.{signal.name} in derivative() or output()"
+            yield Finding("warning", "influence", found, write, source.file, source.line_of(f'"{signal.name}"'))
+    for i, state in enumerate(model.states):
+        if not influence.moves["state"][i].any():
+            yield Finding(
+                "note",
+                "influence",
+                f"state '{state.name}' is neither measured nor acts on anything that is",
+                "it as it is, if it is the position that an effect may depend on; else an output that shows it, or nothing of it",
+                source.file,
+                source.line_of(f'"{state.name}"'),
+            )
+    for k, output in enumerate(model.outputs):
+        if not any(moved[:, k].any() for kind, moved in influence.moves.items() if kind in ("state", "input")):
+            found, write = f"output '{output.name}' depends on no state and no input", "what the sensor measures"
+            yield Finding("warning", "influence", found, write, source.file, source.line_of(f'"{output.name}"'))
+
+
+def not_finite(model: GreyBoxModel, influence: Influence, points: Points, source: Source) -> Iterator[Finding]:
+    """A finding where the equations give no number at some of the points, with the smallest of them."""
+    lost = np.flatnonzero(~influence.finite)
+    if not lost.size:
+        return
+    x, u = points.x.detach().numpy(), points.u.detach().numpy()
+    size = np.abs(np.vstack([x, u])).max(axis=0)
+    at = lost[np.argmin(size[lost])]
+    shown = [f"{s.name} = {v:.3g}" for s, v in zip((*model.states, *model.inputs), (*x[:, at], *u[:, at]), strict=True)]
+    line = next((m.tree.lineno for m in source.methods), source.line)
+    yield Finding(
+        "warning",
+        "numbers",
+        f"the equations are no numbers at {lost.size} of {len(influence.finite)} random points, such as {', '.join(shown[:6])}",
+        "torch.sqrt(a.clamp(min=1e-9)), torch.log(a.clamp(min=…)), a denominator that stays away from zero",
+        source.file,
+        line,
+    )
+
+
+def _appears(traced: Traced, kind: str, index: int) -> bool:
+    leaf = traced.graph.leaf(kind, index)
+    return leaf in traced.graph.needed([*traced.rates.values(), *traced.outputs.values()])

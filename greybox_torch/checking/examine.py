@@ -1,0 +1,88 @@
+"""Everything that can be said of a model before any data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greybox_torch.checking.code import untraceable
+from greybox_torch.checking.declarations import missing_methods, no_ports, port_signals, unusable_names
+from greybox_torch.checking.effects import not_finite, without_effect
+from greybox_torch.checking.equations import changes, compiled, fails
+from greybox_torch.checking.finding import Finding, in_order
+from greybox_torch.checking.influence import Influence, influence
+from greybox_torch.checking.names import declared_names, left_out, unknown_names
+from greybox_torch.checking.points import points_of
+from greybox_torch.checking.source import Source, source_of
+from greybox_torch.checking.units import misfits, unreadable_units
+from greybox_torch.errors import UserError
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.check import explain
+
+
+@dataclass(frozen=True)
+class Examination:
+    """Findings, errors first. ``model`` is None where no object could be made, ``influence`` where the equations do not run;
+    ``compiled`` says whether they have a compiled form.
+    """
+
+    made: type[GreyBoxModel]
+    model: GreyBoxModel | None
+    findings: tuple[Finding, ...]
+    influence: Influence | None = None
+    compiled: bool = False
+
+
+def examine(given: GreyBoxModel | type[GreyBoxModel]) -> Examination:
+    """Examine a class, or the class and the values of an object; its equations are run on made-up values."""
+    made = given if isinstance(given, type) else type(given)
+    source = source_of(made)
+    found = [*missing_methods(made, source), *unusable_names(made, source), *port_signals(made, source)]
+    code, names = _read(made, source)
+    found += names
+    try:
+        model = made() if isinstance(given, type) else given
+    except Exception as error:  # the class may do anything when an object of it is made
+        told = str(error) if isinstance(error, UserError) else f"creating it raised {type(error).__name__}: {error}"
+        found.append(
+            Finding("error", "declaration", told, "a class of which an object can be made", source.file, source.line)
+        )
+        return Examination(made, None, in_order(found))
+    found += [*unreadable_units(model, source), *no_ports(made, source)]
+    if any(f.level == "error" for f in found):  # running the equations would repeat it, one at a time
+        return Examination(made, model, in_order([*found, *code]))
+    return _run(made, model, source, found, code)
+
+
+def _read(made: type[GreyBoxModel], source: Source) -> tuple[list[Finding], list[Finding]]:
+    """What the text of the equations shows: code that will hardly run, and names."""
+    code: list[Finding] = []
+    names: list[Finding] = []
+    declared = declared_names(made)
+    for method in source.methods:
+        items = made.states if method.name == "derivative" else made.outputs
+        code += untraceable(method)
+        names += unknown_names(method, declared)
+        names += left_out(method, [item.name for item in items], {item.name: item.unit for item in items})
+    return code, names
+
+
+def _run(
+    made: type[GreyBoxModel], model: GreyBoxModel, source: Source, found: list[Finding], code: list[Finding]
+) -> Examination:
+    wrong = list(fails(model, source))
+    graph, uncompiled = (None, []) if wrong else compiled(model, source)
+    if any(f.level == "error" for f in (*wrong, *uncompiled)):
+        return Examination(made, model, in_order([*found, *(code or [*wrong, *uncompiled])]))
+    found += [*uncompiled, *changes(model, source)]
+    if graph is not None:
+        found += misfits(model, graph, source)
+    points = points_of(model)
+    try:
+        moved = influence(model, points)
+    except Exception as error:  # equations that run, and whose derivative does not
+        found.append(
+            Finding("warning", "code", explain(model, error), "functions that torch can differentiate", source.file)
+        )
+        return Examination(made, model, in_order(found), None, graph is not None)
+    found += [*without_effect(model, moved, graph, source), *not_finite(model, moved, points, source)]
+    return Examination(made, model, in_order(found), moved, graph is not None)

@@ -1,0 +1,105 @@
+"""Names in the equations that the model does not declare, and states and outputs that the equations leave out."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Mapping, Sequence
+
+from greybox_torch.checking.finding import Finding
+from greybox_torch.checking.source import Method
+from greybox_torch.errors import did_you_mean
+from greybox_torch.model import GreyBoxModel, Signals
+
+_DECLARED_AS = {
+    "state": 'State("{}", "…") in states',
+    "input": 'Input("{}", "…") in inputs',
+    "parameter": 'Parameter("{}", …) in parameters',
+    "port": 'a port such as Body("{}", speed="…") in ports',
+}
+
+
+def declared_names(made: type[GreyBoxModel] | GreyBoxModel) -> dict[str, list[str]]:
+    """The names of states, inputs, parameters and ports that the equations may use."""
+    return {
+        "state": [s.name for s in made.states],
+        "input": [i.name for i in made.inputs],
+        "parameter": [p.name for p in made.declared_parameters],
+        "port": [port.name for port in made.ports],
+    }
+
+
+def unknown_names(method: Method, declared: Mapping[str, Sequence[str]]) -> Iterator[Finding]:
+    """Findings for `x.name` and `x["name"]` where nothing of that name is declared."""
+    for node in ast.walk(method.tree):
+        used = _used(node, method.arguments)
+        if used is None:
+            continue
+        argument, name = used
+        kind = method.arguments[argument]
+        if name in declared[kind] or hasattr(Signals, name):
+            continue
+        if kind == "port" and name.split(".")[0] in ("actuator", "sensor"):
+            continue
+        known = ", ".join(declared[kind]) or "none"
+        hint = did_you_mean(name, declared[kind])
+        yield Finding(
+            "error",
+            "name",
+            f"{argument}.{name}: no {kind} has this name{hint}; declared are: {known}",
+            f"{argument}.<a declared name>, or declare {_DECLARED_AS[kind].format(name)}",
+            method.file,
+            getattr(node, "lineno", None),
+        )
+
+
+def left_out(method: Method, names: Sequence[str], unit_of: Mapping[str, str]) -> Iterator[Finding]:
+    """Findings for states without a rate, outputs that are not returned, and returned names that are neither.
+
+    Only a dictionary that is written in the return statement is looked at.
+    """
+    kind, rate = ("state", "per second") if method.name == "derivative" else ("output", "")
+    for node in ast.walk(method.tree):
+        if not (isinstance(node, ast.Return) and isinstance(node.value, ast.Dict)):
+            continue
+        keys = [key.value if isinstance(key, ast.Constant) else None for key in node.value.keys]
+        if None in keys:  # a key that is computed, or another dictionary taken in
+            continue
+        for name in names:
+            if name not in keys:
+                unit = f"{unit_of[name]} {rate}".strip()
+                yield Finding(
+                    "error",
+                    "name",
+                    f"{kind} '{name}' is declared, but {method.name}() does not return it",
+                    f'"{name}": … in what {method.name}() returns' + (f", in {unit}" if unit else ""),
+                    method.file,
+                    node.lineno,
+                )
+        for key, name in zip(node.value.keys, keys, strict=True):
+            if name not in names:
+                hint = did_you_mean(str(name), names)
+                yield Finding(
+                    "error",
+                    "name",
+                    f"{method.name}() returns '{name}', which is not a declared {kind}{hint}",
+                    f"one of {', '.join(names)}, or declare the {kind}",
+                    method.file,
+                    getattr(key, "lineno", node.lineno),
+                )
+
+
+def used_names(method: Method, kind: str) -> set[str]:
+    """The names of one kind that the method uses."""
+    found = (_used(node, method.arguments) for node in ast.walk(method.tree))
+    return {used[1] for used in found if used and method.arguments[used[0]] == kind}
+
+
+def _used(node: ast.AST, arguments: Mapping[str, str]) -> tuple[str, str] | None:
+    """The argument and the name in `x.name` or `x["name"]`."""
+    if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in arguments:
+        return node.value.id, node.attr
+    if isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name) and node.value.id in arguments:
+        key = node.slice
+        if isinstance(key, ast.Constant) and isinstance(key.value, str):
+            return node.value.id, key.value
+    return None

@@ -1,0 +1,67 @@
+"""Values at which the equations are tried: states and inputs from small to large, and parameters around their declared values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+
+from greybox_torch.model import GreyBoxModel, Signals
+
+SIZES = (0.01, 1.0, 30.0)
+"""Standard deviations of states and inputs."""
+
+EACH = 32
+"""Points of each size."""
+
+SPREAD = 0.3
+"""Standard deviation of the logarithm of a parameter around its declared value."""
+
+
+@dataclass(frozen=True)
+class Points:
+    """B points: states (n_x, B), inputs (n_u, B), parameters (n_p, B) and forces at the declared ports (n_f, B), all leaves of autograd."""
+
+    x: torch.Tensor
+    u: torch.Tensor
+    p: torch.Tensor
+    f: torch.Tensor
+
+    def signals(self, model: GreyBoxModel) -> tuple[Signals, Signals, Signals, Signals]:
+        """The points by name, as the equations are handed them."""
+        return (
+            Signals("state", {s.name: self.x[i] for i, s in enumerate(model.states)}),
+            Signals("input", {s.name: self.u[i] for i, s in enumerate(model.inputs)}),
+            Signals("parameter", {q.name: self.p[i] for i, q in enumerate(model.declared_parameters)}),
+            Signals("port", ports_of(model, self.f)),
+        )
+
+
+def ports_of(model: GreyBoxModel, forces: torch.Tensor) -> dict[str, torch.Tensor]:
+    """By port: the declared ones as rows of ``forces``; actuators and sensors, which act elsewhere, zero."""
+    given = {port.name: forces[i] for i, port in enumerate(model.ports)}
+    rest = {port.name: torch.zeros((), dtype=torch.float64) for port in model.all_ports if port.name not in given}
+    return {**given, **rest}
+
+
+def points_of(model: GreyBoxModel) -> Points:
+    """The same points at every call."""
+    draw = np.random.default_rng(0)
+    sizes = np.repeat(SIZES, EACH)
+    x, u, f = (draw.normal(size=(len(of), len(sizes))) * sizes for of in (model.states, model.inputs, model.ports))
+    rows = [
+        _around(q.value, *q.bounds, draw.normal(size=len(sizes)), draw.uniform(size=len(sizes)))
+        for q in model.declared_parameters
+    ]
+    p = np.array(rows) if rows else np.zeros((0, len(sizes)))
+    return Points(*(torch.tensor(a, dtype=torch.float64, requires_grad=True) for a in (x, u, p, f)))
+
+
+def _around(value: float, low: float, high: float, normal: np.ndarray, uniform: np.ndarray) -> np.ndarray:
+    """Values around ``value`` within the bounds; a parameter at zero takes all of them, as others may act through it alone."""
+    if value != 0.0:
+        drawn = value * np.exp(SPREAD * normal)
+    else:
+        drawn = max(low, -1.0) + uniform * (min(high, max(low, 0.0) + 1.0) - max(low, -1.0))
+    return np.clip(drawn, low, high)

@@ -1,0 +1,121 @@
+"""Whether the equations keep to the declared units."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from greybox_torch.checking.dimensions import SECOND, WATT, Dimension, dimension_of
+from greybox_torch.checking.expression_text import Names, shown
+from greybox_torch.checking.finding import Finding
+from greybox_torch.checking.source import Source
+from greybox_torch.checking.tracing import Traced
+from greybox_torch.checking.unit_walk import dimensions
+from greybox_torch.model import Body, Coupling, GreyBoxModel
+
+
+def unreadable_units(model: GreyBoxModel, source: Source) -> Iterator[Finding]:
+    """Findings for declared units that are none."""
+    for item in (*model.states, *model.inputs, *model.outputs, *model.declared_parameters):
+        try:
+            dimension_of(item.unit)
+        except ValueError as error:
+            yield Finding(
+                "warning",
+                "units",
+                f"{item.name}: {error}",
+                'a unit such as "rad/s", "N m s/rad", "kg m^2", "" where it is not to be checked',
+                source.file,
+                source.line_of(f'"{item.name}"'),
+            )
+
+
+def misfits(model: GreyBoxModel, traced: Traced, source: Source) -> Iterator[Finding]:
+    """Findings where quantities of different kinds meet, or a rate, an output or a port's signal is not in its unit."""
+    graph, names = traced.graph, Names(model)
+    found: dict[int, str] = {}
+    units = {names.of(kind, i): q.unit for kind, of in _declared(model).items() for i, q in enumerate(of)}
+    leaves = {
+        graph.leaf(kind, i): _dimension(q.unit) for kind, of in _declared(model).items() for i, q in enumerate(of)
+    }
+    text = lambda node: shown(graph, node, names)  # noqa: E731
+    signals = dimensions(graph, traced.signals.values(), leaves, text, found.setdefault)
+    of_signal = {key: signals[node] for key, node in traced.signals.items()}
+    for i, port in enumerate(model.ports):
+        force = leaves[graph.leaf("f", i)] = _force(port, of_signal)
+        units[names.of("f", i)] = "" if force is None else str(force)
+    roots = [*traced.rates.values(), *traced.outputs.values()]
+    known = dimensions(graph, roots, leaves, text, found.setdefault)
+    for node, what in found.items():
+        write = f"what makes units fit; they are {_used(traced, node, names, units)}"
+        yield Finding("warning", "units", what, write, source.file, graph.lines.get(node))
+    for name, node in traced.rates.items():
+        unit = next(s.unit for s in model.states if s.name == name)
+        wanted = _dimension(unit)
+        yield from _differs(
+            f"the rate of state '{name}'",
+            known[node],
+            None if wanted is None else wanted.times(SECOND, -1),
+            f"a rate in {unit} per second",
+            source,
+            graph.lines.get(node),
+        )
+    for name, node in traced.outputs.items():
+        unit = next(o.unit for o in model.outputs if o.name == name)
+        yield from _differs(
+            f"output '{name}'", known[node], _dimension(unit), f"a value in {unit}", source, graph.lines.get(node)
+        )
+    yield from _ports(model, of_signal, source)
+
+
+def _ports(
+    model: GreyBoxModel, of_signal: dict[tuple[str, str], Dimension | None], source: Source
+) -> Iterator[Finding]:
+    pairs = {"body": ("position", "speed"), "coupling": ("deflection", "rate")}
+    for port in model.ports:
+        place, change = pairs.get(port.kind, ("", ""))
+        own, rate = of_signal.get((port.name, place)), of_signal.get((port.name, change))
+        if own is None:
+            continue
+        wanted = own.times(SECOND, -1)
+        yield from _differs(
+            f"port '{port.name}', {change}", rate, wanted, f"the rate of its {place}, in {wanted}", source,
+            source.line_of(f'"{port.name}"'),
+        )  # fmt: skip
+
+
+def _differs(
+    what: str, found: Dimension | None, wanted: Dimension | None, write: str, source: Source, line: int | None
+) -> Iterator[Finding]:
+    if found is not None and wanted is not None and found != wanted:
+        yield Finding("warning", "units", f"{what} is in {found}, expected {wanted}", write, source.file, line)
+
+
+def _declared(model: GreyBoxModel) -> dict[str, list]:
+    return {"x": list(model.states), "u": list(model.inputs), "p": list(model.declared_parameters)}
+
+
+def _dimension(unit: str) -> Dimension | None:
+    """None also for a unit that cannot be read, which is told elsewhere."""
+    try:
+        return dimension_of(unit)
+    except ValueError:
+        return None
+
+
+def _force(port: object, of_signal: dict[tuple[str, str], Dimension | None]) -> Dimension | None:
+    """A body's force times its speed is power; a coupling's force times its deflection is work; of a balance nothing is known."""
+    if isinstance(port, Body):
+        speed = of_signal[port.name, "speed"]
+        return None if speed is None else WATT.times(speed, -1)
+    if isinstance(port, Coupling):
+        deflection = of_signal[port.name, "deflection"]
+        return None if deflection is None else WATT.times(SECOND).times(deflection, -1)
+    return None
+
+
+def _used(traced: Traced, node: int, names: Names, units: dict[str, str]) -> str:
+    """The variables that a node is made of, with their units; at most six."""
+    graph = traced.graph
+    leaves = [graph.nodes[i] for i in graph.needed([node]) if graph.nodes[i].operation == "leaf"]
+    named = [names.of(leaf.leaf, int(leaf.value)) for leaf in leaves]
+    return ", ".join(f"{name} [{units.get(name) or 'no unit'}]" for name in named[:6])

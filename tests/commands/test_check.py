@@ -1,0 +1,79 @@
+"""`greybox check`: what is printed, as JSON too, and how it ends."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import greybox_torch as gt
+from greybox_torch.cli import app
+
+
+def test_a_sound_model_ends_with_0(machines: Path) -> None:
+    done = CliRunner().invoke(app, ["check", f"{machines / 'motor.py'}:Motor"])
+    assert done.exit_code == 0, done.output
+    assert "motor.py:Motor can be used; nothing is wrong with it that shows without data." in done.stdout
+    rows = [line.split() for line in done.stdout.splitlines()]
+    assert ["port", "rotor", "speed"] in rows
+    assert ["input", "voltage", "V", "speed"] in rows
+
+
+def test_findings_end_with_2(motor_folder: Callable[..., Path], edit: Callable[[Path, str, str], None]) -> None:
+    folder = motor_folder()
+    edit(folder / "my_motor.py", "p.b * x.speed", "p.c * x.speed")
+    done = CliRunner().invoke(app, ["check", str(folder / "dataset.toml"), "--json"])
+    assert done.exit_code == 2
+    told = json.loads(done.stdout)
+    assert told["schema"] == "greybox-check/1"
+    assert told["usable"] is False
+    assert [f["level"] for f in told["findings"]] == ["error"]
+    assert told["findings"][0]["file"] == str(folder / "my_motor.py")
+    assert (folder / "my_motor.py").read_text().splitlines()[told["findings"][0]["line"] - 1].count("p.c") == 1
+    assert "error: my_motor.py, line" in done.stderr
+
+
+def test_a_card_that_does_not_fit(motor_folder: Callable[..., Path], edit: Callable[[Path, str, str], None]) -> None:
+    card = motor_folder() / "dataset.toml"
+    assert CliRunner().invoke(app, ["check", str(card)]).exit_code == 0
+    edit(card, "b = { value = 0.08, upper = 1.0 }", "bb = { value = 0.08 }")
+    done = CliRunner().invoke(app, ["check", str(card)])
+    assert done.exit_code == 2
+    assert "error: dataset.toml:" in done.stdout
+    assert "model Motor has no such name" in done.stdout
+
+
+@pytest.mark.parametrize("target", ["no_such.py:Motor", "no_such_system", "no_such.toml"])
+def test_what_is_not_there(target: str) -> None:
+    done = CliRunner().invoke(app, ["check", target])
+    assert done.exit_code == 2
+    assert done.stdout == ""
+    assert done.stderr.startswith("error: ")
+
+
+def test_a_card_without_a_model(bench: Path) -> None:
+    done = CliRunner().invoke(app, ["check", str(bench / "dataset.toml")])
+    assert done.exit_code == 2
+    assert "no --model is given" in done.stderr
+
+
+def test_from_python(machines: Path) -> None:
+    model = gt.load_model(f"{machines / 'small.py'}:WarmRotor")
+    found = gt.check(model)
+    assert found.usable
+    assert found.compiled
+    assert "1 note" in found.sentence
+    assert gt.check(type(model)).to_json() == found.to_json()
+    assert {(row["kind"], row["name"]): row["moves"] for row in found.rows}["state", "warmth"] == []
+    assert "warmth" in found._repr_html_()
+    assert len(found.plot().axes) == 1
+    assert found.save("anywhere") == ()
+    with pytest.raises(gt.UserError, match="expected a model, its class, or its name"):
+        gt.check(3)  # type: ignore[arg-type]
+
+
+def test_built_in() -> None:
+    assert gt.check("robot_arm").findings == ()
