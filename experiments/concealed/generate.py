@@ -12,7 +12,8 @@ others one each, going round the catalogue; --cases is the total. With --effects
 turn ("none" and pairs "a+b" are allowed). A case depends on the seed, its number, its plan and the number of samples alone.
 
 With --family (mujoco, own, or the name of one machine of `machines/`) the cases are as in the proof, keys beside: 12 by default, effects
-going round, one case in four without (workshop: eight machines of everyday, which are in no proof), strengths weak, moderate, dominant, overwhelming (encoder-grade noise), or drawn.
+going round, one case in four without, strengths weak, moderate, dominant, overwhelming (encoder-grade noise), or drawn.
+With --family workshop they are on eight machines of everyday, which are in no proof; what is concealed is drawn.
 """
 
 from __future__ import annotations

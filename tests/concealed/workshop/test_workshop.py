@@ -45,7 +45,9 @@ def test_the_model_for_the_tool_is_the_machine_s_plain_equations(name: str) -> N
         f = {n: rng.uniform(-1.0, 1.0) for n in machine.ports}
 
         def named(names: Any, values: Any) -> SimpleNamespace:
-            return SimpleNamespace(**{n: torch.tensor(float(v), dtype=torch.float64) for n, v in zip(names, values, strict=True)})
+            return SimpleNamespace(
+                **{n: torch.tensor(float(v), dtype=torch.float64) for n, v in zip(names, values, strict=True)}
+            )
 
         x, q = named(machine.states, s), named(p, p.values())
         given = model.derivative(x, named([c.name for c in machine.inputs], u), q, named(f, f.values()))
