@@ -1,33 +1,41 @@
-"""Recordings from what is in memory already: arrays, and tables of any library. Pandas is not needed."""
+"""Samples from what is in memory already: arrays, and tables of any library. Pandas is not needed."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, get_args
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.checks import check_finite, check_length, check_time, numbers
-from greybox_torch.data.recording import Recording, Role
 from greybox_torch.errors import UserError, did_you_mean
 
 TIME = "time"
 
 
-def recording_of_arrays(
+@dataclass(frozen=True)
+class Samples:
+    """Checked samples of one experiment: time (N,) in s, the step in s, arrays (N,) by channel, units by channel."""
+
+    time: NDArray[np.float64]
+    sample_time: float
+    signals: dict[str, NDArray[np.float64]]
+    units: dict[str, str]
+
+
+def samples_of_arrays(
     name: str,
     signals: Mapping[str, Any],
     *,
     sample_time: float | None,
     time: Any,
-    role: Role,
     units: Mapping[str, str] | None,
-) -> Recording:
+) -> Samples:
     """What `Recording.from_arrays` describes."""
     place = _place(name)
-    _check_role(place, role)
     _check_clock(place, sample_time, time is not None)
     if not isinstance(signals, Mapping) or not signals:
         raise UserError(
@@ -43,19 +51,18 @@ def recording_of_arrays(
     else:
         check_time(stamps, lambda k: f"{place}, time, sample {k} (the first is 0)")
         step = float(np.median(np.diff(stamps)))
-    return Recording(name, role, stamps, step, held, units=_units(place, units, held))
+    return Samples(stamps, step, held, _units(place, units, held))
 
 
-def recording_of_frame(
+def samples_of_frame(
     name: str,
     frame: Any,
     *,
     time: str | None,
     sample_time: float | None,
-    role: Role,
     units: Mapping[str, str] | None,
     columns: Mapping[str, str] | None,
-) -> Recording:
+) -> Samples:
     """What `Recording.from_dataframe` describes."""
     place = _place(name)
     _check_clock(place, sample_time, time is not None)
@@ -69,12 +76,11 @@ def recording_of_frame(
             raise UserError(
                 f"{place}, {argument}: frame has no column {column!r}{did_you_mean(str(column), map(str, found))}; found {listed}"
             )
-    return recording_of_arrays(
+    return samples_of_arrays(
         name,
         {channel: _values(frame, column) for channel, column in wanted.items()},
         sample_time=sample_time,
         time=None if time is None else _values(frame, time),
-        role=role,
         units=units,
     )
 
@@ -83,11 +89,6 @@ def _place(name: Any) -> str:
     if not isinstance(name, str) or not name:
         raise UserError(f"Recording, name: found {_shown(name)}, expected text that is not empty")
     return f'recording "{name}"'
-
-
-def _check_role(place: str, role: Any) -> None:
-    if role not in get_args(Role):
-        raise UserError(f'{place}, role: found {_shown(role)}, expected "estimation" or "validation"')
 
 
 def _check_clock(place: str, sample_time: Any, has_time: bool) -> None:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from greybox_torch.data.in_memory import samples_of_arrays, samples_of_frame
+from greybox_torch.data.role import Role, check_role
 from greybox_torch.errors import UserError
-
-Role = Literal["estimation", "validation"]
 
 
 @dataclass(frozen=True)
@@ -83,9 +83,9 @@ class Recording:
             >>> Recording.from_arrays("sweep", {"voltage": np.ones(50), "speed": np.zeros(50)}, sample_time=1e-3, units={"voltage": "V"})
             Recording('sweep', estimation: 50 samples of voltage [V], speed, 0.001 s apart)
         """
-        from greybox_torch.data.in_memory import recording_of_arrays
-
-        return recording_of_arrays(name, signals, sample_time=sample_time, time=time, role=role, units=units)
+        made = samples_of_arrays(name, signals, sample_time=sample_time, time=time, units=units)
+        check_role(role, f'recording "{name}", role')
+        return cls(name, role, made.time, made.sample_time, made.signals, units=made.units)
 
     @classmethod
     def from_dataframe(
@@ -119,11 +119,9 @@ class Recording:
             >>> Recording.from_dataframe("steps", frame, time="t", columns={"voltage": "u", "speed": "y"})
             Recording('steps', estimation: 20 samples of voltage, speed, 0.01 s apart)
         """
-        from greybox_torch.data.in_memory import recording_of_frame
-
-        return recording_of_frame(
-            name, frame, time=time, sample_time=sample_time, role=role, units=units, columns=columns
-        )
+        made = samples_of_frame(name, frame, time=time, sample_time=sample_time, units=units, columns=columns)
+        check_role(role, f'recording "{name}", role')
+        return cls(name, role, made.time, made.sample_time, made.signals, units=made.units)
 
     def __len__(self) -> int:
         return len(self.time)

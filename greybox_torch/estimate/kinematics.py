@@ -10,13 +10,13 @@ Source: local polynomial slope, A. Savitzky and M. J. E. Golay, Analytical Chemi
 from __future__ import annotations
 
 from dataclasses import dataclass
-from weakref import WeakKeyDictionary
 
 import numpy as np
 import torch
 
 from greybox_torch.linear_algebra import least_squares, pseudo_inverse, solve
 from greybox_torch.model import GreyBoxModel, Signals
+from greybox_torch.model.once_per_model import once_per_model
 from greybox_torch.model.sensed_states import sensed_states
 from greybox_torch.simulation.records import Records
 
@@ -55,16 +55,6 @@ class Kinematics:
     determined: np.ndarray
 
 
-_KNOWN: WeakKeyDictionary[GreyBoxModel, Kinematics | None] = WeakKeyDictionary()
-
-
-def kinematics_of(model: GreyBoxModel) -> Kinematics | None:
-    """The kinematic relations of a model; None where there are none. Kept for as long as the model."""
-    if model not in _KNOWN:
-        _KNOWN[model] = _found(model)
-    return _KNOWN[model]
-
-
 def hidden_starts(
     model: GreyBoxModel, records: Records, states: np.ndarray, samples: np.ndarray, steps: int
 ) -> np.ndarray:
@@ -90,7 +80,9 @@ def hidden_starts(
     return filled
 
 
-def _found(model: GreyBoxModel) -> Kinematics | None:
+@once_per_model
+def kinematics_of(model: GreyBoxModel) -> Kinematics | None:
+    """The kinematic relations of a model; None where there are none."""
     outputs, sensed = [o.name for o in model.outputs], sensed_states(model)
     own = np.array([s.name in sensed or s.initial == "measured" for s in model.states])
     shown = [(i, outputs.index(sensed[s.name])) for i, s in enumerate(model.states) if s.name in sensed]

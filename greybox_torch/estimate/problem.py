@@ -11,8 +11,8 @@ import torch
 
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.errors import UserError
+from greybox_torch.estimate.measured_states import measured_at
 from greybox_torch.model import GreyBoxModel, Parameter, Signals, State
-from greybox_torch.model.sensed_states import sensed_states
 from greybox_torch.simulation.records import Records, make_records
 
 
@@ -226,33 +226,6 @@ def _start_states(dataset: DataSet, model: GreyBoxModel, records: Records) -> np
         else:
             rows[:, i] = float(state.initial)
     return rows
-
-
-def measured_at(model: GreyBoxModel, state: State, records: Records, samples: np.ndarray) -> np.ndarray:
-    """The measured value of a state at some samples (W,), or where that is missing the next known one.
-
-    Raises:
-        UserError: no signal measures the state, see :class:`State`.
-    """
-    values = _measuring_signal(model, state, records)
-    known = np.flatnonzero(~np.isnan(values))
-    return values[known[np.minimum(np.searchsorted(known, samples), len(known) - 1)]]
-
-
-def _measuring_signal(model: GreyBoxModel, state: State, records: Records) -> np.ndarray:
-    shown = sensed_states(model).get(state.name)
-    if shown is not None:
-        return records.y[[o.name for o in model.outputs].index(shown)]
-    for signals, rows in ((model.outputs, records.y), (model.inputs, records.u)):
-        same = [i for i, signal in enumerate(signals) if signal.unit == state.unit]
-        if len(same) == 1:
-            return rows[same[0]]
-        if len(same) > 1:
-            break
-    raise UserError(
-        f"model {model.title}, state '{state.name}': initial is 'measured', but no output shows it and not exactly one output or input is "
-        f"in '{state.unit}'; expected an output that is this state, or exactly one signal in the same unit"
-    )
 
 
 def _weights(records: Records) -> np.ndarray:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from greybox_torch.estimate.kinematics import hidden_starts
-from greybox_torch.estimate.problem import Problem, measured_at
+from greybox_torch.estimate.measured_states import measured_at
+from greybox_torch.estimate.problem import Problem
 from greybox_torch.model.sensed_states import sensed_states
 from greybox_torch.simulation.windows import Windows
 

@@ -47,7 +47,6 @@ class GreyBoxModel(torch.nn.Module):
 
     def __init__(self) -> None:
         super().__init__()
-        self._unseen: tuple[str, ...] | None = None
         self._check_declarations()
         self._scales = {p.name: parameter_scale(p.value, *p.bounds) for p in self.declared_parameters}
         self._set_by_name: frozenset[str] = frozenset()
@@ -82,9 +81,7 @@ class GreyBoxModel(torch.nn.Module):
 
     def carried_states(self) -> tuple[str, ...]:
         """States that a window of a record does not begin with freely but takes over from the window before: those that nothing shows."""
-        if self._unseen is None:
-            self._unseen = unseen_states(self)
-        return self._unseen
+        return unseen_states(self)
 
     @property
     def title(self) -> str:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
 import torch
 
+from greybox_torch.model.once_per_model import once_per_model
 from greybox_torch.model.random_points import random_points
 
 if TYPE_CHECKING:
     from greybox_torch.model.greybox_model import GreyBoxModel
-
-_KNOWN: WeakKeyDictionary[GreyBoxModel, dict[str, str]] = WeakKeyDictionary()
 
 
 def sensed_states(model: GreyBoxModel) -> dict[str, str]:
@@ -20,13 +18,11 @@ def sensed_states(model: GreyBoxModel) -> dict[str, str]:
 
     Of a model with effects it is the plain one that tells: what a sensor adds does not make it another sensor.
     """
-    plain = model.plain
-    if plain not in _KNOWN:
-        _KNOWN[plain] = _found(plain)
-    return _KNOWN[plain]
+    return _sensed(model.plain)
 
 
-def _found(model: GreyBoxModel) -> dict[str, str]:
+@once_per_model
+def _sensed(model: GreyBoxModel) -> dict[str, str]:
     x, u, p = random_points(model)
     with torch.no_grad():
         y = model.measured(x, u, p)

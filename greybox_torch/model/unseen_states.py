@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import torch
 
+from greybox_torch.model.once_per_model import once_per_model
 from greybox_torch.model.random_points import random_points
 from greybox_torch.model.signals import Signals
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from greybox_torch.model.greybox_model import GreyBoxModel
 
 
+@once_per_model
 def unseen_states(model: GreyBoxModel) -> tuple[str, ...]:
     """Names of the states that no rate and no output of ``model`` depends on, while nothing is attached."""
     x, u, p = random_points(model)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import copy
 import doctest
-import importlib
 import pickle
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -189,62 +187,6 @@ def test_copies_and_pickles() -> None:
     found = made()
     for twin in (copy.deepcopy(found), pickle.loads(pickle.dumps(found))):
         np.testing.assert_array_equal(twin.signals["u"], U)
-
-
-def tables() -> dict[str, Callable[[dict[str, Any]], Any]]:
-    made: dict[str, Callable[[dict[str, Any]], Any]] = {
-        "dict": dict,
-        "pyarrow": pa.table,
-        "batch": lambda columns: pa.RecordBatch.from_pydict({n: pa.array(v) for n, v in columns.items()}),
-        "structured": lambda columns: np.rec.fromarrays(list(columns.values()), names=list(columns)),
-    }
-    for library in ("pandas", "polars"):
-        if importlib.util.find_spec(library):
-            made[library] = importlib.import_module(library).DataFrame
-    return made
-
-
-@pytest.fixture(params=tables())
-def table(request: pytest.FixtureRequest) -> Callable[[dict[str, Any]], Any]:
-    return tables()[request.param]
-
-
-def test_from_tables(table: Callable[[dict[str, Any]], Any]) -> None:
-    frame = table({"t": 0.5 * np.arange(N), "voltage": U, "speed": Y})
-    found = Recording.from_dataframe("steps", frame, time="t", units={"voltage": "V"})
-    assert list(found.signals) == ["voltage", "speed"]
-    assert found.sample_time == 0.5
-    np.testing.assert_array_equal(found.signals["speed"], Y)
-    chosen = Recording.from_dataframe("steps", frame, sample_time=0.1, columns={"w": "speed"})
-    assert list(chosen.signals) == ["w"]
-    with pytest.raises(
-        UserError, match=r"time: frame has no column 'tt' \(did you mean \"t\"\?\); found t, voltage, speed"
-    ):
-        Recording.from_dataframe("steps", frame, time="tt")
-    with pytest.raises(UserError, match=r"columns: frame has no column 'Speed' \(did you mean \"speed\""):
-        Recording.from_dataframe("steps", frame, sample_time=1.0, columns={"w": "Speed"})
-
-
-@pytest.mark.parametrize("frame", [None, 3, U, [U, Y], "text"])
-def test_no_table(frame: Any) -> None:
-    with pytest.raises(UserError, match=r"frame: found .*, expected a table with columns"):
-        Recording.from_dataframe("steps", frame, sample_time=1.0)
-
-
-def test_pandas_dates_and_missing_integers() -> None:
-    pd = pytest.importorskip("pandas")
-    frame = pd.DataFrame(
-        {
-            "t": pd.date_range("2026-11-21", periods=N, freq="250ms"),
-            "u": pd.array([1, None] * 10, dtype="Int64"),
-            "y": U,
-        }
-    )
-    found = Recording.from_dataframe("steps", frame, time="t")
-    np.testing.assert_array_equal(found.time, np.arange(N) * 0.25)
-    np.testing.assert_array_equal(found.signals["u"], [1, np.nan] * 10)
-    with pytest.raises(UserError, match='channel "t": holds datetime64'):
-        Recording.from_dataframe("steps", frame, sample_time=1.0)
 
 
 def test_examples_in_the_documentation_run() -> None:

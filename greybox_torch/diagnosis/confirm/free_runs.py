@@ -66,22 +66,15 @@ class Judgement:
     @property
     def mismatch_share(self) -> float:
         """Root mean square error of the refitted model's free runs beyond the noise, in units of the spread: of the worst experiment."""
-        floors, unit = np.nan_to_num(output_floors(self.problem, self.settings)), self._units()
-        spread = np.array([unit[o.name] for o in self.problem.model.outputs])
-        errors = np.array([s.rmse for s in self.refit.scores]).reshape(len(self.recordings), -1)
-        beyond = np.maximum(errors**2 - floors, 0.0) / np.maximum(spread**2, 1e-300)
-        return float(np.sqrt(np.max(np.mean(beyond, axis=1))))
+        return float(np.sqrt(np.max(np.mean(self._beyond(self.refit, self._floors()), axis=1))))
 
     def left(self, effects: bool) -> tuple[float, float]:
         """What the recommended model leaves of the validation experiments: the share of the refitted model's mean squared error beyond the
         noise, and the root mean square error in units of the noise; NaN where no output shows how large that is.
         """
-        floors = np.nan_to_num(output_floors(self.problem, self.settings))
         final = self.with_effects if effects else self.refit
-        beyond = [self._energy(c, floors) for c in (self.refit, final)]
-        roles = [r.role for r in self.recordings]
-        of = [role == "validation" or "validation" not in roles for role in roles]
-        times = self._times_noise(final)[of]
+        beyond = [self._energy(c, self._floors()) for c in (self.refit, final)]
+        times = self._times_noise(final)[self._judging()]
         return _share_left(*beyond), float(np.nanmax(times)) if np.isfinite(times).any() else np.nan
 
     def comparisons(self, effects: bool) -> dict[str, Comparison]:
@@ -121,8 +114,7 @@ class Judgement:
 
     def _times_noise(self, comparison: Comparison) -> np.ndarray:
         """Root mean square errors in units of the noise, by experiment (E,), over the outputs whose noise is known; NaN where none is."""
-        errors = np.array([s.rmse for s in comparison.scores]).reshape(len(self.recordings), -1)
-        floors = output_floors(self.problem, self.settings)
+        errors, floors = self._errors(comparison), output_floors(self.problem, self.settings)
         known = np.isfinite(floors) & (floors > 0)
         ratios = np.where(known, errors**2 / np.where(known, np.maximum(floors, 1e-300), 1.0), 0.0)
         count = known.sum(axis=1)
@@ -130,22 +122,32 @@ class Judgement:
 
     def _judged(self, comparison: Comparison) -> Comparison:
         """The validation experiments alone, where there are any."""
-        roles = [s.role for s in comparison.scores]
-        return replace(
-            comparison,
-            scores=tuple(s for s in comparison.scores if s.role == "validation" or "validation" not in roles),
-        )
+        names = {r.name for r, judging in zip(self.recordings, self._judging(), strict=True) if judging}
+        return replace(comparison, scores=tuple(s for s in comparison.scores if s.experiment in names))
+
+    def _judging(self) -> np.ndarray:
+        """Which experiments (E,) judge: those of validation, all where there is none."""
+        validation = np.array([r.role == "validation" for r in self.recordings])
+        return validation | ~validation.any()
+
+    def _energy(self, comparison: Comparison, floors: np.ndarray | float = 0.0) -> float:
+        """Sum of the mean squared errors of the experiments that judge, outputs in units of their spread, beyond ``floors`` (E, n_y)."""
+        return float(sum(self._beyond(comparison, floors)[self._judging()].ravel()))
 
     @np.errstate(over="ignore")
-    def _energy(self, comparison: Comparison, floors: np.ndarray | None = None) -> float:
-        """Sum of the mean squared validation errors, outputs in units of their spread, beyond ``floors`` (E, n_y) where those are given."""
+    def _beyond(self, comparison: Comparison, floors: np.ndarray | float) -> np.ndarray:
+        """Mean squared errors (E, n_y) beyond ``floors``, outputs in units of their spread."""
         unit = self._units()
-        order = [r.name for r in self.recordings], [o.name for o in self.problem.model.outputs]
-        total = 0.0
-        for score in self._judged(comparison).scores:
-            floor = 0.0 if floors is None else floors[order[0].index(score.experiment), order[1].index(score.output)]
-            total += max(score.rmse**2 - floor, 0.0) / max(unit[score.output] ** 2, 1e-300)
-        return float(total)
+        spread = np.array([unit[o.name] for o in self.problem.model.outputs])
+        return np.maximum(self._errors(comparison) ** 2 - floors, 0.0) / np.maximum(spread**2, 1e-300)
+
+    def _errors(self, comparison: Comparison) -> np.ndarray:
+        """Root mean square errors (E, n_y)."""
+        return np.array([s.rmse for s in comparison.scores]).reshape(len(self.recordings), -1)
+
+    def _floors(self) -> np.ndarray:
+        """Mean squares of the noise (E, n_y), zero where it is not known."""
+        return np.nan_to_num(output_floors(self.problem, self.settings))
 
     def _units(self) -> dict[str, float]:
         """The spread of every output; of one that never moves, the largest error of the re-estimated model."""
