@@ -16,6 +16,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from greybox_torch.api.card import CardResult, card
     from greybox_torch.api.check import check
     from greybox_torch.api.check_result import CheckResult
     from greybox_torch.api.compare import ComparisonResult, compare
@@ -52,6 +53,7 @@ __version__ = "0.1.0"
 __all__ = [
     "Balance",
     "Body",
+    "CardResult",
     "CheckResult",
     "Checkpoint",
     "ComparisonResult",
@@ -83,6 +85,7 @@ __all__ = [
     "TrainingResult",
     "TrainingSettings",
     "UserError",
+    "card",
     "check",
     "compare",
     "diagnose",
@@ -113,6 +116,7 @@ __all__ = [
 _HOME_OF = {
     "Balance": "greybox_torch.model",
     "Body": "greybox_torch.model",
+    "CardResult": "greybox_torch.api.card",
     "CheckResult": "greybox_torch.api.check_result",
     "Checkpoint": "greybox_torch.checkpoint",
     "ComparisonResult": "greybox_torch.api.compare",
@@ -144,6 +148,7 @@ _HOME_OF = {
     "TrainingResult": "greybox_torch.api.train_result",
     "TrainingSettings": "greybox_torch.training",
     "UserError": "greybox_torch.errors",
+    "card": "greybox_torch.api.card",
     "check": "greybox_torch.api.check",
     "compare": "greybox_torch.api.compare",
     "diagnose": "greybox_torch.api.diagnose",

@@ -58,6 +58,21 @@ def write_text(path: Path, text: str) -> None:
         temporary.write_text(text, encoding="utf-8")
 
 
+def write_new(path: Path, text: str) -> None:
+    """Writes `text` to `path` as UTF-8, whole or not at all. Raises UserError where there is something already, or it cannot be written."""
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+        try:
+            os.link(temporary, path)  # fails where the name is taken, in whatever moment it was
+        except FileExistsError:
+            raise UserError(f"{path}: is there already and is not overwritten; expected a new name, or --out") from None
+        except OSError:  # a file system without links
+            if path.exists():
+                raise UserError(
+                    f"{path}: is there already and is not overwritten; expected a new name, or --out"
+                ) from None
+
+
 def write_all(contents: Mapping[Path, str | bytes]) -> None:
     """Writes files that belong together: all of them, or none. Text is encoded as UTF-8. Raises UserError where one cannot be written."""
     with ExitStack() as together:

@@ -1,7 +1,8 @@
-"""How the commands of the first steps are written on the command line: `check`."""
+"""How the commands of the first steps are written on the command line: `card`, `check`."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -12,7 +13,25 @@ from greybox_torch.commands.options import Options
 
 def declare(app: typer.Typer) -> None:
     """Enter the commands into `app`."""
-    app.command()(check)
+    for command in (card, check):
+        app.command()(command)
+
+
+def card(
+    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Recordings; the last one is for validation.")],
+    model: Model = None,
+    sample_time: Annotated[
+        float | None, typer.Option(metavar="SECONDS", help="Where no column has time stamps.", show_default="guessed")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="CARD.toml", help="Where to write.", show_default="dataset.toml beside FILE")
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Look at recordings and write a commented data card for them."""
+    from greybox_torch.commands import card
+
+    card.run(files, sample_time, Options(model, out, json=json))
 
 
 def check(

@@ -9,8 +9,9 @@ entered by `register_reader`.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
+from typing import TypeVar
 
 from greybox_torch.data.readers.csv import read_csv
 from greybox_torch.data.readers.hdf5 import read_hdf5
@@ -23,6 +24,7 @@ from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.reading import check_file
 
 Reader = Callable[[Path, Collection[str]], Table]
+_Found = TypeVar("_Found")
 
 READERS: dict[str, Reader] = {
     ".csv": read_csv,
@@ -77,29 +79,41 @@ def read_table(path: Path, columns: Collection[str]) -> Table:
 
     Raises UserError as the readers do, and for whatever else the library behind a reader raises: a damaged file has ways of its own.
     """
+    return guarded(path, READERS)(path, columns)
+
+
+def guarded(path: Path, table: Mapping[str, Callable[..., _Found]]) -> Callable[..., _Found]:
+    """The function of `table` for the suffix of `path`; whatever it raises becomes a UserError, and no library says anything.
+
+    Raises UserError where there is no such file, or no function for its suffix.
+    """
     if "\0" in str(path):
         raise UserError(
             f"{ascii(str(path))[1:-1]}: cannot be the name of a file: embedded null byte; expected a recording"
         )
-    reader = READERS.get(path.suffix.lower())
-    if reader is None:
-        raise UserError(f'{path}: no reader for files ending in "{path.suffix}"; expected one of {", ".join(READERS)}')
+    suffix = path.suffix.lower()
+    if suffix not in table:
+        raise UserError(f'{path}: no reader for files ending in "{path.suffix}"; expected one of {", ".join(table)}')
     _check_there(path)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # a library's remark on a file is of no use beside our own message
-            return reader(path, columns)
-    except UserError:
-        raise
-    except MemoryError:
-        raise UserError(f"{path}: needs more memory than there is; expected a smaller recording") from None
-    except OSError as error:
-        raise UserError(f"{path}: cannot be read: {_said(error)}") from None
-    except Exception as error:
-        raise UserError(
-            f"{path}: cannot be read as {path.suffix.lower()}: {type(error).__name__}: {_said(error)}; "
-            "the file is damaged, or of another kind"
-        ) from None
+
+    def call(*arguments: object) -> _Found:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # a library's remark on a file is of no use beside our own message
+                return table[suffix](*arguments)
+        except UserError:
+            raise
+        except MemoryError:
+            raise UserError(f"{path}: needs more memory than there is; expected a smaller recording") from None
+        except OSError as error:
+            raise UserError(f"{path}: cannot be read: {_said(error)}") from None
+        except Exception as error:
+            raise UserError(
+                f"{path}: cannot be read as {suffix}: {type(error).__name__}: {_said(error)}; "
+                "the file is damaged, or of another kind"
+            ) from None
+
+    return call
 
 
 def _check_there(path: Path) -> None:

@@ -24,10 +24,22 @@ _HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 def read_matlab(path: Path, columns: Collection[str]) -> Table:
     """Reads variables by name. Raises UserError for damaged files and for variables that are not vectors of numbers."""
+    return read_groups(path, columns, is_matlab=True) if is_hdf5(path) else _read_v5(path, columns)
+
+
+def is_hdf5(path: Path) -> bool:
+    """Whether the file is of version 7.3."""
     with path.open("rb") as file:
         head = file.read(512 + len(_HDF5_SIGNATURE))
-    is_hdf5 = head.startswith(_HDF5_SIGNATURE) or head.endswith(_HDF5_SIGNATURE)  # MATLAB writes 512 bytes ahead of it
-    return read_groups(path, columns, is_matlab=True) if is_hdf5 else _read_v5(path, columns)
+    return head.startswith(_HDF5_SIGNATURE) or head.endswith(_HDF5_SIGNATURE)  # MATLAB writes 512 bytes ahead of it
+
+
+def values_of(path: Path) -> dict[str, Any]:
+    """All variables of a file of version 4 to 7. Raises what a damaged file makes readers raise."""
+    if not is_version_5(path):
+        return {name: value for name, value in _version_4(path).items() if not name.startswith("__")}
+    held = variables_of(path)
+    return {name: held.value(name) for name in held.places}
 
 
 def _read_v5(path: Path, columns: Collection[str]) -> Table:

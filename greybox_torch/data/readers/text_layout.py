@@ -18,7 +18,7 @@ from greybox_torch.data.readers.table import require
 from greybox_torch.errors import UserError
 
 DELIMITERS = (",", ";", "\t", "|", " ")
-_HEAD = 300  # lines among which the line of names stands
+HEAD = 300  # lines among which the line of names stands
 _LONGEST_LINE = 2**20
 _POSITION = re.compile(r"#([1-9]\d{0,5})")
 _MISSING = {"na", "n/a", "null", "none", "-", "--", "?", "missing", "nil", "#n/a"}
@@ -65,7 +65,7 @@ def encoding_of(path: Path) -> str:
 def layout_of(path: Path, file: TextIO, columns: Collection[str]) -> Layout:
     """The layout of the text in `file`, from its first lines. Raises UserError where a column is nowhere named."""
     head = []
-    for line in islice(file, _HEAD):
+    for line in islice(file, HEAD):
         if len(line) > _LONGEST_LINE:
             raise UserError(
                 f"{path}, line {len(head) + 1}: has more than {_LONGEST_LINE} characters; expected lines of samples"
@@ -133,6 +133,11 @@ def _before_numbers(head: list[str], delimiter: str, positions: dict[str, int]) 
         if len(cells) == len(positions) and any(cells) and all(is_number(cell, delimiter) for cell in cells):
             return k
     return len(head)
+
+
+def cells_of(line: str, delimiter: str) -> list[str]:
+    """The cells of one line; none of a line that cannot be taken apart."""
+    return next(([cell.strip() for cell in row] for _, row in _rows(iter([line]), delimiter, 0, strict=False)), [])
 
 
 def is_number(cell: str, delimiter: str) -> bool:

@@ -1,0 +1,169 @@
+"""A first data card from recordings."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.text import Text
+
+from greybox_torch.api.result import Result
+from greybox_torch.data import DataSet, Recording
+from greybox_torch.drafting.card import CardDraft, draft_card
+from greybox_torch.errors import ArgumentError, UserError
+from greybox_torch.files import absolute, write_new
+from greybox_torch.report import notebook
+from greybox_torch.report.tables import print_table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from greybox_torch.model import GreyBoxModel
+
+_COLUMNS = ["channel", "unit", "column", "remark"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CardResult(Result):
+    """``text`` is the card, which belongs to ``path``; ``open`` says what is left to fill in."""
+
+    draft: CardDraft
+    path: Path
+
+    @property
+    def text(self) -> str:
+        return self.draft.text
+
+    @property
+    def open(self) -> tuple[str, ...]:
+        return self.draft.open
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """A row for every channel: name, unit, column (None where none was found), unit of the file, remark."""
+        return [
+            {"channel": d.name, "unit": d.unit, "column": d.column, "file_unit": d.file_unit, "remark": d.remark}
+            for d in self.draft.channels
+        ]
+
+    def __repr__(self) -> str:
+        return f"<data card for {', '.join(file.path.name for file in self.draft.files)}>"
+
+    def content(self, folder: Path) -> dict[str, Any]:
+        clock = self.draft.clock
+        return {
+            "schema": "greybox-card/1",
+            "card": str(self.path),
+            "time": clock.column,
+            "time_unit": clock.unit if clock.column is not None else None,
+            "sample_time": clock.sample_time,
+            "channels": self.rows,
+            "files": [
+                {"file": str(file.path), "samples": file.samples, "columns": list(file.columns)}
+                for file in self.draft.files
+            ],
+            "open": list(self.open),
+        }
+
+    def show(self, console: Console) -> None:
+        for file in self.draft.files:
+            console.print(
+                Text(f"{file.path.name}: {file.samples} samples of {', '.join(file.columns)}"), soft_wrap=True
+            )
+        print_table(console, _COLUMNS, self._table())
+        for line in self.open:
+            console.print(Text(f"To be filled in: {line}", style="yellow"), soft_wrap=True)
+
+    def files(self, folder: Path) -> dict[Path, str | bytes]:
+        return {folder / self.path.name: self.text}
+
+    def save(self, folder: str | PathLike[str] | None = None) -> tuple[Path, ...]:
+        """Write the card to its path, or into another folder, where the recordings have to lie alike.
+
+        Raises:
+            UserError: there is a file of that name already, or it cannot be written.
+        """
+        path = self.path if folder is None else Path(folder) / self.path.name
+        write_new(path, self.text)
+        return (path,)
+
+    def plot(self) -> Figure:
+        """Every channel that was found, over time (over samples where no time was found), as the files hold it."""
+        from greybox_torch.report.channels import plot_channels
+
+        found = {draft.name: draft.column for draft in self.draft.channels if draft.column is not None}
+        recordings = [
+            Recording.from_arrays(
+                file.path.name,
+                {name: file.columns[column] for name, column in found.items()},
+                sample_time=self.draft.clock.sample_time or 1.0,
+            )
+            for file in self.draft.files
+            if all(column in file.columns for column in found.values())
+        ]
+        return plot_channels(DataSet(recordings, name=self.path.parent.name or "recordings", held_out_by_default=False))
+
+    def _repr_html_(self) -> str:
+        told = [notebook.sentence(f"To be filled in: {line}", "found") for line in self.open]
+        return notebook.page(repr(self)[1:-1], notebook.table(_COLUMNS, self._table()), *told)
+
+    def _table(self) -> list[list[str | float]]:
+        return [[d.name, d.unit, d.column or "", d.remark] for d in self.draft.channels]
+
+
+def card(
+    files: str | PathLike[str] | Iterable[str | PathLike[str]],
+    model: GreyBoxModel | str | None = None,
+    *,
+    path: str | PathLike[str] | None = None,
+    sample_time: float | None = None,
+) -> CardResult:
+    """Look at recordings and draft the data card for them; :meth:`CardResult.save` writes it.
+
+    Args:
+        files: the recordings, in the order of the experiments; the last of several, or the last quarter of one, is for validation.
+        model: whose inputs and outputs the columns are matched with; an object, or a name as :func:`greybox_torch.load_model` takes it.
+        path: of the card; by default `dataset.toml` beside the first file.
+        sample_time: in seconds, where no column has time stamps; by default guessed from names such as Ts and fs.
+
+    Raises:
+        UserError: a file that cannot be read, or no such model.
+
+    Example:
+        ``card(["steps.csv", "sweep.csv"], Motor()).save()``
+    """
+    paths = _paths(files)
+    place = Path(path) if path is not None else paths[0].parent / "dataset.toml"
+    if sample_time is not None and not 0.0 < sample_time < float("inf"):
+        raise ArgumentError("sample_time", sample_time, "expected seconds, above 0")
+    given, name = _model(model, place.parent)
+    return CardResult(draft_card(paths, place.parent, given, name, sample_time), place)
+
+
+def _paths(files: Any) -> list[Path]:
+    paths = [Path(files)] if isinstance(files, str | PathLike) else [Path(file) for file in files]
+    if not paths:
+        raise ArgumentError("files", [], "expected at least one recording")
+    return paths
+
+
+def _model(model: GreyBoxModel | str | None, folder: Path) -> tuple[GreyBoxModel | None, str | None]:
+    """The model, and how a card in ``folder`` names it."""
+    if model is None:
+        return None, None
+    from greybox_torch.api.arguments import check_model
+    from greybox_torch.systems import load_model, model_reference
+
+    given = load_model(model) if isinstance(model, str) else check_model(model)
+    file, colon, name = model_reference(given).rpartition(":")
+    if not file.endswith(".py"):
+        return given, f"{file}{colon}{name}"
+    try:
+        return given, f"{Path(os.path.relpath(file, absolute(folder))).as_posix()}:{name}"
+    except ValueError as error:  # another drive
+        raise UserError(f"{file}: {error}; expected a model on the drive of the card") from None

@@ -1,0 +1,21 @@
+"""`greybox card`: a first data card from recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.text import Text
+
+from greybox_torch.api.card import card
+from greybox_torch.commands.options import Options
+
+
+def run(files: Sequence[Path], sample_time: float | None, options: Options) -> None:
+    """Writes the card, and says what is left to fill in. Nothing is overwritten."""
+    drafted = card(files, options.model, path=options.out, sample_time=sample_time)
+    (written,) = drafted.save()
+    console = options.console()
+    drafted.show(console)
+    console.print(Text(f"Written to {written}. Next: greybox inspect {written}"), soft_wrap=True)
+    options.print_json(drafted.to_json())

@@ -1,0 +1,175 @@
+"""The text of a first data card, with comments that say what was guessed and what is left to fill in."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from greybox_torch.drafting.channels import Draft, Drafted, drafted
+from greybox_torch.drafting.clock import Clock, clock_of
+from greybox_torch.drafting.recorded import Recorded, recorded
+from greybox_torch.model import GreyBoxModel
+
+FEW = 80
+"""Samples below which a file is not divided between estimation and validation."""
+
+
+@dataclass(frozen=True)
+class CardDraft:
+    """The card's text, and what its reader has to do: ``open`` lists what could not be guessed."""
+
+    text: str
+    files: tuple[Recorded, ...]
+    clock: Clock
+    channels: tuple[Draft, ...]
+    open: tuple[str, ...]
+
+
+def draft_card(
+    paths: Sequence[Path],
+    folder: Path,
+    model: GreyBoxModel | None = None,
+    model_name: str | None = None,
+    sample_time: float | None = None,
+) -> CardDraft:
+    """The card that would stand in ``folder`` for the recordings ``paths``.
+
+    Args:
+        model_name: how the card names the model, relative to ``folder``.
+        sample_time: in seconds; by default guessed.
+
+    Raises:
+        UserError: a file that cannot be read.
+    """
+    files = tuple(recorded(path) for path in paths)
+    given = None if sample_time is None else Clock(sample_time=sample_time, remark="as given")
+    clocks = [given or clock_of(file) for file in files]
+    tables = [drafted(file, clock, model) for file, clock in zip(files, clocks, strict=True)]
+    lines = [
+        f"name = {_text(folder.resolve().name or 'Recordings')}",
+        *_clock(clocks[0]),
+        'hold = "zoh"                       # the input between samples: "zoh" constant, "foh" straight lines',
+        "",
+        *_channels(tables[0], model),
+        *_left_over(files[0], tables[0]),
+        "",
+        *_experiments(files, clocks, tables, folder),
+        *_model(model, model_name),
+    ]
+    missing = [f"[channels] {draft.name}: {draft.remark}" for draft in tables[0].channels if draft.column is None]
+    if clocks[0].column is None and clocks[0].sample_time is None:
+        missing.insert(0, f"sample_time: {clocks[0].remark}")
+    return CardDraft("\n".join(lines) + "\n", files, clocks[0], tables[0].channels, tuple(missing))
+
+
+def _clock(clock: Clock) -> list[str]:
+    if clock.column is not None:
+        time = (
+            _text(clock.column)
+            if clock.unit == "s"
+            else f"{{ column = {_text(clock.column)}, unit = {_text(clock.unit)} }}"
+        )
+        uneven = [
+            "# resample = 0.001                 # s: the time stamps are uneven; this makes them even"
+        ] * clock.uneven
+        return [f"time = {time}    # {clock.remark}", *uneven]
+    if clock.sample_time is not None:
+        return [f"sample_time = {clock.sample_time!r}    # s, {clock.remark}"]
+    return [f"# sample_time = 0.001              # s, to be filled in: {clock.remark}"]
+
+
+def _channels(table: Drafted, model: GreyBoxModel | None) -> list[str]:
+    told = (
+        "# name = { column = …, unit = … }; file value * scale = value in unit, or file_unit = … to convert"
+        if model is not None
+        else "# no model was named: call channels as the model's inputs and outputs are called"
+    )
+    return ["[channels]", told, *(_channel(draft) for draft in table.channels)]
+
+
+def _channel(draft: Draft) -> str:
+    entry = [f"column = {_text(draft.column if draft.column is not None else '…')}", f"unit = {_text(draft.unit)}"]
+    entry += [f"file_unit = {_text(draft.file_unit)}"] if draft.file_unit else []
+    line = f"{_key(draft.name)} = {{ {', '.join(entry)} }}" + (f"    # {draft.remark}" if draft.remark else "")
+    return line if draft.column is not None else f"# {line}"
+
+
+def _left_over(file: Recorded, table: Drafted) -> list[str]:
+    lines = [f"# also in {file.path.name}: {', '.join(table.others)}"] if table.others else []
+    return lines + ([f"# without numbers, or of another length: {', '.join(file.left_out)}"] if file.left_out else [])
+
+
+def _experiments(
+    files: Sequence[Recorded], clocks: Sequence[Clock], tables: Sequence[Drafted], folder: Path
+) -> list[str]:
+    lines: list[str] = []
+    names = _names([file.path for file in files])
+    for k, (file, clock, table) in enumerate(zip(files, clocks, tables, strict=True)):
+        own = {
+            draft.name: draft.column
+            for draft, first in zip(table.channels, tables[0].channels, strict=False)
+            if draft.column is not None and draft.column != first.column
+        }
+        if clock.column is not None and clock.column != clocks[0].column:
+            own["time"] = clock.column
+        alone, last = len(files) == 1, k == len(files) - 1
+        if alone and file.samples >= FEW:
+            cut = 3 * file.samples // 4
+            for name, role, rows in (
+                ("first part", "estimation", (0, cut)),
+                ("last part", "validation", (cut, file.samples)),
+            ):
+                lines += _experiment(f"{names[k]}, {name}", file, role, folder, own, rows)
+            continue
+        lines += _experiment(names[k], file, "validation" if last and not alone else "estimation", folder, own, None)
+    return lines
+
+
+def _experiment(
+    name: str, file: Recorded, role: str, folder: Path, columns: dict[str, str], rows: tuple[int, int] | None
+) -> list[str]:
+    seen = "parameters are estimated from it" if role == "estimation" else "results are judged on it"
+    own = ", ".join(f"{_key(channel)} = {_text(column)}" for channel, column in columns.items())
+    return [
+        "[[experiment]]",
+        f"name = {_text(name)}",
+        f"file = {_text(Path(os.path.relpath(file.path.resolve(), folder.resolve())).as_posix())}",
+        f"role = {_text(role)}              # {seen}",
+        *([f"rows = [{rows[0]}, {rows[1]}]"] if rows else []),
+        *([f"columns = {{ {own} }}"] if own else []),
+        "",
+    ]
+
+
+def _model(model: GreyBoxModel | None, name: str | None) -> list[str]:
+    if model is None:
+        return ["[model]", '# name = "my_model.py:MyModel"      # relative to this card']
+    parameters = [
+        f"# {_key(p.name)} = {{ value = {p.value!r}{', fixed = true' if p.fixed else ''} }}"
+        + (f"    # {p.unit}" if p.unit else "")
+        for p in model.declared_parameters
+    ]
+    told = "# start values; with fixed = true what you know" if parameters else ""
+    return [
+        "[model]",
+        f"name = {_text(name or model.title)}",
+        *(["", "[model.parameters]", told, *parameters] if told else []),
+    ]
+
+
+def _names(paths: Sequence[Path]) -> list[str]:
+    """The files' names without their endings; whole, where two would be alike."""
+    stems = [path.stem for path in paths]
+    return [stem if stems.count(stem) == 1 else path.as_posix() for stem, path in zip(stems, paths, strict=True)]
+
+
+def _text(value: str) -> str:
+    """A string of TOML, which is one of JSON but for the character DEL."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _key(name: str) -> str:
+    return name if name.replace("_", "").isascii() and name.replace("_", "").isalnum() else _text(name)

@@ -1,0 +1,101 @@
+"""The channels of a card: for each its column, and what is known of its unit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from greybox_torch.data.units import slip
+from greybox_torch.drafting.clock import Clock
+from greybox_torch.drafting.column_units import unit_in, without_unit
+from greybox_torch.drafting.magnitudes import slips
+from greybox_torch.drafting.matching import Wanted, matched, words
+from greybox_torch.drafting.recorded import Recorded
+from greybox_torch.model import Body, GreyBoxModel
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A line of [channels]: ``column`` is None where none was found, ``file_unit`` empty where it is the channel's."""
+
+    name: str
+    unit: str
+    column: str | None
+    file_unit: str = ""
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class Drafted:
+    """The channels of one file, and the columns that are none."""
+
+    channels: tuple[Draft, ...]
+    others: tuple[str, ...] = field(default_factory=tuple)
+
+
+def wanted_of(model: GreyBoxModel) -> list[Wanted]:
+    """The inputs and outputs of a model."""
+    return [
+        *(Wanted(i.name, i.unit, True) for i in model.inputs),
+        *(Wanted(o.name, o.unit, False) for o in model.outputs),
+    ]
+
+
+def drafted(file: Recorded, clock: Clock, model: GreyBoxModel | None) -> Drafted:
+    """Columns matched with the model's inputs and outputs; without a model, every column a channel of its own name."""
+    columns = [name for name in file.columns if name != clock.column]
+    units = {name: unit for name in columns if (unit := file.units.get(name, "") or unit_in(name))}
+    if model is None:
+        return Drafted(tuple(Draft(_channel_name(name), units.get(name, ""), name) for name in columns))
+    wanted = wanted_of(model)
+    bare = {without_unit(name): name for name in columns}
+    found = {channel: bare[name] for channel, name in matched(wanted, list(bare), _by(bare, units)).items()}
+    suspected = _suspected(file, clock, model, wanted, found)
+    channels = tuple(_draft(channel, found, units, suspected, columns) for channel in wanted)
+    return Drafted(channels, tuple(name for name in columns if name not in found.values()))
+
+
+def _by(bare: dict[str, str], units: dict[str, str]) -> dict[str, str]:
+    return {short: units[name] for short, name in bare.items() if name in units}
+
+
+def _draft(
+    channel: Wanted, found: dict[str, str], units: dict[str, str], suspected: dict[str, str], columns: Sequence[str]
+) -> Draft:
+    column = found.get(channel.name)
+    if column is None:
+        free = [name for name in columns if name not in found.values()]
+        return Draft(channel.name, channel.unit, None, remark=f"not found among {', '.join(free) or 'the columns'}")
+    unit = units.get(column, "")
+    if unit and channel.unit and slip(unit, channel.unit) is not None:
+        return Draft(channel.name, channel.unit, column, unit, "converted from the unit that the file says")
+    if channel.name in suspected and not unit:
+        guess = suspected[channel.name]
+        return Draft(channel.name, channel.unit, column, remark=f'its size suggests {guess}: add file_unit = "{guess}"')
+    certain = words(column) == words(channel.name) or column.lower() == channel.name.lower()
+    return Draft(channel.name, channel.unit, column, remark="" if certain else "please check: guessed from the name")
+
+
+def _suspected(
+    file: Recorded, clock: Clock, model: GreyBoxModel, wanted: Sequence[Wanted], found: dict[str, str]
+) -> dict[str, str]:
+    outputs = {channel.name: channel for channel in wanted}
+    bodies = [(str(port.position), str(port.speed)) for port in model.ports if isinstance(port, Body)]
+    pairs = [(outputs[a], outputs[b]) for a, b in bodies if a in outputs and b in outputs]
+    if clock.column is not None:
+        seconds = {"ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}.get(clock.unit, 1.0)
+        time = file.columns[clock.column] * seconds
+    elif clock.sample_time is not None:
+        time = np.arange(file.samples, dtype=np.float64) * clock.sample_time
+    else:
+        return {}
+    return slips(pairs, file.columns, found, time)
+
+
+def _channel_name(column: str) -> str:
+    """A name that a model could use."""
+    name = "_".join(words(without_unit(column))) or "channel"
+    name = name if not name[0].isdigit() else f"channel_{name}"
+    return "clock" if name == "time" else name

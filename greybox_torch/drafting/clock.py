@@ -1,0 +1,83 @@
+"""When samples were taken: a column of time stamps, a sample time that stands in the file, or neither."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greybox_torch.data.processing import EVEN, unevenness
+from greybox_torch.drafting.recorded import Recorded
+
+_TIME = re.compile(
+    r"(^|[\W_])(t|time|times|timestamp|time_?stamps?|tid|zeit|temps|seconds|secs?|millis|clock)($|[\W_\d])",
+    re.IGNORECASE,
+)
+_STEP = re.compile(r"^(ts|dt|h|tsampl|t_s|sample_?time|sampling_?time|sample_?period|step|delta_?t)$", re.IGNORECASE)
+_RATE = re.compile(r"^(fs|f_s|rate|sample_?rate|sampling_?(rate|frequency)|frequency)$", re.IGNORECASE)
+_UNITS = {
+    "ns": re.compile(r"(^|[\W_])(ns|nsec|nanos\w*)($|[\W_])", re.IGNORECASE),
+    "us": re.compile(r"(^|[\W_])(us|µs|usec|micros\w*)($|[\W_])", re.IGNORECASE),
+    "ms": re.compile(r"(^|[\W_])(ms|msec|millis\w*)($|[\W_])", re.IGNORECASE),
+    "min": re.compile(r"(^|[\W_])(min|minutes)($|[\W_])", re.IGNORECASE),
+}
+_SINCE_1970 = {"ns": 1e17, "us": 1e14, "ms": 1e11}
+"""Time stamps of our days are larger than this in that unit."""
+
+_EVEN_ENOUGH = 0.5
+"""Steps of a clock without a name of its own differ by less than this share of the median."""
+
+
+@dataclass(frozen=True)
+class Clock:
+    """Either ``column`` (None: there is none) with its unit, or ``sample_time`` in seconds (None: not known).
+
+    ``remark`` says what the guess is from; ``uneven`` whether the steps differ.
+    """
+
+    column: str | None = None
+    unit: str = "s"
+    sample_time: float | None = None
+    remark: str = ""
+    uneven: bool = False
+
+
+def clock_of(file: Recorded) -> Clock:
+    """The clock of a file, as far as names and numbers tell."""
+    rising = {name: values for name, values in file.columns.items() if _rises(values)}
+    named = [name for name in rising if _TIME.search(name)]
+    other = [name for name in rising if unevenness(rising[name]) < _EVEN_ENOUGH and name == next(iter(file.columns))]
+    for column in (*named, *other):
+        return _clock(column, rising[column], file.units.get(column, ""))
+    for name, value in file.numbers.items():
+        last = name.rsplit(".", 1)[-1]
+        if value > 0 and _STEP.match(last):
+            return Clock(sample_time=value, remark=f"{name} = {value:g} in {file.path.name}")
+        if value > 0 and _RATE.match(last):
+            return Clock(sample_time=1.0 / value, remark=f"1 / {name}, {name} = {value:g} in {file.path.name}")
+    return Clock(remark="no column rises from sample to sample, and no number is called Ts, dt or fs")
+
+
+def _clock(column: str, values: NDArray[np.float64], unit: str) -> Clock:
+    step, uneven = float(np.median(np.diff(values))), unevenness(values) > EVEN
+    for known in ("s", "ms", "us", "µs", "ns", "min", "h"):
+        if unit.strip("[]() ").lower() == known:
+            return Clock(column, known, remark=f"the file says {known}; {_step(step, known)}", uneven=uneven)
+    for known, pattern in _UNITS.items():
+        if pattern.search(column):
+            return Clock(column, known, remark=f"by its name; {_step(step, known)}", uneven=uneven)
+    for known, least in _SINCE_1970.items():
+        if values[0] > least:
+            return Clock(column, known, remark=f"by its size, since 1970; {_step(step, known)}", uneven=uneven)
+    doubt = '; if the stamps are milliseconds, unit = "ms"' if step >= 0.5 and float(step).is_integer() else ""
+    return Clock(column, "s", remark=f"{_step(step, 's')}{doubt}", uneven=uneven)
+
+
+def _step(step: float, unit: str) -> str:
+    return f"steps of {step:.6g} {unit}"
+
+
+def _rises(values: NDArray[np.float64]) -> bool:
+    return len(values) > 1 and bool(np.isfinite(values).all() and (np.diff(values) > 0).all())

@@ -1,0 +1,114 @@
+"""Which column is which input or output of a model: by name, by unit, and where that leaves two, by what is alike."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from difflib import SequenceMatcher
+
+from greybox_torch.data.units import conversion
+from greybox_torch.errors import UserError
+
+_WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
+_ALIKE = (
+    {"speed", "velocity", "vel", "w", "v", "omega", "qd", "dq", "rpm", "n"},
+    {"position", "pos", "angle", "q", "theta", "phi", "x", "deg"},
+    {"torque", "tau", "trq", "moment", "m", "u"},
+    {"force", "f", "u"},
+    {"voltage", "volt", "volts", "v", "u"},
+    {"current", "cur", "i", "amps", "u"},
+    {"level", "height", "h", "y"},
+    {"temperature", "temp", "t", "y"},
+    {"pressure", "press", "p"},
+    {"flow", "q", "inflow", "u"},
+    {"power", "p", "heat", "u"},
+    {"acceleration", "acc", "a"},
+    {"measured", "meas", "measurement", "actual", "act"},
+)
+"""Words of one meaning, in the languages of data logs."""
+
+SURE = 0.5
+"""Score from which a column is taken for a channel."""
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """An input or output of the model."""
+
+    name: str
+    unit: str
+    is_input: bool
+
+
+def matched(wanted: Sequence[Wanted], columns: Sequence[str], units: Mapping[str, str]) -> dict[str, str]:
+    """The column of each channel that one was found for, by the channel's name; no column twice, the surest first."""
+    scores = sorted(
+        (
+            (-_score(channel, column, units.get(column, ""), wanted), k, i)
+            for i, channel in enumerate(wanted)
+            for k, column in enumerate(columns)
+        ),
+    )
+    found: dict[str, str] = {}
+    for negative, k, i in scores:
+        if -negative >= SURE and wanted[i].name not in found and columns[k] not in found.values():
+            found[wanted[i].name] = columns[k]
+    return found
+
+
+def _score(channel: Wanted, column: str, unit: str, wanted: Sequence[Wanted]) -> float:
+    """From 0 to 1.5: how well a column fits a channel."""
+    one, other = channel.name.lower(), column.lower()
+    if one == other:
+        return 1.5
+    mine, theirs = words(channel.name), words(column)
+    if mine == theirs:
+        return 1.4
+    if not _numbers(mine):  # Position4 of the fourth joint may well be the position
+        theirs = [word for word in theirs if not word.isdigit()]
+    score = 0.6 * _overlap(mine, theirs) + 0.4 * SequenceMatcher(None, one, other).ratio()
+    if other in ("u", "y") and (other == "u") == channel.is_input:
+        alone = sum(w.is_input == channel.is_input for w in wanted) == 1
+        score = max(score, 0.9 if alone else 0.0)
+    if _numbers(mine) and _numbers(theirs) and _numbers(mine) != _numbers(theirs):
+        score *= 0.3  # tau1 is not tau2
+    if unit and channel.unit:
+        score += 0.25 if fits(unit, channel.unit) else -0.4
+    return score
+
+
+def fits(unit: str, wanted: str) -> bool:
+    """Whether one unit can be converted to the other."""
+    try:
+        conversion(unit, wanted, "")
+    except UserError:
+        return unit == wanted
+    return True
+
+
+def words(name: str) -> list[str]:
+    """The words of a name, in lower case, digits apart: "MotorSpeed_1" has motor, speed, 1."""
+    return [word.lower() for word in _WORDS.findall(name.split(".")[-1] if "." in name else name)]
+
+
+def _numbers(of: Sequence[str]) -> list[str]:
+    return [word for word in of if word.isdigit()]
+
+
+def _overlap(mine: Sequence[str], theirs: Sequence[str]) -> float:
+    """The share of words that the two have in common, words of one meaning and beginnings of words among them."""
+    if not mine or not theirs:
+        return 0.0
+    hits = sum(max((_alike(a, b) for b in theirs), default=0.0) for a in mine)
+    return hits / max(len(mine), len([word for word in theirs if word not in _ALIKE[-1]]))
+
+
+def _alike(a: str, b: str) -> float:
+    if a == b:
+        return 1.0
+    if any(a in group and b in group for group in _ALIKE):
+        return 0.95 if min(len(a), len(b)) > 1 else 0.9
+    if len(a) >= 3 and len(b) >= 3 and (a.startswith(b) or b.startswith(a)):
+        return 0.9
+    return 0.0

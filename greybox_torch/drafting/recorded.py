@@ -1,0 +1,70 @@
+"""What is in the files that a card is to be written for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greybox_torch.data.columns import columns_of
+from greybox_torch.data.readers import read_table
+from greybox_torch.data.readers.table import Table
+from greybox_torch.errors import UserError
+
+
+@dataclass(frozen=True, eq=False)
+class Recorded:
+    """A file: columns (N,) of numbers by name, units by column where the file says them, single numbers by name.
+
+    ``left_out`` are columns that hold no numbers, or another number of samples than most.
+    """
+
+    path: Path
+    columns: dict[str, NDArray[np.float64]]
+    units: Mapping[str, str]
+    numbers: Mapping[str, float]
+    left_out: tuple[str, ...] = ()
+
+    @property
+    def samples(self) -> int:
+        return len(next(iter(self.columns.values())))
+
+
+def recorded(path: Path) -> Recorded:
+    """All that can be read of a file. Raises UserError as the readers do, and where no column holds numbers."""
+    listing = columns_of(path)
+    table, lost = _read(path, listing.names)
+    lengths = [len(values) for values in table.columns.values()]
+    if not lengths:
+        raise UserError(
+            f"{path}: no column of numbers among {', '.join(listing.names) or 'nothing'}; expected a recording"
+        )
+    usual = max(set(lengths), key=lambda n: (lengths.count(n), n))
+    kept = {name: values for name, values in table.columns.items() if len(values) == usual}
+    lost += [name for name in table.columns if name not in kept]
+    return Recorded(path, kept, table.units, listing.numbers, tuple(lost))
+
+
+def _read(path: Path, names: Sequence[str]) -> tuple[Table, list[str]]:
+    """All columns at once, or where one of them cannot be read, each that can."""
+    if not names:
+        return Table(path, {}), []
+    try:
+        return read_table(path, names), []
+    except UserError:
+        pass
+    columns: dict[str, NDArray[np.float64]] = {}
+    units: dict[str, str] = {}
+    lost = []
+    for name in names:
+        try:
+            one = read_table(path, (name,))
+        except UserError:
+            lost.append(name)
+            continue
+        columns |= one.columns
+        units |= one.units
+    return Table(path, columns, units=units), lost

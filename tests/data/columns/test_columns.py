@@ -1,0 +1,98 @@
+"""The columns of files of every format are listed by the names that their readers know them by."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+import scipy.io
+
+from greybox_torch.data.columns import columns_of
+from greybox_torch.data.readers import BUILT_IN, read_table, register_reader, unregister_reader
+from greybox_torch.errors import UserError
+
+U, Y = np.linspace(0.0, 1.0, 12), np.arange(24.0).reshape(12, 2)
+
+
+def text(content: str) -> Callable[[Path], None]:
+    return lambda path: path.write_text(content) and None
+
+
+def numbers(delimiter: str = ",", decimal: str = ".") -> str:
+    rows = [delimiter.join(f"{v:.3f}".replace(".", decimal) for v in (0.1 * k, k / 3, k / 7)) for k in range(12)]
+    return "\n".join(rows) + "\n"
+
+
+def hdf5(path: Path) -> None:
+    with h5py.File(path, "w") as file:
+        file["log/u"], file["Y"], file["Ts"], file["note"] = U, Y, 0.01, "text"
+        file["away"] = h5py.ExternalLink("other.h5", "u")
+
+
+def mat73(path: Path) -> None:
+    with h5py.File(path, "w", userblock_size=512) as file:
+        file["Y"] = Y.T
+        file["Y"].attrs["MATLAB_class"] = np.bytes_("double")
+        file["name"] = np.array([[109], [111]], dtype=np.uint16)
+        file["name"].attrs["MATLAB_class"] = np.bytes_("char")
+
+
+NESTED = {"log": {"u": U, "motor": {"w": 2 * U}}, "Y": Y, "Ts": 0.01, "name": "bench"}
+RECORDS = [{"t": 0.1 * k, "motor": {"w": float(k)}, "state": "on"} for k in range(12)]
+
+FILES: dict[str, tuple[Callable[[Path], object], list[str], dict[str, float]]] = {
+    "names.csv": (text("t,u,y\n" + numbers()), ["t", "u", "y"], {}),
+    "units.csv": (text("t;motor u;y\ns;V;rad/s\n" + numbers(";", ",")), ["t", "motor u", "y"], {}),
+    "preamble.txt": (text("Bench 3\nDate: today\n\nt\tu\ty\n" + numbers("\t")), ["t", "u", "y"], {}),
+    "bare.dat": (text(numbers(" ")), ["#1", "#2", "#3"], {}),
+    "dates.csv": (text("when,u,y\n" + "".join(f"2024-01-{k + 1:02d},{k},{2 * k}\n" for k in range(12))), ["when", "u", "y"], {}),
+    "nested.mat": (lambda p: scipy.io.savemat(p, NESTED), ["log.u", "log.motor.w", "Y[:, 0]", "Y[:, 1]"], {"Ts": 0.01}),
+    "old.mat": (lambda p: scipy.io.savemat(p, {"u": U, "Ts": 0.01}, format="4"), ["u"], {"Ts": 0.01}),
+    "new.mat": (mat73, ["Y[:, 0]", "Y[:, 1]"], {}),
+    "log.h5": (hdf5, ["Y[:, 0]", "Y[:, 1]", "log.u"], {"Ts": 0.01}),
+    "log.npz": (lambda p: np.savez(p, u=U, Y=Y, Ts=0.01, name="x"), ["u", "Y[:, 0]", "Y[:, 1]"], {"Ts": 0.01}),
+    "log.parquet": (lambda p: pq.write_table(pa.table({"u": U, "name": ["a"] * 12}), p), ["u"], {}),
+    "log.json": (
+        text(json.dumps({"log": {"u": U.tolist()}, "Ts": 0.01, "runs": [{"w": U.tolist()}]})),
+        ["log.u", "runs[0].w"],
+        {"Ts": 0.01},
+    ),
+    "records.json": (text(json.dumps(RECORDS)), ["t", "motor.w"], {}),
+    "records.jsonl": (text("\n".join(map(json.dumps, RECORDS))), ["t", "motor.w"], {}),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_columns(tmp_path: Path, name: str) -> None:
+    write, names, single = FILES[name]
+    write(tmp_path / name)
+    found = columns_of(tmp_path / name)
+    assert sorted(found.names) == sorted(names)
+    assert found.numbers == single
+    for column in names:
+        if column != "when":  # of text, which only reading tells
+            assert len(read_table(tmp_path / name, [column]).columns[column]) == 12
+
+
+def test_every_format_is_listed(tmp_path: Path) -> None:
+    for suffix in BUILT_IN:
+        file = tmp_path / f"damaged{suffix}"
+        file.write_bytes(b"\x00\x01 no recording at all \xff")
+        with pytest.raises(UserError, match="damaged"):
+            columns_of(file)
+
+
+def test_a_reader_of_ones_own_cannot_list(tmp_path: Path) -> None:
+    register_reader(".own", lambda path, columns: None)  # type: ignore[arg-type, return-value]
+    (tmp_path / "a.own").write_text("x")
+    try:
+        with pytest.raises(UserError, match="cannot list columns"):
+            columns_of(tmp_path / "a.own")
+    finally:
+        unregister_reader(".own")
