@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from greybox_torch.api.fit import fit
     from greybox_torch.api.fit_result import FitResult
     from greybox_torch.api.inspect import InspectionResult, inspect
+    from greybox_torch.api.new import NewModel, new
     from greybox_torch.api.residuals import ResidualResult, residuals
     from greybox_torch.api.simulate import SimulationResult, simulate
     from greybox_torch.api.train import train
@@ -68,6 +69,7 @@ __all__ = [
     "Input",
     "InspectionResult",
     "Mechanism",
+    "NewModel",
     "NumericalError",
     "Output",
     "Parameter",
@@ -99,6 +101,7 @@ __all__ = [
     "load_dataset",
     "load_model",
     "load_saved_model",
+    "new",
     "plot_comparison",
     "plot_residuals",
     "register",
@@ -131,6 +134,7 @@ _HOME_OF = {
     "Input": "greybox_torch.model",
     "InspectionResult": "greybox_torch.api.inspect",
     "Mechanism": "greybox_torch.mechanisms.mechanism",
+    "NewModel": "greybox_torch.api.new",
     "NumericalError": "greybox_torch.errors",
     "Output": "greybox_torch.model",
     "Parameter": "greybox_torch.model",
@@ -162,6 +166,7 @@ _HOME_OF = {
     "load_dataset": "greybox_torch.data",
     "load_model": "greybox_torch.systems",
     "load_saved_model": "greybox_torch.restored",
+    "new": "greybox_torch.api.new",
     "plot_comparison": "greybox_torch.report.comparison",
     "plot_residuals": "greybox_torch.report.residuals",
     "register": "greybox_torch.mechanisms.library",

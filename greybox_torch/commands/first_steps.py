@@ -1,4 +1,4 @@
-"""How the commands of the first steps are written on the command line: `card`, `check`."""
+"""How the commands of the first steps are written on the command line: `new`, `card`, `check`."""
 
 from __future__ import annotations
 
@@ -13,8 +13,23 @@ from greybox_torch.commands.options import Options
 
 def declare(app: typer.Typer) -> None:
     """Enter the commands into `app`."""
-    for command in (card, check):
+    for command in (new, card, check):
         app.command()(command)
+
+
+def new(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Of the file, such as my_motor; the class is MyMotor.")],
+    like: Annotated[
+        str,
+        typer.Option(metavar="motor|pendulum|two_mass|tank|thermal", help="The machine that comes nearest."),
+    ] = "motor",
+    out: Annotated[Path | None, typer.Option(metavar="FILE.py", help="Where to write.", show_default="NAME.py")] = None,
+    json: Json = False,
+) -> None:
+    """Write a commented model file to change into one's own."""
+    from greybox_torch.commands import new
+
+    new.run(name, like, Options(out=out, json=json))
 
 
 def card(

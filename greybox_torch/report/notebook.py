@@ -51,6 +51,11 @@ def table(columns: Sequence[str], rows: Sequence[Sequence[str | float]], digits:
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
+def verbatim(text: str) -> str:
+    """Text as it stands, line by line."""
+    return f"<pre>{escape(text)}</pre>"
+
+
 def picture(figure: Figure, alt: str) -> str:
     """The figure as an image within the page."""
     text = base64.b64encode(png(figure, dots_per_inch=min(90.0, figure.dpi))).decode()

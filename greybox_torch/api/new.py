@@ -1,0 +1,96 @@
+"""A first model file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.text import Text
+
+from greybox_torch.api.result import Result
+from greybox_torch.drafting.pattern import PATTERNS, class_name, model_text
+from greybox_torch.errors import ArgumentError, Kind
+from greybox_torch.files import write_new
+from greybox_torch.report import notebook
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class NewModel(Result):
+    """``text`` is the file, which belongs to ``path``; ``name`` the class in it, after the pattern ``like``."""
+
+    name: str
+    like: str
+    text: str
+    path: Path
+
+    @property
+    def reference(self) -> str:
+        """How cards and commands name the model: "my_motor.py:MyMotor"."""
+        return f"{self.path}:{self.name}"
+
+    def __repr__(self) -> str:
+        return f"<model {self.reference}: {PATTERNS[self.like]}>"
+
+    def content(self, folder: Path) -> dict[str, Any]:
+        return {"schema": "greybox-new/1", "file": str(self.path), "class": self.name, "like": self.like}
+
+    def show(self, console: Console) -> None:
+        console.print(Text(f"{self.reference}: {PATTERNS[self.like]}"), soft_wrap=True)
+
+    def files(self, folder: Path) -> dict[Path, str | bytes]:
+        return {folder / self.path.name: self.text}
+
+    def save(self, folder: str | PathLike[str] | None = None) -> tuple[Path, ...]:
+        """Write the file to its path, or into another folder.
+
+        Raises:
+            UserError: there is a file of that name already, or it cannot be written.
+        """
+        path = self.path if folder is None else Path(folder) / self.path.name
+        write_new(path, self.text)
+        return (path,)
+
+    def plot(self) -> Figure:
+        """Which part of the model moves which output."""
+        from greybox_torch.api.check import check
+
+        return check(self.model_class()).plot()
+
+    def model_class(self) -> Any:
+        """The class, made from the text."""
+        made: dict[str, Any] = {"__name__": f"greybox_new_{self.name}"}
+        exec(compile(self.text, str(self.path), "exec"), made)
+        return made[self.name]
+
+    def _repr_html_(self) -> str:
+        return notebook.page(repr(self)[1:-1], notebook.verbatim(self.text))
+
+
+def new(name: str, *, like: str = "motor", path: str | PathLike[str] | None = None) -> NewModel:
+    """Draft a commented model file to change into one's own; :meth:`NewModel.save` writes it.
+
+    Args:
+        name: of the file, such as "my_motor"; the class in it is called MyMotor.
+        like: the machine that comes nearest: "motor", "pendulum", "two_mass", "tank" or "thermal".
+        path: of the file; by default its name with .py, where Python runs.
+
+    Raises:
+        UserError: a name that Python cannot use, or an unknown pattern.
+
+    Example:
+        >>> new("my_tank", like="tank").name
+        'MyTank'
+    """
+    if not isinstance(name, str):
+        raise ArgumentError("name", Kind.of(name), "expected text, such as my_motor")
+    made = class_name(name)
+    place = Path(path) if path is not None else Path(f"{name.removesuffix('.py')}.py")
+    if place.suffix != ".py":
+        raise ArgumentError("path", str(place), "expected a file that ends in .py", option="out")
+    return NewModel(made, like, model_text(made, like, place.name), place)
