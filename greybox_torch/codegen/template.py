@@ -4,6 +4,8 @@ PROGRAM = r"""
 #define LANES (64 / (long)sizeof(real))
 typedef real vec __attribute__((vector_size(64)));
 typedef decltype(vec() < vec()) mask;
+// Loops over states, outputs and tiles must be written out for their arrays to live in registers; not beyond 16 turns, for long programs.
+#define UNROLL _Pragma("GCC unroll 16")
 #define INLINE static inline __attribute__((always_inline))
 
 #ifdef VECTOR_MATH
@@ -93,12 +95,12 @@ INLINE void accumulate(const vec *rows, long count, long width, vec *normal, con
     for (long j = 0; j <= i; j += TILE) {
       if (j >= job.first_probe && i + TILE <= job.last_probe && i - j > job.band) continue;
       vec sum[TILE][TILE];
-      for (int a = 0; a < TILE; a++) for (int b = 0; b < TILE; b++) sum[a][b] = normal[(i + a) * width + j + b];
+      UNROLL for (int a = 0; a < TILE; a++) UNROLL for (int b = 0; b < TILE; b++) sum[a][b] = normal[(i + a) * width + j + b];
       for (long t = 0; t < count; t++) {
         const vec *left = rows + t * width + i, *right = rows + t * width + j;
-        for (int a = 0; a < TILE; a++) for (int b = 0; b < TILE; b++) sum[a][b] += left[a] * right[b];
+        UNROLL for (int a = 0; a < TILE; a++) UNROLL for (int b = 0; b < TILE; b++) sum[a][b] += left[a] * right[b];
       }
-      for (int a = 0; a < TILE; a++) for (int b = 0; b < TILE; b++) normal[(i + a) * width + j + b] = sum[a][b];
+      UNROLL for (int a = 0; a < TILE; a++) UNROLL for (int b = 0; b < TILE; b++) normal[(i + a) * width + j + b] = sum[a][b];
     }
 }
 
@@ -118,9 +120,9 @@ template <bool TANGENTS> static void run_group(const Job &job, long g) {
   long filled = 0;
   if (rows) for (long k = 0; k < width * CHUNK * NY; k++) rows[k] = vec{};
   prologue(p, h);
-  for (int s = 0; s < 4; s++) for (int k = 0; k <= NS; k++) for (int i = 0; i < NT; i++) B[s][k][i] = vec{};
-  for (int k = 0; k <= NS; k++) for (int i = 0; i < NY; i++) D[k][i] = vec{};
-  for (int i = 0; i < NX; i++) x[i] = gx[i];
+  for (int s = 0; s < 4; s++) for (int k = 0; k <= NS; k++) UNROLL for (int i = 0; i < NT; i++) B[s][k][i] = vec{};
+  for (int k = 0; k <= NS; k++) UNROLL for (int i = 0; i < NY; i++) D[k][i] = vec{};
+  UNROLL for (int i = 0; i < NX; i++) x[i] = gx[i];
   for (long n = 0; n < job.steps; n++) {
     long now[LANES], next[LANES];
     for (int l = 0; l < LANES; l++) {
@@ -128,13 +130,13 @@ template <bool TANGENTS> static void run_group(const Job &job, long g) {
       now[l] = at < end ? at : end;
       next[l] = at + 1 < end ? at + 1 : end;
     }
-    for (int i = 0; i < NU; i++) u0[i] = gather(job.u + i * job.samples, now);
-    for (int i = 0; i < NU; i++) u1[i] = job.foh ? gather(job.u + i * job.samples, next) : u0[i];
+    UNROLL for (int i = 0; i < NU; i++) u0[i] = gather(job.u + i * job.samples, now);
+    UNROLL for (int i = 0; i < NU; i++) u1[i] = job.foh ? gather(job.u + i * job.samples, next) : u0[i];
     if (TANGENTS) outputs_jacobian(x, u0, p, h, y, C, D); else outputs(x, u0, p, h, y);
-    for (int i = 0; i < NY; i++) gy[n * NY + i] = y[i];
-    if (gtrace) for (int i = 0; i < NX; i++) gtrace[n * NX + i] = x[i];
+    UNROLL for (int i = 0; i < NY; i++) gy[n * NY + i] = y[i];
+    if (gtrace) UNROLL for (int i = 0; i < NX; i++) gtrace[n * NX + i] = x[i];
     vec scale[NY];
-    if (rows) for (int i = 0; i < NY; i++) {
+    if (rows) UNROLL for (int i = 0; i < NY; i++) {
       const vec target = gather(job.measured + i * job.samples, now);
       for (int l = 0; l < LANES; l++)
         scale[i][l] = job.start[g * LANES + l] + n <= job.last[g * LANES + l] && target[l] == target[l] ? job.weight[i] : 0;
@@ -144,8 +146,8 @@ template <bool TANGENTS> static void run_group(const Job &job, long g) {
     if (TANGENTS) for (long d = 0; d < nd; d++) {
       vec s[NY];
       tangent_output(C, D[job.column[d]], gdx + d * NT, s);
-      if (rows) for (int i = 0; i < NY; i++) rows[(filled + i) * width + d] = scale[i] != 0 ? s[i] * scale[i] : vec{};
-      else for (int i = 0; i < NY; i++) gdy[(n * NY + i) * nd + d] = s[i];
+      if (rows) UNROLL for (int i = 0; i < NY; i++) rows[(filled + i) * width + d] = scale[i] != 0 ? s[i] * scale[i] : vec{};
+      else UNROLL for (int i = 0; i < NY; i++) gdy[(n * NY + i) * nd + d] = s[i];
     }
     if (rows && ((filled += NY) == CHUNK * NY || n == job.steps - 1)) {
       accumulate(rows, filled, width, gnormal, job);
@@ -155,34 +157,34 @@ template <bool TANGENTS> static void run_group(const Job &job, long g) {
     for (long m = 0; m < job.substeps; m++) {
       vec a[NU], b[NU], k1[NX], k2[NX], k3[NX], k4[NX], z[NX];
       const real from = (real)m / job.substeps, middle = ((real)m + (real)0.5) / job.substeps, to = (real)(m + 1) / job.substeps;
-      for (int i = 0; i < NU; i++) {
+      UNROLL for (int i = 0; i < NU; i++) {
         a[i] = u0[i] + from * (u1[i] - u0[i]);
         uh[i] = u0[i] + middle * (u1[i] - u0[i]);
         b[i] = u0[i] + to * (u1[i] - u0[i]);
       }
       if (TANGENTS) rates_jacobian(x, a, p, h, k1, A[0], B[0]); else rates(x, a, p, h, k1);
-      for (int i = 0; i < NX; i++) z[i] = x[i] + (real)0.5 * H * k1[i];
+      UNROLL for (int i = 0; i < NX; i++) z[i] = x[i] + (real)0.5 * H * k1[i];
       if (TANGENTS) rates_jacobian(z, uh, p, h, k2, A[1], B[1]); else rates(z, uh, p, h, k2);
-      for (int i = 0; i < NX; i++) z[i] = x[i] + (real)0.5 * H * k2[i];
+      UNROLL for (int i = 0; i < NX; i++) z[i] = x[i] + (real)0.5 * H * k2[i];
       if (TANGENTS) rates_jacobian(z, uh, p, h, k3, A[2], B[2]); else rates(z, uh, p, h, k3);
-      for (int i = 0; i < NX; i++) z[i] = x[i] + H * k3[i];
+      UNROLL for (int i = 0; i < NX; i++) z[i] = x[i] + H * k3[i];
       if (TANGENTS) rates_jacobian(z, b, p, h, k4, A[3], B[3]); else rates(z, b, p, h, k4);
-      for (int i = 0; i < NX; i++) x[i] += H / (real)6 * (k1[i] + (real)2 * (k2[i] + k3[i]) + k4[i]);
+      UNROLL for (int i = 0; i < NX; i++) x[i] += H / (real)6 * (k1[i] + (real)2 * (k2[i] + k3[i]) + k4[i]);
       if (TANGENTS) for (long d = 0; d < nd; d++) {
         vec *q = gdx + d * NT, w[NT], k1[NT], k2[NT], k3[NT], k4[NT];
         const long c = job.column[d];
         tangent(A[0], B[0][c], q, k1);
-        for (int i = 0; i < NT; i++) w[i] = q[i] + (real)0.5 * H * k1[i];
+        UNROLL for (int i = 0; i < NT; i++) w[i] = q[i] + (real)0.5 * H * k1[i];
         tangent(A[1], B[1][c], w, k2);
-        for (int i = 0; i < NT; i++) w[i] = q[i] + (real)0.5 * H * k2[i];
+        UNROLL for (int i = 0; i < NT; i++) w[i] = q[i] + (real)0.5 * H * k2[i];
         tangent(A[2], B[2][c], w, k3);
-        for (int i = 0; i < NT; i++) w[i] = q[i] + H * k3[i];
+        UNROLL for (int i = 0; i < NT; i++) w[i] = q[i] + H * k3[i];
         tangent(A[3], B[3][c], w, k4);
-        for (int i = 0; i < NT; i++) q[i] += H / (real)6 * (k1[i] + (real)2 * (k2[i] + k3[i]) + k4[i]);
+        UNROLL for (int i = 0; i < NT; i++) q[i] += H / (real)6 * (k1[i] + (real)2 * (k2[i] + k3[i]) + k4[i]);
       }
     }
   }
-  for (int i = 0; i < NX; i++) gx[i] = x[i];
+  UNROLL for (int i = 0; i < NX; i++) gx[i] = x[i];
   free(rows);
 }
 
