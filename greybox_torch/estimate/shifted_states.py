@@ -36,10 +36,9 @@ def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, poin
     index = port.deflection if isinstance(port.deflection, str) else None
     works = {i: True for i in range(n_x) if index is None or names[i] == index}
     signs: dict[int, float] = {}
-    for _ in range(points):
-        x = torch.randn(n_x, dtype=torch.float64, generator=generator)
-        u = scale_u * torch.randn(n_u, dtype=torch.float64, generator=generator)
-        slope, by_state, by_force = _slopes(model, port, x, u, p)
+    draws = torch.randn(points, n_x + n_u, dtype=torch.float64, generator=generator).T
+    slopes = _slopes(model, port, draws[:n_x], scale_u[:, None] * draws[n_x:], p)
+    for slope, by_state, by_force in zip(*(s.unbind(-1) for s in slopes), strict=True):
         for i in works:
             change = by_state[:, i]
             along = by_force * (change @ by_force) / (by_force @ by_force)
@@ -54,24 +53,23 @@ def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, poin
 def _slopes(
     model: GreyBoxModel, port: Coupling, x: torch.Tensor, u: torch.Tensor, p: Signals
 ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
-    """Slopes over the states of the deflection (n_x,) and the rates (n_x, n_x), and of the rates over the port's force (n_x,)."""
-    slope = torch.func.jacfwd(lambda z: _deflection(model, port, z, u, p))(x)
-    by_state = torch.func.jacfwd(lambda z: model.rates(z, u, p))(x)
-    by_force = torch.func.jacfwd(lambda f: _forced(model, port.name, x, u, p, f))(torch.zeros((), dtype=torch.float64))
-    return slope, by_state, by_force
-
-
-def _deflection(model: GreyBoxModel, port: Coupling, x: torch.Tensor, u: torch.Tensor, p: Signals) -> torch.Tensor:
-    xs = Signals("state", {s.name: x[i] for i, s in enumerate(model.states)})
-    us = Signals("input", {s.name: u[i] for i, s in enumerate(model.inputs)})
-    return xs[port.deflection] if isinstance(port.deflection, str) else port.deflection(xs, us, p)
-
-
-def _forced(
-    model: GreyBoxModel, port: str, x: torch.Tensor, u: torch.Tensor, p: Signals, force: torch.Tensor
-) -> torch.Tensor:
-    xs = Signals("state", {s.name: x[i] for i, s in enumerate(model.states)})
-    us = Signals("input", {s.name: u[i] for i, s in enumerate(model.inputs)})
-    forces = Signals("port", {q.name: force if q.name == port else torch.zeros_like(force) for q in model.all_ports})
+    """Slopes over the states of the deflection (n_x, points) and the rates (n_x, n_x, points), and of the rates over the port's force
+    (n_x, points), at states x (n_x, points) and inputs u (n_u, points).
+    """
+    # Reverse mode, all points at once: torch.func would import torch's compiler, two seconds.
+    x, force = x.clone().requires_grad_(), torch.zeros(x.shape[1], dtype=torch.float64, requires_grad=True)
+    xs = Signals("state", {s.name: x.select(0, i) for i, s in enumerate(model.states)})
+    us = Signals("input", {s.name: u.select(0, i) for i, s in enumerate(model.inputs)})
+    deflection = xs[port.deflection] if isinstance(port.deflection, str) else port.deflection(xs, us, p)
+    forces = Signals("port", {q.name: force if q.name == port.name else force.new_zeros(()) for q in model.all_ports})
     rates = model.derivative(xs, us, p, forces)
-    return torch.stack([torch.as_tensor(rates[s.name]) for s in model.states])
+    found = [_by(torch.as_tensor(rates[s.name], dtype=torch.float64), (x, force)) for s in model.states]
+    by_state, by_force = (torch.stack(parts) for parts in zip(*found, strict=True))
+    return _by(deflection, (x,))[0], by_state, by_force
+
+
+def _by(value: torch.Tensor, unknowns: tuple[torch.Tensor, ...]) -> tuple[torch.Tensor, ...]:
+    """Derivatives of a value (points) by each of ``unknowns`` (..., points), point by point."""
+    if not value.requires_grad:
+        return tuple(torch.zeros_like(q) for q in unknowns)
+    return torch.autograd.grad(value.sum(), unknowns, retain_graph=True, allow_unused=True, materialize_grads=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import welch
 
 from greybox_torch.diagnosis.verdict import Trace, Verdict
 from greybox_torch.report import text
@@ -86,6 +85,8 @@ def _averaged(traces: list[Trace], step: float, mismatch: bool) -> Spectra:
 
 def _density(signal: np.ndarray, step: float, segment: int) -> tuple[np.ndarray, np.ndarray]:
     """Welch's estimate; missing samples are bridged by straight lines, which adds no steps."""
+    from scipy.signal import welch  # a second to import, which no command but this section needs
+
     known = np.flatnonzero(np.isfinite(signal) & (np.abs(signal) < 1e100))
     filled = np.interp(np.arange(len(signal)), known, signal[known]) if known.size else np.zeros(len(signal))
     return welch(filled, 1.0 / step, nperseg=segment)
