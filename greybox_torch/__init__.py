@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from greybox_torch.api.check import check
     from greybox_torch.api.check_result import CheckResult
     from greybox_torch.api.compare import ComparisonResult, compare
+    from greybox_torch.api.design import design
+    from greybox_torch.api.design_result import DesignResult
     from greybox_torch.api.diagnose import diagnose
     from greybox_torch.api.diagnosis_result import DiagnosisResult
     from greybox_torch.api.fit import fit
@@ -60,6 +62,7 @@ __all__ = [
     "ComparisonResult",
     "Coupling",
     "DataSet",
+    "DesignResult",
     "DiagnosisResult",
     "DiagnosisSettings",
     "Evaluation",
@@ -90,6 +93,7 @@ __all__ = [
     "card",
     "check",
     "compare",
+    "design",
     "diagnose",
     "evaluate",
     "explain",
@@ -125,6 +129,7 @@ _HOME_OF = {
     "ComparisonResult": "greybox_torch.api.compare",
     "Coupling": "greybox_torch.model",
     "DataSet": "greybox_torch.data",
+    "DesignResult": "greybox_torch.api.design_result",
     "DiagnosisResult": "greybox_torch.api.diagnosis_result",
     "DiagnosisSettings": "greybox_torch.diagnosis.settings",
     "Evaluation": "greybox_torch.evaluation",
@@ -155,6 +160,7 @@ _HOME_OF = {
     "card": "greybox_torch.api.card",
     "check": "greybox_torch.api.check",
     "compare": "greybox_torch.api.compare",
+    "design": "greybox_torch.api.design",
     "diagnose": "greybox_torch.api.diagnose",
     "evaluate": "greybox_torch.evaluation",
     "explain": "greybox_torch.training",

@@ -15,6 +15,7 @@ from rich.console import Console
 
 from greybox_torch import __version__
 from greybox_torch.api.free_runs import plot_simulated
+from greybox_torch.api.hypotheses import hypothesis_files
 from greybox_torch.api.result import Result
 from greybox_torch.api.scores import score_rows, score_table
 from greybox_torch.api.verdict_summary import effect_table, notes, print_verdict, verdict_scores
@@ -126,13 +127,15 @@ class DiagnosisResult(Result):
         print_verdict(console, self.data, self.given.title, self.verdict)
 
     def files(self, folder: Path) -> dict[Path, str | bytes]:
-        """The report, the verdict, and the model with its effects as a checkpoint."""
+        """The report, the verdict, the model with its effects as a checkpoint, and its rivals."""
         from greybox_torch.report.page import render_page
 
+        own = self._checkpoint()
         return {
             folder / REPORT: render_page(self.verdict, self._about(folder)),
             folder / VERDICT: json_text(self.content(folder)),
-            **checkpoint_files(folder / MODEL, self._checkpoint()),
+            **checkpoint_files(folder / MODEL, own),
+            **hypothesis_files(folder, self, own),
         }
 
     def plot(self, experiment: str | None = None) -> Figure:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -52,7 +53,7 @@ class Options:
         written = result.save(folder)
         console = self.console()
         result.show(console)
-        self.print_written(console, folder, [path.name for path in written])
+        self.print_written(console, folder, _listed(folder, written))
         self.print_json(result.to_json(folder))
 
     def console(self) -> Console:
@@ -71,3 +72,10 @@ class Options:
         """Prints the machine-readable result on standard output where --json asks for it."""
         if self.json:
             (_STANDARD_OUTPUT.get() or sys.stdout).write(text)
+
+
+def _listed(folder: Path, written: Sequence[Path]) -> list[str]:
+    """The names of files, and those of folders with how many files are in them."""
+    parts = [path.relative_to(folder).parts for path in written]
+    inside = Counter(part[0] for part in parts if len(part) > 1)
+    return [*(part[0] for part in parts if len(part) == 1), *(f"{n}/ ({count} files)" for n, count in inside.items())]

@@ -64,7 +64,7 @@ class Card(Entry):
     """The whole of `dataset.toml`. Either `sample_time` (s) is given or `time`, a column of time stamps.
 
     `resample` makes the time stamps even, that many seconds apart; `decimate` keeps one sample of so many, behind a low pass.
-    `diagnosis` names settings of `greybox diagnose`, which checks them.
+    `diagnosis` names settings of `greybox diagnose`, `limits` what `greybox design` may ask of the machine; those commands check them.
     """
 
     name: Text | None = None
@@ -77,6 +77,7 @@ class Card(Entry):
     experiment: Annotated[list[ExperimentEntry], Field(min_length=1)]
     model: ModelEntry = ModelEntry()
     diagnosis: dict[str, Any] = {}
+    limits: dict[str, Any] = {}
 
     @field_validator("time", mode="before")
     @classmethod

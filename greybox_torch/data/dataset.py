@@ -48,6 +48,7 @@ class DataSet:
     initial: dict[str, InitialEntry]
     held_out_by_default: bool
     diagnosis: dict[str, Any]
+    limits: dict[str, Any]
 
     def __init__(
         self,
@@ -62,6 +63,7 @@ class DataSet:
         initial: Mapping[str, InitialEntry | Mapping[str, Any] | float] | None = None,
         held_out_by_default: bool | None = None,
         diagnosis: Mapping[str, Any] | None = None,
+        limits: Mapping[str, Any] | None = None,
     ) -> None:
         """A data set of recordings that are in memory.
 
@@ -77,6 +79,8 @@ class DataSet:
             held_out_by_default: by default decided here: where no recording has the role "validation", the last quarter of each becomes
                 one, called "<name> (held out)". Where it is given, recordings stay as they are.
             diagnosis: settings of a diagnosis by name, as the card's table [diagnosis] has them; what is given to `diagnose` goes before.
+            limits: of a next recording, as the card's table [limits] has them: seconds, and by input, output or state
+                {"lower": …, "upper": …, "rate": …}.
 
         Raises:
             UserError: no recordings, two of one name, channels or units that differ between them, a channel without any sample in one
@@ -107,6 +111,7 @@ class DataSet:
             "initial": entries("initial", initial, InitialEntry),
             "held_out_by_default": hold_out or bool(held_out_by_default),
             "diagnosis": dict(diagnosis or {}),
+            "limits": dict(limits or {}),
         }
         for field, value in own.items():
             object.__setattr__(self, field, value)

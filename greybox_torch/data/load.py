@@ -43,6 +43,7 @@ def load_dataset(path: str | PathLike[str]) -> DataSet:
         parameters=card.model.parameters,
         initial=card.model.initial,
         diagnosis=card.diagnosis,
+        limits=card.limits,
     )
 
 

@@ -19,6 +19,7 @@ from greybox_torch.diagnosis.describe.evidence import sentences
 from greybox_torch.diagnosis.describe.left import what_is_left
 from greybox_torch.diagnosis.describe.ranking import ranking
 from greybox_torch.diagnosis.describe.residual_tests import detect
+from greybox_torch.diagnosis.describe.rivals import Rival, rivals
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.findings import Findings, find, find_with_more
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
@@ -32,7 +33,7 @@ from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study, silent
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.errors import NumericalError, UserError
-from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.start_states import starts_of
 from greybox_torch.mechanisms.stored import attachment_json
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.simulator import SimulationOptions
@@ -43,7 +44,7 @@ class Diagnosis:
     """The verdict, and the model that it recommends.
 
     ``model`` with parameter ``values`` (the plain model where nothing is missing), start states ``initial`` by recording and state,
-    and ``attachments``, the effects in the form that a checkpoint keeps.
+    and ``attachments``, the effects in the form that a checkpoint keeps. ``rivals``: each finding and what comes nearest to it.
     """
 
     verdict: Verdict
@@ -51,6 +52,7 @@ class Diagnosis:
     values: dict[str, float]
     initial: dict[str, dict[str, float]]
     attachments: list[dict[str, Any]]
+    rivals: tuple[Rival, ...] = ()
 
 
 def diagnose(
@@ -163,7 +165,8 @@ def _as_found(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int,
     final = judged.augmented if effects else judged.plain
     chosen = state.current if effects else state.plain
     attachments = [attachment_json(e, study.surroundings[e.port]) for e in chosen.effects]
-    return Diagnosis(verdict, chosen.model, final.values(), _starts(final.problem), attachments)
+    beside = rivals(state, study.settings) if effects else ()
+    return Diagnosis(verdict, chosen.model, final.values(), starts_of(final.problem), attachments, beside)
 
 
 def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
@@ -196,11 +199,3 @@ def _unexplained(study: Study, state: SearchState, others: HeldOut | None, judge
     by_windows = max((e for e in errors if settings.far_above_noise < e < np.inf), default=0.0)
     least = min(by_windows, float(np.nanmax(judged.times_noise, initial=0.0)))
     return least if least > settings.far_above_noise else None
-
-
-def _starts(problem: Problem) -> dict[str, dict[str, float]]:
-    names = [s.name for s in problem.model.states]
-    return {
-        e: dict(zip(names, map(float, row), strict=True))
-        for e, row in zip(problem.records.names, problem.initial, strict=True)
-    }

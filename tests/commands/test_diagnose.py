@@ -29,7 +29,7 @@ from greybox_torch.report import page
 
 Make = Callable[..., Path]
 Edit = Callable[[Path, str, str], None]
-FILES = ["model.json", "model.safetensors", "report.html", "verdict.json"]
+FILES = ["hypotheses.json", "model.json", "model.safetensors", "report.html", "verdict.json"]
 
 DEADZONE = Effect(
     port="actuator",
@@ -62,7 +62,7 @@ def made_up(data: DataSet, model: GreyBoxModel, seed: int, effects: tuple[Effect
         data.name, model.title, seed, 12.3, 0.99, effects, scores, ("Nothing explains more than chance.",), {}, (), tuple(traces)
     )  # fmt: skip
     values = {p.name: p.value for p in model.declared_parameters}
-    return SimpleNamespace(verdict=verdict, model=model, values=values, initial={}, attachments=[])
+    return SimpleNamespace(verdict=verdict, model=model, values=values, initial={}, attachments=[], rivals=())
 
 
 @pytest.fixture
@@ -104,7 +104,10 @@ def test_what_is_printed(motor_folder: Make, finding: Callable[..., dict[str, An
     rivals = "actuator_deadzone at actuator: it could also be coulomb_friction at rotor (0.07); to tell them apart: slow reversals"
     assert rivals in lines
     assert "Sweep validation speed 71 0.29 90 0.1 99.5 0.005 rad/s" in lines
-    assert f"Written to {folder / 'out'}: report.html, verdict.json, model.safetensors, model.json" in lines
+    assert (
+        f"Written to {folder / 'out'}: report.html, verdict.json, model.safetensors, model.json, hypotheses.json"
+        in lines
+    )
     assert "s  screening [every] port" in result.stderr
 
 
@@ -216,7 +219,7 @@ def test_a_users_own_model(motor_folder: Make) -> None:
     (effect,) = json.loads(result.stdout)["effects"]
     assert (effect["port"], effect["mechanism"]) == ("actuator", "actuator_deadzone")
     assert effect["parameters"]["half_width"]["value"] == pytest.approx(0.4, rel=0.02)
-    assert written(folder) == FILES
+    assert [name for name in written(folder) if name != "hypotheses"] == FILES
 
 
 def test_seeds_change_no_verdict(motor_folder: Make) -> None:

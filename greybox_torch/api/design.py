@@ -1,0 +1,185 @@
+"""The next recording: the input that would tell the leading hypotheses apart, or shrink a parameter's standard deviation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from greybox_torch.api.arguments import check_seconds, check_seed
+from greybox_torch.api.design_result import DesignResult, Expected
+from greybox_torch.api.diagnosis_result import DiagnosisResult
+from greybox_torch.api.hypotheses import Hypotheses, Kept, hypotheses_of, read_hypotheses, to_tell_apart
+from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
+from greybox_torch.estimate.problem import with_card
+from greybox_torch.experiment_design.contender import Contender, Prediction, contender, records_of
+from greybox_torch.experiment_design.excitation import Excitation
+from greybox_torch.experiment_design.limits import Limits, limits_of
+from greybox_torch.experiment_design.search import MOST_SAMPLES, Aim, Trial, frequencies, sampled, search, within
+from greybox_torch.experiment_design.separation import expected_probability
+
+DRAWS = 4
+"""Draws of the parameters that the evidence of the best input is averaged over."""
+
+RANDOM = 8
+"""Random multisines of the same power that the best input is compared with."""
+
+
+def design(
+    found: DiagnosisResult | str | Path,
+    *,
+    precision: str | None = None,
+    seconds: float | None = None,
+    limits: Mapping[str, Any] | None = None,
+    model: str | None = None,
+    seed: int = 0,
+    progress: Callable[[str], None] = lambda text: None,
+) -> DesignResult:
+    """Design the input of a next recording, within limits, from what a diagnosis has left open.
+
+    The input is searched among multisines, steps, chirps and slow reversals around operating points, so that the evidence that it is
+    expected to give between the leading hypotheses is largest: what a rival cannot imitate with other parameters and start states
+    (T-optimality, Atkinson & Fedorov 1975). The experiment is open loop and begins as the first recording did.
+
+    Args:
+        found: the result of ``diagnose``, or the folder that it was saved in.
+        precision: a free parameter of the recommended model; its standard deviation is made small instead.
+        seconds: how long the recording may be; by default what the limits say, else the longest one that there is.
+        limits: as the card's table [limits]; by default that table. What it leaves out is limited to what was recorded.
+        model: how to load the plain model, where ``found`` is a folder and the card names none.
+        seed: draws inputs, their phases and levels.
+        progress: is told what is being done.
+
+    Raises:
+        UserError: there are no rivals to tell apart, limits cannot be met, or an argument is at fault.
+        NumericalError: a hypothesis cannot be simulated on its own recordings.
+
+    Example:
+        ``design(found, seconds=10, limits={"voltage": {"lower": -6, "upper": 6}}).save("next")``
+    """
+    held = _hypotheses(found, model)
+    given = dict(held.data.limits if limits is None else limits)
+    if seconds is not None:
+        given["seconds"] = check_seconds("seconds", seconds)
+    place = held.data.place("[limits]") if limits is None else "argument limits:"
+    own = limits_of(held.data, held.recommended.model, given, place)
+    progress("reading what the recordings say of each hypothesis")
+    aim = _aim(held, precision)
+    step = held.data.recordings[0].sample_time
+    time = step * np.arange(int(np.clip(round(own.seconds / step), 16, MOST_SAMPLES)))
+    best = search(aim, own, time, check_seed(seed), progress)
+    if not best:
+        raise UserError(
+            f"{place} no input was found under which every hypothesis keeps outputs and states within their limits, open loop, "
+            "from the start of the first recording; expected wider limits or fewer seconds"
+        )
+    progress("judging the best input")
+    return _result(held, aim, own, time, best[0], precision, seed)
+
+
+def _hypotheses(found: Any, model: str | None) -> Hypotheses:
+    if isinstance(found, DiagnosisResult):
+        return hypotheses_of(found)
+    if isinstance(found, str | Path):
+        return read_hypotheses(Path(found), model)
+    raise ArgumentError("found", Kind.of(found), "expected the result of diagnose, or the folder that it was saved in")
+
+
+def _aim(held: Hypotheses, precision: str | None) -> Aim:
+    if precision is not None:
+        one = _contender(held.recommended, held)
+        free = list(one.problem.free_names)
+        if precision not in free:
+            hint = did_you_mean(precision, free)
+            raise ArgumentError("precision", precision, f"expected a free parameter{hint}: {', '.join(free)}")
+        return Aim((one,), free.index(precision))
+    group = to_tell_apart(held.findings)
+    if group is None:
+        raise UserError(
+            "the diagnosis left no rivals to tell apart; expected a finding with named alternatives, or a parameter to sharpen (precision)"
+        )
+    return Aim(tuple(_contender(kept, held) for kept in group))
+
+
+def _contender(kept: Kept, held: Hypotheses) -> Contender:
+    return contender(kept.name, kept.probability, kept.model, held.data, kept.starts)
+
+
+def _result(
+    held: Hypotheses, aim: Aim, limits: Limits, time: np.ndarray, best: Trial, precision: str | None, seed: int
+) -> DesignResult:
+    predictions = _predicted(aim, best.inputs, time)
+    shares = tuple(c.probability for c in aim.contenders)
+    nats, random = np.zeros((len(shares),) * 2), None
+    before = after = None
+    if aim.parameter is None:
+        nats = _averaged(aim, best.inputs, time, predictions, seed)
+        random = _by_random_inputs(aim, limits, time, best, seed)
+    else:
+        one = aim.contenders[0]
+        after = aim.deviation_after(predictions[0], 0)
+        before = one.deviation(aim.parameter)
+    return DesignResult(
+        data=held.data,
+        reference=held.reference,
+        limits=limits,
+        time=time,
+        inputs={s.name: u for s, u in zip(held.recommended.model.inputs, best.inputs, strict=True)},
+        excitations=best.candidate,
+        names=tuple(c.name for c in aim.contenders),
+        hypotheses=tuple(c.problem.model for c in aim.contenders),
+        outputs=tuple(p.y[0] for p in predictions),
+        level=aim.contenders[0].level,
+        expected=Expected(shares, nats, random),
+        begins_like=aim.contenders[0].problem.records.names[0],
+        start=aim.contenders[0].start,
+        parameter=precision,
+        unit=next((p.unit for p in with_card(held.data, held.recommended.model) if p.name == precision), ""),
+        before=before,
+        after=after,
+        seed=seed,
+    )
+
+
+def _predicted(aim: Aim, inputs: np.ndarray, time: np.ndarray) -> list[Prediction]:
+    step = float(time[1] - time[0])
+    return [c.predicted(records_of([inputs], c.problem.records, step)) for c in aim.contenders]
+
+
+def _averaged(aim: Aim, inputs: np.ndarray, time: np.ndarray, predictions: list[Prediction], seed: int) -> np.ndarray:
+    """The evidence (n, n), averaged over what is known of the parameters of the hypothesis that is right."""
+    rng = np.random.default_rng(seed)
+    step, total = float(time[1] - time[0]), aim.nats(predictions, 0)
+    count = 1
+    for _ in range(DRAWS):
+        drawn = [c.drawn(rng).predicted(records_of([inputs], c.problem.records, step)) for c in aim.contenders]
+        if not all(np.isfinite(d.y).all() for d in drawn):
+            continue
+        own = np.zeros_like(total)
+        for a in range(len(drawn)):
+            own[a] = aim.nats([*predictions[:a], drawn[a], *predictions[a + 1 :]], 0)[a]
+        total, count = total + own, count + 1
+    return total / count
+
+
+def _by_random_inputs(aim: Aim, limits: Limits, time: np.ndarray, best: Trial, seed: int) -> float | None:
+    """The expected probability after a random multisine of the same power, over all frequencies; the median of several."""
+    slowest, fastest = frequencies(time)
+    shares = [c.probability for c in aim.contenders]
+    found = []
+    for k in range(RANDOM):
+        inputs = sampled(
+            tuple(Excitation("multisine", slowest, fastest, 0.0, 1.0, seed + 1000 + k) for _ in limits.inputs),
+            time,
+            limits,
+        )
+        power, wanted = (np.std(u, axis=1, keepdims=True) for u in (inputs, best.inputs))
+        centre = inputs.mean(axis=1, keepdims=True)
+        inputs = centre + (inputs - centre) * wanted / np.maximum(power, 1e-300)
+        low, high = (np.array([[getattr(r, end)] for r in limits.inputs.values()]) for end in ("lower", "upper"))
+        inputs = np.clip(inputs, low, high)
+        if within(aim.contenders, limits, [inputs], time)[0]:
+            found.append(expected_probability(shares, aim.nats(_predicted(aim, inputs, time), 0)))
+    return float(np.median(found)) if found else None

@@ -1,0 +1,152 @@
+"""The hypotheses that a diagnosis leaves: kept beside its verdict, and read again for the next recording."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from greybox_torch.checkpoint import Checkpoint, checkpoint_files
+from greybox_torch.data import DataSet, load_dataset
+from greybox_torch.diagnosis.one_of import spoken
+from greybox_torch.errors import UserError
+from greybox_torch.files import json_text
+from greybox_torch.mechanisms.stored import stored_effects
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.copies import copy_holding
+from greybox_torch.reading import read_text
+from greybox_torch.restored import load_beside
+from greybox_torch.systems import load_model, model_reference
+
+if TYPE_CHECKING:
+    from greybox_torch.api.diagnosis_result import DiagnosisResult
+
+SCHEMA = "greybox-hypotheses/1"
+FILE, FOLDER, MODEL = "hypotheses.json", "hypotheses", "model"
+Starts = Mapping[str, Mapping[str, float]]
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A hypothesis: its ``name``, its ``probability``, a ``model`` that holds its values, and start states by recording and state."""
+
+    name: str
+    probability: float
+    model: GreyBoxModel
+    starts: Starts
+
+
+@dataclass(frozen=True)
+class Hypotheses:
+    """The ``recommended`` model, and for each finding the hypotheses of which it is one, the finding first."""
+
+    data: DataSet
+    reference: str
+    recommended: Kept
+    findings: tuple[tuple[Kept, ...], ...]
+
+
+def hypotheses_of(result: DiagnosisResult) -> Hypotheses:
+    """Those of a diagnosis that is in memory."""
+    found: dict[str, list[Kept]] = {}
+    for r in result.found.rivals:
+        held = copy_holding(r.model, r.values, starts_free=True)
+        found.setdefault(r.finding, []).append(
+            Kept(f"{spoken(r.mechanism)} at {r.port}", r.probability, held, r.initial)
+        )
+    recommended = Kept("the recommended model", 1.0, result.model, result.initial)
+    return Hypotheses(
+        result.data, model_reference(result.given), recommended, tuple(tuple(group) for group in found.values())
+    )
+
+
+def hypothesis_files(folder: Path, result: DiagnosisResult, checkpoint: Checkpoint) -> dict[Path, str | bytes]:
+    """What `greybox design` needs of a diagnosis, to be written with its verdict: a list, and a checkpoint for each hypothesis."""
+    files: dict[Path, str | bytes] = {}
+    findings: dict[str, list[dict[str, Any]]] = {}
+    for k, rival in enumerate(result.found.rivals, start=1):
+        name = f"{k}-{rival.port}-{rival.mechanism}"
+        own = Checkpoint(
+            model=checkpoint.model,
+            title=checkpoint.title,
+            values=rival.values,
+            units={p.name: p.unit for p in rival.model.declared_parameters},
+            effects=stored_effects(rival.model),
+            free_starts=True,
+            dataset=checkpoint.dataset,
+        )
+        files |= checkpoint_files(folder / FOLDER / name, own)
+        entry = {"checkpoint": f"{FOLDER}/{name}", "port": rival.port, "mechanism": rival.mechanism}
+        entry |= {"probability": rival.probability, "initial": rival.initial}
+        findings.setdefault(rival.finding, []).append(entry)
+    path = result.data.path
+    content = {
+        "schema": SCHEMA,
+        "dataset": None if path is None else str(path.absolute()),
+        "model": checkpoint.model,
+        "initial": result.initial,
+        "findings": list(findings.values()),
+    }
+    return {**files, folder / FILE: json_text(content)}
+
+
+def read_hypotheses(folder: Path, model: str | None = None) -> Hypotheses:
+    """Those that `greybox diagnose` has left in a folder.
+
+    Args:
+        model: how to load the plain model, where the data set's card names none.
+
+    Raises:
+        UserError: the folder holds no such results, they are damaged, or the data set that they are of is not there.
+    """
+    path = folder / FILE
+    content = _content(path)
+    card = content.get("dataset")
+    if not isinstance(card, str):
+        raise UserError(
+            f"{path}: the diagnosis was of recordings in memory, which are not here any more; expected results of a data set with a card "
+            "(from Python, design() takes the result of diagnose itself)"
+        )
+    data = load_dataset(Path(card))
+    name = model or data.model
+    if name is None:
+        raise UserError(
+            f"{card}: [model] name is missing and no --model is given; expected the model that was diagnosed"
+        )
+    own = load_model(name)
+    try:
+        groups = [[_kept(folder, entry, own, data) for entry in group] for group in content["findings"]]
+        starts = content["initial"]
+    except (KeyError, TypeError, AttributeError) as error:
+        raise UserError(
+            f"{path}: damaged: {type(error).__name__}: {error}; expected what greybox diagnose writes"
+        ) from None
+    recommended, data = load_beside(folder / MODEL, own, data)
+    found = Kept("the recommended model", 1.0, recommended, starts)
+    return Hypotheses(data, name, found, tuple(tuple(group) for group in groups))
+
+
+def _content(path: Path) -> dict[str, Any]:
+    try:
+        content = json.loads(read_text(path, "results of greybox diagnose"))
+    except json.JSONDecodeError as error:
+        raise UserError(f"{path}: not JSON: {error}; expected what greybox diagnose writes") from None
+    if not isinstance(content, dict) or content.get("schema") != SCHEMA:
+        found = content.get("schema") if isinstance(content, dict) else type(content).__name__
+        raise UserError(f'{path}, "schema": found {found!r}, expected "{SCHEMA}"')
+    return content
+
+
+def _kept(folder: Path, entry: Mapping[str, Any], own: GreyBoxModel, data: DataSet) -> Kept:
+    model, _ = load_beside(folder / str(entry["checkpoint"]), own, data)
+    return Kept(
+        f"{spoken(str(entry['mechanism']))} at {entry['port']}", float(entry["probability"]), model, entry["initial"]
+    )
+
+
+def to_tell_apart(findings: Sequence[Sequence[Kept]]) -> Sequence[Kept] | None:
+    """The hypotheses of the finding that is least sure; None where none has a rival."""
+    open_ones = [group for group in findings if len(group) > 1]
+    return min(open_ones, key=lambda group: group[0].probability, default=None)

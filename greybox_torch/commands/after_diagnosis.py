@@ -1,0 +1,37 @@
+"""How the commands that go on from the results of a diagnosis are written on the command line: `design`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from greybox_torch.commands.option_types import Json, Model, Seed
+from greybox_torch.commands.options import Options
+
+
+def declare(app: typer.Typer) -> None:
+    """Enter the commands into `app`."""
+    app.command()(design)
+
+
+def design(
+    results: Annotated[Path, typer.Argument(metavar="RESULTS", help="The folder that greybox diagnose has written.")],
+    precision: Annotated[
+        str | None, typer.Option(metavar="PARAMETER", help="Shrink this parameter's standard deviation instead.")
+    ] = None,
+    seconds: Annotated[
+        float | None, typer.Option(min=1e-9, metavar="SECONDS", help="How long the recording may be.")
+    ] = None,
+    model: Model = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Where to write the design.", show_default="RESULTS/design")
+    ] = None,
+    seed: Seed = 0,
+    json: Json = False,
+) -> None:
+    """Design the next recording: the input that tells the leading hypotheses apart, within the limits on the card."""
+    from greybox_torch.commands import design
+
+    design.run(results, precision, seconds, Options(model, out, seed, json=json))

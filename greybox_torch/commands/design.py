@@ -1,0 +1,23 @@
+"""`greybox design`: the next recording, from what a diagnosis has left open."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from greybox_torch.api.design import design
+from greybox_torch.commands.options import Options
+from greybox_torch.commands.progress import stages
+from greybox_torch.commands.task import check_folder
+
+FOLDER = "design"
+
+
+def run(results: Path, precision: str | None, seconds: float | None, options: Options) -> None:
+    """Designs the input, writes it with a figure and a card (all or nothing), and prints what it is expected to tell."""
+    folder = options.out if options.out is not None else results / FOLDER
+    check_folder(folder)
+    with stages("designing the next recording") as progress:
+        found = design(
+            results, precision=precision, seconds=seconds, model=options.model, seed=options.seed, progress=progress
+        )
+    options.finish(found, folder)

@@ -1,0 +1,171 @@
+"""A hypothesis that a new recording is to decide about: what it predicts, and how far its parameters are known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from greybox_torch.data import DataSet
+from greybox_torch.errors import NumericalError
+from greybox_torch.estimate.correlation_length import correlation_length
+from greybox_torch.estimate.problem import Problem, make_problem
+from greybox_torch.estimate.simulators import simulator_for
+from greybox_torch.experiment_design.separation import deviation, scaled_inverse
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulation.passes import Pass, Run
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import whole_records
+
+
+@dataclass(frozen=True)
+class Contender:
+    """A model with its values and the ``probability`` of being right, on the recordings that it was estimated from.
+
+    ``information`` (n_p, n_p) is what they say of the free parameters: [J]ᵀ[J] of the outputs in units of the errors, over the number of
+    samples that errors are correlated for. ``level`` (n_y,) are the root mean square errors, ``memory`` is that number.
+    """
+
+    name: str
+    probability: float
+    problem: Problem
+    simulator: Simulator
+    information: np.ndarray
+    level: np.ndarray
+    memory: float
+
+    @property
+    def free(self) -> np.ndarray:
+        """Indices of the free parameters."""
+        return np.flatnonzero(self.problem.free)
+
+    @property
+    def start(self) -> dict[str, float]:
+        """The states of the machine itself, without the memory of effects, that a next recording begins with."""
+        names = [s.name for s in self.problem.model.plain.states]
+        return {name: float(value) for name, value in zip(names, self.problem.initial[0], strict=False)}
+
+    def predicted(self, records: Records, *, tangents: bool = True) -> Prediction:
+        """Its free runs of records with as many samples each, begun as the first of its own recordings began."""
+        count, steps = len(records.first), int(records.lengths[0])
+        start = np.repeat(self.problem.initial[:1], count, axis=0)
+        problem = replace(self.problem, records=records, initial=start)
+        driven = problem.driving_records
+        begun = problem.model.begun(start, driven, records.first, problem.values)
+        run = self.simulator.run(driven, _pass(problem, records, begun, tangents))
+        assert run.states is not None
+        slopes = None if run.dy is None else run.dy[:, :steps]
+        return Prediction(run.y[:, :steps], run.states[:, :steps], slopes)
+
+    def deviation(self, index: int) -> float:
+        """The standard deviation of a free parameter after the recordings so far."""
+        return deviation(np.zeros((0, len(self.free))), self.information, index)
+
+    def at(self, values: np.ndarray) -> Contender:
+        """The same with other parameter values (n_p,)."""
+        return replace(self, problem=self.problem.with_values(values))
+
+    def drawn(self, rng: np.random.Generator) -> Contender:
+        """The same with parameters drawn from what is known of them (normally distributed, within their bounds)."""
+        size = len(self.free)
+        values, covariance = self.problem.values.copy(), scaled_inverse(self.information)
+        values[self.free] += rng.multivariate_normal(np.zeros(size), covariance, method="eigh")
+        values = np.clip(values, self.problem.lower, self.problem.upper)
+        return self.at(values) if self.problem.admissible(values) else self
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Outputs ``y`` (C, N, n_y) and ``states`` (C, N, n_x) of C records; ``slopes`` (C, N, n_y, n_d), the outputs' derivatives by the free
+    parameters and start states.
+    """
+
+    y: np.ndarray
+    states: np.ndarray
+    slopes: np.ndarray | None
+
+
+def contender(
+    name: str, probability: float, model: GreyBoxModel, data: DataSet, starts: Mapping[str, Mapping[str, float]]
+) -> Contender:
+    """A hypothesis on the recordings of ``data`` that it was estimated from, holding its values.
+
+    Args:
+        starts: its start states, by recording and state.
+
+    Raises:
+        NumericalError: it cannot be simulated on any of them.
+    """
+    used = [r for r in data.recordings if r.name in starts] or list(data.estimation())
+    problem = make_problem(data, model, used)
+    initial = problem.initial.copy()
+    for e, recording in enumerate(used):
+        for i, state in enumerate(model.states):
+            initial[e, i] = starts.get(recording.name, {}).get(state.name, initial[e, i])
+    problem = replace(problem, initial=initial)
+    simulator = simulator_for(problem)
+    records = problem.driving_records
+    run = simulator.run(records, _pass(problem, problem.records, initial, True))
+    information, level, memory = _known(problem, run)
+    if not np.isfinite(level).all():
+        raise NumericalError(
+            f"{name}: its simulation of {', '.join(r.name for r in used)} overflows; nothing can be designed with it"
+        )
+    return Contender(name, probability, problem, simulator, information, level, memory)
+
+
+def _pass(problem: Problem, records: Records, starts: np.ndarray, tangents: bool) -> Pass:
+    n_x = len(problem.model.states)
+    directions = np.eye(n_x)[problem.free_states]
+    return Pass(
+        whole_records(records),
+        problem.values,
+        starts,
+        tangents=tangents,
+        start_directions=np.broadcast_to(directions, (len(starts), *directions.shape)) if tangents else None,
+        keep_states=True,
+    )
+
+
+def _known(problem: Problem, run: Run) -> tuple[np.ndarray, np.ndarray, float]:
+    """Information on the parameters, error level by output, and samples that errors are correlated for, from the runs of its recordings."""
+    errors, slopes, starts = [], [], int(problem.initial_free.sum())
+    count = int(problem.free.sum())
+    assert run.dy is not None
+    for e, length in enumerate(problem.records.lengths):
+        measured = problem.records.y[:, problem.records.span(e)].T
+        errors.append(measured - run.y[e, :length])
+        own = np.zeros((length, len(measured[0]), count + starts * len(problem.initial)))
+        own[..., :count] = run.dy[e, :length, :, :count]
+        at = count + e * starts
+        own[..., at : at + starts] = run.dy[e, :length, :, count:]
+        slopes.append(own)
+    level = np.sqrt(np.nanmean(np.concatenate(errors) ** 2, axis=0))
+    memory = max(correlation_length(column[~np.isnan(column)]) for e in errors for column in e.T)
+    known = ~np.isnan(np.concatenate(errors))
+    flat = (np.concatenate(slopes) / level[:, None])[known]
+    return _without_starts(np.nan_to_num(flat.T @ flat), count) / memory, level, memory
+
+
+def _without_starts(whole: np.ndarray, count: int) -> np.ndarray:
+    """The information on the first ``count`` unknowns where the others are unknown too (Schur complement)."""
+    mixed = whole[:count, count:]
+    return whole[:count, :count] - mixed @ scaled_inverse(whole[count:, count:]) @ mixed.T
+
+
+def records_of(inputs: Sequence[np.ndarray], like: Records, sample_time: float) -> Records:
+    """Records of C inputs (n_u, N) each, to be simulated side by side."""
+    count, steps = len(inputs), inputs[0].shape[1]
+    total = count * steps
+    first = steps * np.arange(count, dtype=np.int64)
+    return Records(
+        u=np.ascontiguousarray(np.concatenate(inputs, axis=1)),
+        y=np.zeros((len(like.y), total)),
+        dt=np.full(total, sample_time),
+        first=first,
+        last=first + steps - 1,
+        names=tuple(str(k) for k in range(count)),
+        hold=like.hold,
+    )

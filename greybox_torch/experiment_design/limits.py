@@ -1,0 +1,106 @@
+"""What a new recording may do to the machine: range and rate of inputs, range of outputs and states, seconds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from greybox_torch.data import DataSet
+from greybox_torch.errors import UserError, did_you_mean
+from greybox_torch.model import GreyBoxModel
+
+SECONDS = "seconds"
+WIDENED = 0.1
+"""Share of what was recorded by which outputs may go beyond it, each way, where no limit is given: noise ends no recording."""
+
+
+@dataclass(frozen=True)
+class Range:
+    """From ``lower`` to ``upper`` in a signal's unit; ``rate`` is the fastest change, in the unit per second."""
+
+    lower: float
+    upper: float
+    rate: float = math.inf
+
+    @property
+    def middle(self) -> float:
+        return 0.5 * (self.lower + self.upper)
+
+    @property
+    def half(self) -> float:
+        return 0.5 * (self.upper - self.lower)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """``inputs`` has a range for every input; ``outputs`` and ``states`` for those that are limited. ``seconds``: how long it may be."""
+
+    seconds: float
+    inputs: Mapping[str, Range]
+    outputs: Mapping[str, Range]
+    states: Mapping[str, Range]
+
+
+def limits_of(data: DataSet, model: GreyBoxModel, given: Mapping[str, Any], place: str) -> Limits:
+    """The limits that are ``given`` by signal; where none are, what was recorded: its range, and the length of the longest recording.
+
+    Args:
+        given: as the card's table [limits] has them: ``seconds``, and by input, output or state ``{ lower, upper, rate }``.
+        place: how a message begins.
+
+    Raises:
+        UserError: a name that the model does not have, or a limit that cannot be one.
+    """
+    own = {s.name for s in model.plain.states}
+    inputs, outputs = [s.name for s in model.inputs], [s.name for s in model.outputs]
+    known = [*inputs, *outputs, *sorted(own), SECONDS]
+    for name in given:
+        if name not in known:
+            raise UserError(
+                f"{place} {name}: no input, output or state is named so{did_you_mean(name, known)}; expected {', '.join(known)}"
+            )
+    recorded = max(float(r.time[-1] - r.time[0]) + r.sample_time for r in data.recordings)
+    seconds = _positive(given.get(SECONDS, recorded), f"{place} {SECONDS}")
+    return Limits(
+        seconds,
+        {n: _range(given.get(n), f"{place} {n}", _recorded(data, n, 0.0)) for n in inputs},
+        {n: _range(given.get(n), f"{place} {n}", _recorded(data, n, WIDENED)) for n in outputs},
+        {n: _range(entry, f"{place} {n}", None) for n, entry in given.items() if n in own and n not in outputs},
+    )
+
+
+def _recorded(data: DataSet, name: str, widened: float) -> Range:
+    values = np.concatenate([r.signals[name] for r in data.recordings])
+    lower, upper = float(np.nanmin(values)), float(np.nanmax(values))
+    more = widened * (upper - lower)
+    return Range(lower - more, upper + more)
+
+
+def _range(entry: Any, place: str, default: Range | None) -> Range:
+    if entry is None:
+        assert default is not None
+        return default
+    if not isinstance(entry, Mapping) or not set(entry) <= {"lower", "upper", "rate"}:
+        raise UserError(f"{place}: found {entry!r}, expected {{ lower = …, upper = …, rate = … }}")
+    lower = _number(entry.get("lower", -math.inf if default is None else default.lower), f"{place}, lower")
+    upper = _number(entry.get("upper", math.inf if default is None else default.upper), f"{place}, upper")
+    if not lower < upper:
+        raise UserError(f"{place}: lower = {lower:g} is not below upper = {upper:g}")
+    return Range(lower, upper, _positive(entry.get("rate", math.inf), f"{place}, rate"))
+
+
+def _positive(value: Any, place: str) -> float:
+    number = _number(value, place)
+    if not number > 0:
+        raise UserError(f"{place}: found {value!r}, expected a number above zero")
+    return number
+
+
+def _number(value: Any, place: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or value != value:
+        raise UserError(f"{place}: found {value!r}, expected a number")
+    return float(value)

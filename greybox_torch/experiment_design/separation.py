@@ -1,0 +1,93 @@
+"""What a recording would say: evidence between hypotheses, the probabilities after it, and a parameter's standard deviation.
+
+Sources: A. C. Atkinson, V. V. Fedorov, "The design of experiments for discriminating between two rival models", Biometrika 62, 1975
+(T-optimality: what the rival cannot imitate by other parameters); K. Chaloner, I. Verdinelli, Statistical Science 10, 1995 (averages over
+what is known of the parameters).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.special import ndtri
+
+RELATIVE = 1e-10
+"""Share of the largest eigenvalue, of a matrix scaled to unit diagonal, below which a direction counts as undetermined."""
+
+QUANTILES = 400
+"""Points of the normal distribution that an expectation is taken over."""
+
+
+def scaled_inverse(matrix: np.ndarray) -> np.ndarray:
+    """The pseudo-inverse of an information matrix (n, n) whose rows may be in very different units; zero for what is undetermined."""
+    size = np.sqrt(np.maximum(np.diag(matrix), 0.0))
+    known = size > 0
+    scale = np.where(known, 1.0 / np.where(known, size, 1.0), 0.0)
+    return np.linalg.pinv(matrix * np.outer(scale, scale), rcond=RELATIVE, hermitian=True) * np.outer(scale, scale)
+
+
+def evidence(difference: np.ndarray, slopes: np.ndarray, known: np.ndarray) -> float:
+    """The log-likelihood ratio that is expected between two hypotheses after the rival has been estimated anew, in nats.
+
+    The least over the rival's unknowns δ of ½ ‖r − J δ‖² + ½ δᵀ I δ.
+
+    Args:
+        difference: of the outputs, in units of the errors, r (N,).
+        slopes: the rival's outputs by its unknowns, J (N, n).
+        known: what earlier recordings say of these, I (n, n).
+    """
+    pull = slopes.T @ difference
+    imitated = pull @ scaled_inverse(slopes.T @ slopes + known) @ pull
+    return 0.5 * max(0.0, float(difference @ difference - imitated))
+
+
+def expected_probability(probabilities: Sequence[float], nats: np.ndarray) -> float:
+    """The probability of the right hypothesis after a recording, averaged over which one is right and over the errors.
+
+    A log-likelihood ratio whose mean is D has the variance 2 D where errors are Gaussian.
+
+    Args:
+        probabilities: of the hypotheses, before it.
+        nats: (n, n), entry (a, b) the evidence for a against b where a is right.
+    """
+    share = np.asarray(probabilities, dtype=float) / np.sum(probabilities)
+    level = (np.arange(QUANTILES) + 0.5) / QUANTILES
+    normal = ndtri(level)
+    total = 0.0
+    for a, own in enumerate(share):
+        against = np.zeros(QUANTILES)
+        for b, other in enumerate(share):
+            if b != a and own > 0:
+                told = nats[a, b] + np.sqrt(2.0 * nats[a, b]) * normal
+                against += other / own * np.exp(np.clip(-told, -700.0, 700.0))
+        total += own * float(np.mean(1.0 / (1.0 + against)))
+    return total
+
+
+def seconds_for(probabilities: Sequence[float], nats: np.ndarray, seconds: float, wanted: float) -> float:
+    """How long a recording like one of so many ``seconds`` must be for a ``wanted`` expected probability; infinite where none suffices.
+
+    The evidence grows in proportion to the time.
+    """
+    if expected_probability(probabilities, 1e6 * nats) < wanted:
+        return np.inf
+    low, high = 0.0, 1.0
+    while expected_probability(probabilities, high * nats) < wanted:
+        low, high = high, 2.0 * high
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if expected_probability(probabilities, middle * nats) >= wanted else (middle, high)
+    return high * seconds
+
+
+def deviation(slopes: np.ndarray, known: np.ndarray, index: int) -> float:
+    """The standard deviation of an unknown after a recording; infinite where it stays undetermined.
+
+    Args:
+        slopes: outputs by unknowns, in units of the errors, J (N, n).
+        known: what earlier recordings say, (n, n).
+        index: which unknown.
+    """
+    variance = scaled_inverse(slopes.T @ slopes + known)[index, index]
+    return float(np.sqrt(variance)) if variance > 0 else np.inf
