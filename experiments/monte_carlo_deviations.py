@@ -16,12 +16,10 @@ from pathlib import Path
 
 import numpy as np
 
-from greybox_torch.data import load_dataset
+from greybox_torch import load_dataset, load_model
+from greybox_torch.estimate import Problem, make_problem, simulate
 from greybox_torch.estimate.fit import fit
-from greybox_torch.estimate.free_run import simulate
-from greybox_torch.estimate.problem import Problem, make_problem
-from greybox_torch.simulation.simulator import Simulator
-from greybox_torch.systems import load_model
+from greybox_torch.simulation import Simulator
 
 ALLOWED = 0.2
 """Largest difference between scatter and reported deviation, as a share of the latter."""

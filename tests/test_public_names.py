@@ -1,11 +1,16 @@
 from __future__ import annotations
 
+import ast
+import importlib
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 import greybox_torch
+
+EXPERIMENTS = Path(__file__).parents[1] / "experiments"
 
 
 def test_load_dataset_is_public() -> None:
@@ -31,3 +36,19 @@ def test_import_is_light(module: str) -> None:
     program = f"import sys, {module}; print([name for name in {heavy} if name in sys.modules])"
     result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert result.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("part", ["simulation", "estimate"])
+def test_experiments_take_the_engine_from_where_it_is_public(part: str) -> None:
+    """What a package exports is imported from it, not from the file where it happens to stand."""
+    package = importlib.import_module(f"greybox_torch.{part}")
+    deep = [
+        f"{file.relative_to(EXPERIMENTS)}: {node.module}.{alias.name}"
+        for file in sorted(EXPERIMENTS.rglob("*.py"))
+        for node in ast.walk(ast.parse(file.read_text()))
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(f"greybox_torch.{part}.")
+        for alias in node.names
+        if alias.name in package.__all__
+    ]
+    assert not deep
+    assert all(hasattr(package, name) for name in package.__all__)

@@ -14,9 +14,7 @@ from experiments.ablation.networks import NetworkChoice, judged
 from experiments.ablation.results import Case, Entry
 from experiments.ablation.series import Scaling
 from greybox_torch import DataSet, GreyBoxModel, TrainingSettings, fit_physics
-from greybox_torch.estimate.comparison import Score
-from greybox_torch.estimate.metrics import fit_percent, root_mean_square
-from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate import Score, fit_percent, make_problem, root_mean_square
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.training import Physics, Trained
 

@@ -9,11 +9,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from greybox_torch.data import DataSet
-from greybox_torch.estimate.comparison import Score, compare
-from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
-from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulation.simulator import SimulationOptions, Simulator
+from greybox_torch import DataSet, GreyBoxModel
+from greybox_torch.estimate import Problem, Score, all_starts_free, compare, make_problem, problem_for
+from greybox_torch.simulation import SimulationOptions, Simulator
 
 Found = TypeVar("Found")
 

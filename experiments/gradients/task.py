@@ -7,14 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from experiments.speed.network import network_task
-from greybox_torch.estimate.problem import Problem, problem_for
+from greybox_torch import GreyBoxModel, ResidualNet, Surroundings
+from greybox_torch.estimate import Problem, problem_for
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.mechanism import Range, Surroundings
-from greybox_torch.mechanisms.residual_net import ResidualNet
-from greybox_torch.model import GreyBoxModel
-from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.mechanisms.mechanism import Range
+from greybox_torch.simulation import Records, Simulator
 from greybox_torch.systems import RobotArm
 from greybox_torch.training.gradients import Batch, SequenceGradient
 from greybox_torch.training.gradients.adjoint import AdjointGradient

@@ -13,10 +13,8 @@ import numpy as np
 import torch
 
 from experiments.speed.records import Published
-from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulation.passes import Pass
-from greybox_torch.simulation.simulator import Simulator
-from greybox_torch.simulation.windows import whole_records
+from greybox_torch.estimate import Problem
+from greybox_torch.simulation import Pass, Simulator, whole_records
 
 LEARNING_RATES = (0.003, 0.01, 0.03)
 """In units of each unknown's start value. The best of them counts."""

@@ -11,10 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from experiments.speed.records import SAMPLES, arm_values, simulated_records
-from greybox_torch.simulation.passes import Pass
-from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.simulator import Simulator
-from greybox_torch.simulation.windows import Windows, whole_records
+from greybox_torch.simulation import Pass, Records, Simulator, Windows, whole_records
 from greybox_torch.systems import RobotArm
 
 WIDTH = 16

@@ -9,9 +9,8 @@ import numpy as np
 import torch
 
 from experiments.speed.network import SPEED_SCALE, WIDTH, NetworkTask
-from greybox_torch.model import Parameter, Signals
-from greybox_torch.simulation.passes import Pass
-from greybox_torch.simulation.simulator import Simulator
+from greybox_torch import Parameter, Signals
+from greybox_torch.simulation import Pass, Simulator
 from greybox_torch.systems import RobotArm
 
 WEIGHTS = (*(f"{kind}_{k}" for kind in ("hidden", "bias", "output") for k in range(WIDTH)), "output_bias")

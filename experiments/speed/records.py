@@ -7,13 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from greybox_torch.data import load_dataset
-from greybox_torch.estimate.problem import Problem, make_problem
-from greybox_torch.simulation.passes import Pass
-from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.simulator import Simulator
-from greybox_torch.simulation.windows import whole_records
-from greybox_torch.systems import RobotArm, load_model
+from greybox_torch import load_dataset, load_model
+from greybox_torch.estimate import Problem, make_problem
+from greybox_torch.simulation import Pass, Records, Simulator, whole_records
+from greybox_torch.systems import RobotArm
 
 SAMPLE_TIME = 0.0005
 """s, as in the published recordings."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from experiments.concealed.against.plain import Plain
 from greybox_torch import GreyBoxModel
-from greybox_torch.estimate.problem import problem_for
+from greybox_torch.estimate import problem_for
 
 SCHEMA = "greybox-against/1"
 

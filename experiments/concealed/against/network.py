@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 import torch
 
-from greybox_torch.estimate.free_run import visited_states
-from greybox_torch.estimate.problem import Problem
-from greybox_torch.model import Body, GreyBoxModel, Parameter, Signals
-from greybox_torch.simulation.simulator import Simulator
+from greybox_torch import Body, GreyBoxModel, Parameter, Signals
+from greybox_torch.estimate import Problem, visited_states
+from greybox_torch.simulation import Simulator
 
 
 class NetworkModel(GreyBoxModel):

@@ -21,10 +21,8 @@ from experiments.concealed.against.judge import Answer
 from experiments.concealed.against.network import NetworkModel, network_model
 from experiments.concealed.against.plain import CHOSEN_ON, Plain
 from greybox_torch.diagnosis.hypothesis.fit import lengths
-from greybox_torch.estimate.levenberg_marquardt import Settings
-from greybox_torch.estimate.problem import Problem, problem_for
-from greybox_torch.estimate.window_fit import fit_windows
-from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.estimate import Problem, Settings, fit_windows, problem_for
+from greybox_torch.simulation import Simulator
 
 WIDTHS = (6, 12)
 """Hidden units tried."""

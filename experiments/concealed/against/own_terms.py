@@ -8,7 +8,7 @@ import numpy as np
 import torch
 
 from greybox_torch import GreyBoxModel, Signals
-from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate import Problem
 from greybox_torch.model.ports import Actuator
 
 PARALLEL = 1e-6

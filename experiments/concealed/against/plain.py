@@ -9,20 +9,22 @@ from pathlib import Path
 
 import numpy as np
 
-from greybox_torch.data import DataSet, load_dataset
+from greybox_torch import DataSet, DiagnosisSettings, NumericalError, Surroundings, UserError, load_dataset, load_model
 from greybox_torch.diagnosis.hypothesis.final import finish
 from greybox_torch.diagnosis.hypothesis.fit import hypothesis, lengths
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
-from greybox_torch.diagnosis.settings import DiagnosisSettings
-from greybox_torch.errors import NumericalError, UserError
-from greybox_torch.estimate.comparison import Score, compare
-from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
-from greybox_torch.estimate.simulators import simulator_for
-from greybox_torch.estimate.surroundings import survey
-from greybox_torch.estimate.window_fit import WindowFit, fit_windows
-from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.simulation.simulator import Simulator
-from greybox_torch.systems import load_model
+from greybox_torch.estimate import (
+    Problem,
+    Score,
+    WindowFit,
+    all_starts_free,
+    compare,
+    fit_windows,
+    make_problem,
+    simulator_for,
+    survey,
+)
+from greybox_torch.simulation import Simulator
 
 CHOSEN_ON = 0.3
 """The last share of the estimation experiments, on which the other ways choose among their own variants."""

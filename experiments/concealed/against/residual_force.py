@@ -23,13 +23,11 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from experiments.concealed.against.plain import Plain
+from greybox_torch import Mechanism, Parameter, Probe, Signals, Surroundings
 from greybox_torch.diagnosis.screen.candidates import attach
-from greybox_torch.estimate.problem import problem_for
+from greybox_torch.estimate import problem_for
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
-from greybox_torch.model import Parameter, Signals
-from greybox_torch.simulation.passes import Pass
-from greybox_torch.simulation.windows import Windows
+from greybox_torch.simulation import Pass, Windows
 
 SLACK = 1e-3
 """Share of a state's movement in a sample by which the model may be wrong elsewhere than at the port."""

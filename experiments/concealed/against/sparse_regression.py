@@ -29,11 +29,11 @@ from experiments.concealed.against.residual_force import Smoother
 from experiments.concealed.against.sparse_fit import Sparse, named, regress
 from experiments.concealed.against.sparse_terms import SparseTerms, columns, extended
 from experiments.concealed.against.terms import terms
+from greybox_torch import NumericalError
 from greybox_torch.diagnosis.hypothesis.final import finish
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, hypothesis, lengths
 from greybox_torch.diagnosis.screen.candidates import attach
-from greybox_torch.errors import NumericalError
-from greybox_torch.estimate.problem import Problem, problem_for
+from greybox_torch.estimate import Problem, problem_for
 from greybox_torch.mechanisms.attachment import Attachment
 
 WANDER = (30.0, 1000.0)

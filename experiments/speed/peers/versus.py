@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from experiments.speed.records import arm_values, starts
-from greybox_torch.simulation.records import Records
+from greybox_torch.simulation import Records
 
 
 def records_for_peers(records: Records) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -10,8 +10,8 @@ from experiments.speed.row import Entry, Row, Target
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import PUBLISHED_CARD, Settings
 from experiments.speed.timing import interleaved, once
+from greybox_torch.estimate import Problem
 from greybox_torch.estimate.fit import fit
-from greybox_torch.estimate.problem import Problem
 
 TITLE = "Published estimation: 7 parameters, 3 start speeds, 19 838 samples"
 NEEDS = Needs(peers=("jax", "optimistix", "numba"), recordings=True)

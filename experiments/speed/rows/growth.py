@@ -10,9 +10,7 @@ from experiments.speed.row import Entry, Row, Target
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import Settings, missing_peers
 from experiments.speed.timing import interleaved
-from greybox_torch.simulation.passes import Pass
-from greybox_torch.simulation.simulator import Simulator
-from greybox_torch.simulation.windows import whole_records
+from greybox_torch.simulation import Pass, Simulator, whole_records
 from greybox_torch.systems import RobotArm
 
 TITLE = "Growth with samples: one record, 12 sensitivities, normal matrices"

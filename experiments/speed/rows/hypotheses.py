@@ -14,17 +14,12 @@ from experiments.speed.row import Entry, Row, Target, apart
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import Settings
 from experiments.speed.timing import interleaved, once
+from greybox_torch import Surroundings
 from greybox_torch.diagnosis.screen.candidates import candidates
 from greybox_torch.diagnosis.screen.score_test import Screen
-from greybox_torch.estimate.problem import Problem
-from greybox_torch.estimate.shifted_states import shifted_states
-from greybox_torch.estimate.surroundings import survey
-from greybox_torch.estimate.window_fit import WindowFit
+from greybox_torch.estimate import Problem, WindowFit, shifted_states, survey
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.simulation.passes import Pass
-from greybox_torch.simulation.simulator import DEFAULT, Simulator
-from greybox_torch.simulation.windows import cut, whole_records
+from greybox_torch.simulation import DEFAULT, Pass, Simulator, cut, whole_records
 
 TITLE = "100 hypothesis columns over windows of 310 samples, 4 experiments"
 NEEDS = Needs()

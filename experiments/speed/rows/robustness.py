@@ -12,11 +12,9 @@ from experiments.speed.records import load_problem
 from experiments.speed.row import Entry, Row, Target
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import ALL_FREE_CARD, Settings
+from greybox_torch.estimate import Problem, fit_percent, simulate
 from greybox_torch.estimate.fit import fit
-from greybox_torch.estimate.free_run import simulate
-from greybox_torch.estimate.metrics import fit_percent
-from greybox_torch.estimate.problem import Problem
-from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation import Simulator
 
 TITLE = "Start values within a factor of 2 of the card's, 12 free parameters, real arm"
 NEEDS = Needs(recordings=True)

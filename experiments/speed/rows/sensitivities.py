@@ -12,10 +12,7 @@ from experiments.speed.row import Entry, Row, Target, apart
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import Settings
 from experiments.speed.timing import interleaved, once
-from greybox_torch.simulation.passes import Pass
-from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.simulator import Simulator
-from greybox_torch.simulation.windows import whole_records
+from greybox_torch.simulation import Pass, Records, Simulator, whole_records
 from greybox_torch.systems import RobotArm
 
 TITLE = "Free run with 12 forward sensitivities, 4 experiments × 19 838 samples"
