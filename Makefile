@@ -9,7 +9,7 @@ INSTALLED := .venv/.installed
 PEERS := .venv/.peers
 PROOF := .venv/.proof
 
-.PHONY: demo test lint bench notebook proof proof-quick clean
+.PHONY: demo test lint bench notebook proof proof-quick dist clean
 
 demo: $(INSTALLED)
 	$(BIN)/greybox demo --out results/demo
@@ -27,6 +27,10 @@ bench: $(PEERS)
 
 notebook: $(INSTALLED)
 	$(BIN)/python -m experiments.notebook --out results/notebook
+
+# The source distribution and the wheel, in dist/.
+dist: $(INSTALLED)
+	$(BIN)/python -m build --outdir dist
 
 # Interrupted, it goes on where it was; a new draw needs another folder, or results/proof removed.
 proof: $(PROOF)
