@@ -9,7 +9,7 @@ import torch
 from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.source import Source
 from greybox_torch.checking.tracing import Traced, traced
-from greybox_torch.codegen.operations import UnsupportedOperation
+from greybox_torch.codegen.arrays import UnsupportedOperation
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel, Signals
 from greybox_torch.model.check import check_equations, explain, line_of

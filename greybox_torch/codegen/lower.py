@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import torch
 
+from greybox_torch.codegen.arrays import UnsupportedOperation
 from greybox_torch.codegen.derive import Partials, jacobian
 from greybox_torch.codegen.expression import Graph
-from greybox_torch.codegen.operations import UnsupportedOperation
 from greybox_torch.codegen.trace import nodes_of, symbols
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel, Signals

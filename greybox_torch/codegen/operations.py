@@ -8,49 +8,16 @@ from typing import Any
 import numpy as np
 import torch
 
+from greybox_torch.codegen.arrays import UnsupportedOperation, elementwise, mapped, operand
 from greybox_torch.codegen.expression import FUNCTIONS, Graph
-
-
-class UnsupportedOperation(Exception):
-    """The model uses a torch operation that the compiled route does not know; the eager route still does."""
-
-
-class NodeArray(np.ndarray):
-    """Marks an array of nodes, apart from plain Python arguments."""
-
-
-def constants(graph: Graph, values: np.ndarray) -> np.ndarray:
-    """The nodes of given numbers."""
-    return _map(lambda v: graph.constant(float(v)), values)
-
-
-def _operand(graph: Graph, value: Any) -> np.ndarray:
-    if isinstance(value, NodeArray):
-        return value
-    return constants(graph, np.asarray(value))
-
-
-def _map(function: Callable[..., Any], *arrays: np.ndarray) -> np.ndarray:
-    """Apply ``function`` over broadcast arrays of objects."""
-    pieces = np.broadcast_arrays(*[np.asarray(a, dtype=object) for a in arrays])
-    result = np.empty(pieces[0].shape, dtype=object)
-    for index in np.ndindex(result.shape):
-        result[index] = function(*[piece[index] for piece in pieces])
-    return result.view(NodeArray)
-
-
-def _elementwise(operation: str) -> Callable[..., np.ndarray]:
-    def handler(graph: Graph, *operands: Any, **_: Any) -> np.ndarray:
-        return _map(lambda *n: graph.apply(operation, *n), *[_operand(graph, o) for o in operands])
-
-    return handler
+from greybox_torch.codegen.matrices import MATRICES, MATRICES_AT_ONCE
 
 
 def _added(sign: str, swap: bool = False) -> Callable[..., np.ndarray]:
     def handler(graph: Graph, left: Any, right: Any, alpha: float = 1) -> np.ndarray:
         left, right = (right, left) if swap else (left, right)
-        scaled = _operand(graph, right) if alpha == 1 else _elementwise("mul")(graph, right, float(alpha))
-        return _elementwise(sign)(graph, left, scaled)
+        scaled = operand(graph, right) if alpha == 1 else elementwise("mul")(graph, right, float(alpha))
+        return elementwise(sign)(graph, left, scaled)
 
     return handler
 
@@ -60,45 +27,45 @@ def _power(graph: Graph, base: Any, exponent: Any) -> np.ndarray:
         constant = graph.value_of(e)
         return graph.apply("pow", b, e) if constant is None else graph.power(b, constant)
 
-    return _map(power, _operand(graph, base), _operand(graph, exponent))
+    return mapped(power, operand(graph, base), operand(graph, exponent))
 
 
 def _clamped(graph: Graph, value: Any, low: Any = None, high: Any = None, **named: Any) -> np.ndarray:
     low, high = named.get("min", low), named.get("max", high)
     if low is not None:
-        value = _elementwise("max")(graph, value, low)
-    return value if high is None else _elementwise("min")(graph, value, high)
+        value = elementwise("max")(graph, value, low)
+    return value if high is None else elementwise("min")(graph, value, high)
 
 
 def _sigmoid(graph: Graph, value: Any) -> np.ndarray:
-    half = _elementwise("mul")(graph, value, 0.5)
-    return _elementwise("mul")(graph, _elementwise("add")(graph, _elementwise("tanh")(graph, half), 1.0), 0.5)
+    half = elementwise("mul")(graph, value, 0.5)
+    return elementwise("mul")(graph, elementwise("add")(graph, elementwise("tanh")(graph, half), 1.0), 0.5)
 
 
 def _softplus(graph: Graph, value: Any, beta: float = 1.0, threshold: float = 20.0) -> np.ndarray:
-    scaled = _elementwise("mul")(graph, value, beta)
-    bounded = _elementwise("min")(graph, scaled, threshold)
-    curved = _elementwise("div")(graph, _elementwise("log1p")(graph, _elementwise("exp")(graph, bounded)), beta)
-    return _elementwise("where")(graph, _elementwise("gt")(graph, scaled, threshold), value, curved)
+    scaled = elementwise("mul")(graph, value, beta)
+    bounded = elementwise("min")(graph, scaled, threshold)
+    curved = elementwise("div")(graph, elementwise("log1p")(graph, elementwise("exp")(graph, bounded)), beta)
+    return elementwise("where")(graph, elementwise("gt")(graph, scaled, threshold), value, curved)
 
 
 def _divided(graph: Graph, value: Any, divisor: Any, rounding_mode: str | None = None) -> np.ndarray:
-    quotient = _elementwise("div")(graph, value, divisor)
+    quotient = elementwise("div")(graph, value, divisor)
     if rounding_mode is None:
         return quotient
-    down = _elementwise("floor")(graph, quotient)
+    down = elementwise("floor")(graph, quotient)
     if rounding_mode == "floor":
         return down
-    up = _elementwise("neg")(graph, _elementwise("floor")(graph, _elementwise("neg")(graph, quotient)))
-    return _elementwise("where")(graph, _elementwise("lt")(graph, quotient, 0.0), up, down)
+    up = elementwise("neg")(graph, elementwise("floor")(graph, elementwise("neg")(graph, quotient)))
+    return elementwise("where")(graph, elementwise("lt")(graph, quotient, 0.0), up, down)
 
 
 def _converted(graph: Graph, value: Any, *_: Any, dtype: torch.dtype | None = None, **__: Any) -> Any:
     if dtype is torch.bool:
-        return _elementwise("ne")(graph, value, 0.0)
+        return elementwise("ne")(graph, value, 0.0)
     if dtype is not None and not dtype.is_floating_point:
         raise UnsupportedOperation(f"conversion to {dtype}")
-    return _map(
+    return mapped(
         lambda n: graph.apply("where", n, graph.constant(1.0), graph.constant(0.0)) if graph.is_condition(n) else n,
         value,
     )
@@ -109,32 +76,8 @@ def _reciprocal(graph: Graph, value: Any, power: float = 1.0) -> np.ndarray:
 
 
 def _remainder(graph: Graph, value: Any, period: Any) -> np.ndarray:
-    turns = _elementwise("floor")(graph, _elementwise("div")(graph, value, period))
-    return _elementwise("sub")(graph, value, _elementwise("mul")(graph, turns, period))
-
-
-def _summed(graph: Graph, value: np.ndarray, dims: Any = None, keepdim: bool = False, **_: Any) -> np.ndarray:
-    axes = tuple(np.atleast_1d(dims)) if dims not in (None, []) else tuple(range(value.ndim))
-    moved = np.moveaxis(value, [int(a) for a in axes], range(len(axes)))
-    flat = moved.reshape(-1, *moved.shape[len(axes) :])
-    total = _operand(graph, np.zeros(flat.shape[1:]))
-    for row in flat:
-        total = _elementwise("add")(graph, total, np.asarray(row, dtype=object).view(NodeArray))
-    return np.expand_dims(total, tuple(int(a) for a in axes)) if keepdim else total
-
-
-def _product(graph: Graph, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    a = left if left.ndim == 2 else left[None, :]
-    b = right if right.ndim == 2 else right[:, None]
-    terms = _elementwise("mul")(graph, a[:, :, None].view(NodeArray), b[None, :, :].view(NodeArray))
-    result = _summed(graph, terms, [1])
-    if left.ndim == 1:
-        result = result[0]
-    return result[..., 0] if right.ndim == 1 else result
-
-
-def _affine(graph: Graph, bias: Any, left: Any, right: Any, **_: Any) -> np.ndarray:
-    return _elementwise("add")(graph, _product(graph, left, right), bias)
+    turns = elementwise("floor")(graph, elementwise("div")(graph, value, period))
+    return elementwise("sub")(graph, value, elementwise("mul")(graph, turns, period))
 
 
 def _indexed(graph: Graph, value: np.ndarray, dim: int, index: int) -> np.ndarray:
@@ -158,7 +101,7 @@ def _joined(graph: Graph, pieces: Any, dim: int = 0) -> np.ndarray:
 
 
 def _full(value: float) -> Callable[..., np.ndarray]:
-    return lambda graph, like, *_, **__: _operand(graph, np.full(np.shape(like), value))
+    return lambda graph, like, *_, **__: operand(graph, np.full(np.shape(like), value))
 
 
 def _same(graph: Graph, value: Any, *_: Any, **__: Any) -> Any:
@@ -169,40 +112,35 @@ HANDLERS: dict[str, Callable[..., Any]] = {
     "add": _added("add"),
     "sub": _added("sub"),
     "rsub": _added("sub", swap=True),
-    "mul": _elementwise("mul"),
+    "mul": elementwise("mul"),
     "div": _divided,
     "pow": _power,
     "square": lambda g, a: _power(g, a, 2.0),
     "reciprocal": _reciprocal,
-    "rsqrt": lambda g, a: _power(g, _elementwise("sqrt")(g, a), -1.0),
-    "maximum": _elementwise("max"),
-    "minimum": _elementwise("min"),
+    "rsqrt": lambda g, a: _power(g, elementwise("sqrt")(g, a), -1.0),
+    "maximum": elementwise("max"),
+    "minimum": elementwise("min"),
     "clamp": _clamped,
     "clamp_min": lambda g, a, low: _clamped(g, a, low, None),
     "clamp_max": lambda g, a, high: _clamped(g, a, None, high),
     "relu": lambda g, a: _clamped(g, a, 0.0, None),
     "sigmoid": _sigmoid,
-    "silu": lambda g, a: _elementwise("mul")(g, a, _sigmoid(g, a)),
+    "silu": lambda g, a: elementwise("mul")(g, a, _sigmoid(g, a)),
     "softplus": _softplus,
-    "sgn": _elementwise("sign"),
-    "neg": _elementwise("neg"),
+    "sgn": elementwise("sign"),
+    "neg": elementwise("neg"),
     "remainder": _remainder,
-    "heaviside": lambda g, a, at_zero: _elementwise("where")(
-        g, _elementwise("eq")(g, a, 0.0), at_zero, _elementwise("where")(g, _elementwise("gt")(g, a, 0.0), 1.0, 0.0)
+    "heaviside": lambda g, a, at_zero: elementwise("where")(
+        g, elementwise("eq")(g, a, 0.0), at_zero, elementwise("where")(g, elementwise("gt")(g, a, 0.0), 1.0, 0.0)
     ),
-    "where": _elementwise("where"),
-    "logical_and": _elementwise("and"),
-    "logical_or": _elementwise("or"),
-    "logical_not": _elementwise("not"),
-    "bitwise_and": _elementwise("and"),
-    "bitwise_or": _elementwise("or"),
-    "bitwise_not": _elementwise("not"),
-    "sum": _summed,
-    "mm": _product,
-    "mv": _product,
-    "dot": _product,
-    "addmm": _affine,
-    "addmv": _affine,
+    "where": elementwise("where"),
+    "logical_and": elementwise("and"),
+    "logical_or": elementwise("or"),
+    "logical_not": elementwise("not"),
+    "bitwise_and": elementwise("and"),
+    "bitwise_or": elementwise("or"),
+    "bitwise_not": elementwise("not"),
+    **MATRICES,
     "select": _indexed,
     "slice": _sliced,
     "stack": _stacked,
@@ -222,11 +160,11 @@ HANDLERS: dict[str, Callable[..., Any]] = {
     "lift_fresh": _same,
     "zeros_like": _full(0.0),
     "ones_like": _full(1.0),
-    "new_zeros": lambda g, like, shape, **_: _operand(g, np.zeros(shape)),
-    "new_ones": lambda g, like, shape, **_: _operand(g, np.ones(shape)),
-    "full_like": lambda g, like, value, **_: _operand(g, np.full(np.shape(like), value)),
-    **{name: _elementwise(name) for name in ("lt", "le", "gt", "ge", "eq", "ne")},
-    **{name: _elementwise(name) for name in ((*FUNCTIONS, "atan2"))},
+    "new_zeros": lambda g, like, shape, **_: operand(g, np.zeros(shape)),
+    "new_ones": lambda g, like, shape, **_: operand(g, np.ones(shape)),
+    "full_like": lambda g, like, value, **_: operand(g, np.full(np.shape(like), value)),
+    **{name: elementwise(name) for name in ("lt", "le", "gt", "ge", "eq", "ne")},
+    **{name: elementwise(name) for name in ((*FUNCTIONS, "atan2"))},
 }
 
 AT_ONCE: dict[str, Callable[..., Any]] = {
@@ -239,4 +177,5 @@ AT_ONCE: dict[str, Callable[..., Any]] = {
     "pow": _power,
     "__pow__": _power,
     "__rpow__": lambda g, a, b: _power(g, b, a),
+    **MATRICES_AT_ONCE,
 }

@@ -13,8 +13,9 @@ import numpy as np
 import torch
 from torch.utils._pytree import tree_map
 
+from greybox_torch.codegen.arrays import NodeArray, UnsupportedOperation, constants
 from greybox_torch.codegen.expression import Graph
-from greybox_torch.codegen.operations import AT_ONCE, HANDLERS, NodeArray, UnsupportedOperation, constants
+from greybox_torch.codegen.operations import AT_ONCE, HANDLERS
 from greybox_torch.errors import UserError
 from greybox_torch.model.check import NEEDS_A_VALUE
 
@@ -44,7 +45,7 @@ class Symbol(torch.Tensor):
         if handler is None:
             return torch._C._disabled_torch_function_impl(func, types, args, kwargs or {})  # type: ignore[attr-defined]
         graph = _graph_of(args, {})
-        return Symbol.of(graph, _handled(handler, name, graph, args, {}))
+        return _symbols_of(graph, _handled(handler, name, graph, args, {}))
 
     @classmethod
     def __torch_dispatch__(cls, func: Any, types: Any, args: Any = (), kwargs: Any = None) -> Any:
@@ -61,13 +62,19 @@ class Symbol(torch.Tensor):
             args[0].nodes = np.broadcast_to(
                 result, args[0].nodes.shape
             )  # torch hands the argument back, not the result
-        return Symbol.of(graph, result)
+        return _symbols_of(graph, result)
 
 
-def _handled(handler: Callable[..., Any], name: str, graph: Graph, args: Any, kwargs: Any) -> np.ndarray:
+def _symbols_of(graph: Graph, result: Any) -> Any:
+    """One tensor, or those that an operation such as unbind gives."""
+    return tuple(Symbol.of(graph, part) for part in result) if isinstance(result, tuple) else Symbol.of(graph, result)
+
+
+def _handled(handler: Callable[..., Any], name: str, graph: Graph, args: Any, kwargs: Any) -> Any:
     operands, named = tree_map(lambda a: _nodes_of(graph, a), (args, kwargs))
     try:
-        return np.asarray(handler(graph, *operands, **named), dtype=object)
+        result = handler(graph, *operands, **named)
+        return result if isinstance(result, tuple) else np.asarray(result, dtype=object)
     except (TypeError, ValueError, IndexError) as error:  # a form of the operation that its handler was not written for
         raise UnsupportedOperation(f"torch operation '{name}' in this form") from error
 

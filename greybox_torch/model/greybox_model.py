@@ -19,7 +19,8 @@ class GreyBoxModel(torch.nn.Module):
     """A physical model dx/dt = f(x, u, p), y = g(x, u, p) with named, constrained, learnable parameters.
 
     A subclass declares ``states``, ``inputs``, ``outputs``, ``parameters`` and ``ports`` as class attributes and defines
-    :meth:`derivative` and :meth:`output` in elementwise torch operations. The declared list of parameters is kept as
+    :meth:`derivative` and :meth:`output` in torch operations that treat every sample alike: elementwise ones, and small matrices in the
+    last dimensions (``torch.stack([a, b], -1)``, ``@``, ``torch.linalg.solve``). The declared list of parameters is kept as
     ``declared_parameters``; ``parameters()`` stays what it is on every :class:`torch.nn.Module`.
 
     Raises:
@@ -159,14 +160,15 @@ class GreyBoxModel(torch.nn.Module):
     def rates(self, x: torch.Tensor, u: torch.Tensor, p: Any) -> torch.Tensor:
         """The right-hand side on stacked tensors: x (n_x, *batch), u (n_u, *batch) -> (n_x, *batch)."""
         xs, us = self._named(x, u)
-        ports = Signals("port", {port.name: x.new_zeros(()) for port in self.all_ports})
-        rates = self.derivative(xs, us, p, ports)
+        none = x.new_zeros(()).expand(x.shape[1:])
+        ports = Signals("port", {port.name: none for port in self.all_ports})
+        rates = self.derivative(xs, us, _spread(p, x), ports)
         return _stacked(rates, [s.name for s in self.states], x, f"{self.title}.derivative()")
 
     def measured(self, x: torch.Tensor, u: torch.Tensor, p: Any) -> torch.Tensor:
         """The outputs on stacked tensors: x (n_x, *batch), u (n_u, *batch) -> (n_y, *batch)."""
         xs, us = self._named(x, u)
-        return _stacked(self.output(xs, us, p), [o.name for o in self.outputs], x, f"{self.title}.output()")
+        return _stacked(self.output(xs, us, _spread(p, x)), [o.name for o in self.outputs], x, f"{self.title}.output()")
 
     def _named(self, x: torch.Tensor, u: torch.Tensor) -> tuple[Signals, Signals]:
         # select: an index in brackets makes torch import its distributed tensors when x is traced, half a second
@@ -191,6 +193,13 @@ def _key(name: str) -> str:
     """A parameter's name as a key of torch.nn.ParameterDict, which reserves the dot and the names of its own methods."""
     key = name.replace(".", "/")
     return f"{key}/" if hasattr(torch.nn.ParameterDict, key) else key
+
+
+def _spread(p: Any, x: torch.Tensor) -> Any:
+    """Parameters that are one number, for every sample of x (n_x, *batch): a matrix is stacked of elements of one shape."""
+    if x.ndim == 1:
+        return p
+    return Signals("parameter", {n: v.expand(x.shape[1:]) if v.ndim == 0 else v for n, v in p.items()})
 
 
 def _stacked(values: Mapping[str, Any], names: list[str], like: torch.Tensor, where: str) -> torch.Tensor:

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from greybox_torch.codegen.arrays import UnsupportedOperation
 from greybox_torch.codegen.lower import lower
-from greybox_torch.codegen.operations import UnsupportedOperation
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.native import native_stepper

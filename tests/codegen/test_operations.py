@@ -38,7 +38,7 @@ def stepper(model: GreyBoxModel) -> Stepper:
     return stepper
 
 
-@settings(max_examples=150)
+@settings(max_examples=100)
 @given(a=hundredths, b=hundredths, u=hundredths, c=st.floats(0.3, 3.0), d=st.floats(-2.0, 2.0))
 def test_value_and_derivative(
     model: GreyBoxModel, stepper: Stepper, a: np.ndarray, b: np.ndarray, u: np.ndarray, c: float, d: float

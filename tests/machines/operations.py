@@ -22,6 +22,28 @@ def pair(x):
     return torch.stack([x.a, x.b], dim=-1)
 
 
+def matrix(x, p):
+    """Diagonally dominant, (..., 2, 2)."""
+    upper = torch.stack([3.0 + x.a**2, torch.sin(x.b)], -1)
+    return torch.stack([upper, torch.stack([0.5 * torch.cos(x.a), 2.0 + p.c * x.b**2], -1)], -2)
+
+
+def larger(x, p, size):
+    """A matrix (..., size, size) whose first pivot is zero."""
+    rows = [
+        torch.stack(
+            [torch.sin(x.a * (i + 1) + j) + (4.0 if (j - i) % size == 1 else 0.0) * (1 + p.c) for j in range(size)], -1
+        )
+        for i in range(size)
+    ]
+    rows[0] = torch.cat([torch.zeros_like(rows[0][..., :1]), rows[0][..., 1:]], -1)
+    return torch.stack(rows, -2)
+
+
+def vector(x, u, size=2):
+    return torch.stack([x.a, x.b * u.u, x.a * x.b, u.u, x.b, x.a + 1.0][:size], -1)
+
+
 # Of states a and b, the input u and the parameters c (positive) and d.
 OPERATIONS = {
     "add": lambda x, u, p: x.a + p.c,
@@ -96,6 +118,23 @@ OPERATIONS = {
     "in_place": lambda x, u, p: in_place(x.a, x.b),
     "zeros_like": lambda x, u, p: torch.zeros_like(x.a) + torch.ones_like(x.b) * x.a + torch.full_like(x.a, 3.0),
     "new_zeros": lambda x, u, p: x.a.new_zeros(()) + x.b,
+    "solve": lambda x, u, p: torch.linalg.solve(matrix(x, p), vector(x, u))[..., 0] * p.d,
+    "solve_columns": lambda x, u, p: torch.linalg.solve(
+        matrix(x, p), matrix(x, p) * p.d[..., None, None] + vector(x, u)[..., None]
+    )[..., 1, 0],
+    "solve_three": lambda x, u, p: torch.linalg.solve(larger(x, p, 3), vector(x, u, 3))[..., 2],
+    "solve_six": lambda x, u, p: torch.linalg.solve(larger(x, p, 6), vector(x, u, 6)).sum(-1),
+    "inverse": lambda x, u, p: torch.linalg.inv(matrix(x, p))[..., 1, 0],
+    "determinant": lambda x, u, p: torch.linalg.det(larger(x, p, 4)),
+    "matrix_vector": lambda x, u, p: (matrix(x, p) @ vector(x, u).unsqueeze(-1)).squeeze(-1)[..., 1],
+    "matrix_matrix": lambda x, u, p: (matrix(x, p) @ matrix(x, p).mT)[..., 0, 1],
+    "constant_matrix": lambda x, u, p: (vector(x, u) @ WEIGHT)[..., 1],
+    "einsum": lambda x, u, p: torch.einsum("...ij,...j->...i", matrix(x, p), vector(x, u))[..., 0],
+    "quadratic_form": lambda x, u, p: (vector(x, u) * (vector(x, u).unsqueeze(-2) @ matrix(x, p)).squeeze(-2)).sum(-1),
+    "unbind": lambda x, u, p: vector(x, u).unbind(-1)[1],
+    "mean": lambda x, u, p: vector(x, u, 3).mean(-1),
+    "diagonal": lambda x, u, p: matrix(x, p).diagonal(dim1=-2, dim2=-1).sum(-1),
+    "diagonal_matrix": lambda x, u, p: (torch.diag_embed(vector(x, u)) @ matrix(x, p))[..., 1, 1],
     "sum": lambda x, u, p: torch.sum(pair(x), dim=-1),
     "stack_and_index": lambda x, u, p: torch.stack([x.a, x.b, u.u])[1] * x.a,
     "slice_and_cat": lambda x, u, p: torch.cat([pair(x)[..., 1:], pair(x)[..., :1]], dim=-1)[..., 0],
