@@ -90,7 +90,7 @@ class Effect:
         """The finding as a headline has it: the statement of what cannot be told apart, or the law and its place."""
         if self.one_of is None:
             return f"{spoken(self.mechanism)} at {self.port} (probability {self.probability:.2f})"
-        return f"{self.one_of.statement} (probability {self.one_of.probability:.2f}: {self.one_of.spoken_members})"
+        return f"{self.one_of.statement} (probability {self.one_of.probability:.2f}, {self.one_of.likeliest})"
 
     @property
     def sentence(self) -> str:

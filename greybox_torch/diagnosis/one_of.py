@@ -30,9 +30,11 @@ class OneOf:
     members: tuple[Alternative, ...]
 
     @property
-    def spoken_members(self) -> str:
-        """The members with their shares, for a reader."""
-        return ", ".join(f"{spoken(m.mechanism)} at {m.port} {m.probability:.2f}" for m in self.members)
+    def likeliest(self) -> str:
+        """The first member's share, for a reader of the statement."""
+        first = self.members[0]
+        named = self.statement.startswith(spoken(first.mechanism))
+        return f"{'the first' if named else f'{spoken(first.mechanism)} at {first.port}'} {first.probability:.2f}"
 
     def as_json(self) -> dict[str, Any]:
         return {

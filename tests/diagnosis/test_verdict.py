@@ -88,8 +88,10 @@ def test_what_cannot_be_told_apart_is_the_headline() -> None:
     told = verdict(replace(BACKLASH, probability=0.6, one_of=whole))
     assert told.sentence.startswith(
         "The mismatch: a coupling that is no linear spring at gear_spring or arm_spring "
-        "(probability 0.95: backlash at gear_spring 0.60, backlash at arm_spring 0.35); with it"
+        "(probability 0.95, backlash at gear_spring 0.60); with it"
     )
+    listed = replace(whole, statement="backlash at gear_spring, or backlash at arm_spring")
+    assert replace(BACKLASH, one_of=listed).headline.endswith("at arm_spring (probability 0.95, the first 0.60)")
     (effect,) = json.loads(json.dumps(told.as_json()))["effects"]
     assert effect["probability"] == 0.6
     assert effect["one_of"] == {
