@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from greybox_torch.mechanisms.friction_net import FrictionNet
     from greybox_torch.mechanisms.library import register, unregister
     from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
+    from greybox_torch.mechanisms.memory_net import MemoryNet
     from greybox_torch.mechanisms.residual_net import ResidualNet
     from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Input, Output, Parameter, Signals, State
     from greybox_torch.report.comparison import plot_comparison
@@ -72,6 +73,7 @@ __all__ = [
     "Input",
     "InspectionResult",
     "Mechanism",
+    "MemoryNet",
     "NewModel",
     "NumericalError",
     "Output",
@@ -139,6 +141,7 @@ _HOME_OF = {
     "Input": "greybox_torch.model",
     "InspectionResult": "greybox_torch.api.inspect",
     "Mechanism": "greybox_torch.mechanisms.mechanism",
+    "MemoryNet": "greybox_torch.mechanisms.memory_net",
     "NewModel": "greybox_torch.api.new",
     "NumericalError": "greybox_torch.errors",
     "Output": "greybox_torch.model",

@@ -168,7 +168,11 @@ def diagnose(
 def train(
     dataset: DataSetFile,
     net: Annotated[
-        str, typer.Option(metavar="friction|residual", help="A body's friction, or any extra force at any port.")
+        str,
+        typer.Option(
+            metavar="friction|residual|memory",
+            help="A body's friction, any extra force at a port, or one that remembers.",
+        ),
     ] = "friction",
     port: Annotated[
         str | None, typer.Option(metavar="PORT", help="Where it acts.", show_default="the driving body")
@@ -180,6 +184,7 @@ def train(
     units: Annotated[int, typer.Option(min=1, max=256, help="Hidden units of the network.")] = 8,
     odd: Annotated[bool, typer.Option(help="The same friction in both directions.")] = True,
     dissipative: Annotated[bool, typer.Option(help="Friction that never drives, whatever the weights.")] = True,
+    memories: Annotated[int, typer.Option(min=1, max=4, help="Hidden states of a network with memory.")] = 1,
     gradient: Annotated[
         str,
         typer.Option(metavar="tangents|recomputation|odeint_adjoint", help="How a gradient is computed."),
@@ -206,12 +211,12 @@ def train(
     """Train a small network at a port of the model, for physics that has no name yet."""
     from greybox_torch.commands import train
 
-    friction = {"odd": odd, "dissipative": dissipative} if net == "friction" else {}
+    own = {"friction": {"odd": odd, "dissipative": dissipative}, "memory": {"memories": memories}}.get(net, {})
     choices = train.Choices(
         net=net,
         port=port,
         signals=tuple(s.strip() for s in signals.split(",")) if signals else (),
-        network={"units": units, **friction},
+        network={"units": units, **own},
         training={"epochs": epochs, "gradient": gradient, "freeze_physics": freeze_physics},
         resume=resume,
         tensorboard=tensorboard,

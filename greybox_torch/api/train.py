@@ -51,10 +51,11 @@ def train(
     Args:
         model: the physics, estimated first, from the values that it holds: those set by ``set_values()``, else the start values of the data
             set's card, else the declared ones. It stays as it is; the result's ``model`` is a copy with the trained network.
-        net: "friction" (a body's speed, and what else is asked for) or "residual" (any signals at any port).
+        net: "friction" (a body's speed, and what else is asked for) or "residual" (any signals at any port), or "memory" (the
+            same with hidden states).
         port: where it acts; the driving body by default.
         signals: what it reads, by their names at the port; by default the usual ones of such a port.
-        network: further arguments of :class:`FrictionNet` or :class:`ResidualNet`: units, odd, dissipative.
+        network: further arguments of :class:`FrictionNet`, :class:`ResidualNet` or :class:`MemoryNet`: units, odd, dissipative, memories.
         settings: of the training, its seed among them.
         explain: compare what was learned with every law of the library, and put the nearest in the network's place.
         ensemble: how many trainings, with seeds from that of the settings on, the band of the learned curve is from.

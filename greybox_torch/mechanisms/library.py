@@ -24,6 +24,7 @@ from greybox_torch.mechanisms.friction import (
 from greybox_torch.mechanisms.friction_net import FrictionNet
 from greybox_torch.mechanisms.gravity import Gravity
 from greybox_torch.mechanisms.mechanism import Mechanism
+from greybox_torch.mechanisms.memory_net import MemoryNet
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorGain, SensorLag
@@ -69,7 +70,7 @@ LIBRARY: dict[str, type[Mechanism]] = {
     )
 }
 
-LEARNED: dict[str, type[Mechanism]] = {curve.name: curve for curve in (Unknown, FrictionNet, ResidualNet)}
+LEARNED: dict[str, type[Mechanism]] = {curve.name: curve for curve in (Unknown, FrictionNet, ResidualNet, MemoryNet)}
 """Curves and networks that are learned where no law has a name; never hypotheses of their own."""
 
 

@@ -14,6 +14,7 @@ from greybox_torch.estimate.shifted_states import shifted_state
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.matching import Match, kinematic_laws, matching_laws, worth_a_refit
+from greybox_torch.mechanisms.memory_net import MemoryNet
 from greybox_torch.model import Coupling
 from greybox_torch.training.hybrid import port_named
 from greybox_torch.training.learned_force import LearnedForce, SignalCurve, curves_of, force_at, learned_force
@@ -29,6 +30,7 @@ class Explanation:
     ``curves`` over each of its signals, with their shares; ``members`` how many trainings the band is from: of one it is the parameters'
     covariance alone, of several what they differ by is added. ``matches`` compares every law of the library that depends on these
     signals alone with the learned force; ``terms`` are the best of them in the network's place, best on held-out stretches first.
+    ``memories`` are the time constants, in s, of a network with hidden states, which no curve stands for.
     ``term`` is the one that makes the network needless, estimated on all samples as ``result``; None where none does.
     """
 
@@ -38,10 +40,14 @@ class Explanation:
     terms: tuple[NamedTerm, ...] = ()
     term: NamedTerm | None = None
     result: Estimation | None = None
+    memories: tuple[float, ...] = ()
 
     @property
     def sentence(self) -> str:
         """What to do with the network, in a sentence."""
+        if self.memories:
+            told = " and ".join(f"{t:.2g} s" for t in self.memories)
+            return f"The network remembers over {told}: no curve over its signals stands for it. Keep the network."
         if not self.curves:
             return "There is nothing to explain: the network was left at zero."
         if self.term is not None:
@@ -83,6 +89,8 @@ def explain(
     """
     if found.physics_chosen:
         return Explanation()
+    if isinstance(found.hybrid.network.mechanism, MemoryNet):
+        return Explanation(memories=_memories(found))
     told("explaining: the learned curve")
     first = learned_force(found)
     others = [other for other in others if not other.physics_chosen]
@@ -96,6 +104,12 @@ def explain(
         told(f"explaining: {term.attachment.prefix} on all samples")
     result = None if term is None else on_all_samples(term, found)
     return Explanation(curves, len(members), matches, terms, term, result)
+
+
+def _memories(found: Trained) -> tuple[float, ...]:
+    """The time constants of a network with hidden states, s."""
+    problem, start = found.result.problem, f"{found.hybrid.network.prefix}.T_"
+    return tuple(float(v) for n, v in zip(problem.names, problem.values, strict=True) if n.startswith(start))
 
 
 def needless(terms: Sequence[NamedTerm], found: Trained) -> NamedTerm | None:

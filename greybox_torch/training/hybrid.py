@@ -13,12 +13,13 @@ from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.friction_net import FrictionNet
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
+from greybox_torch.mechanisms.memory_net import MemoryNet
 from greybox_torch.mechanisms.network import Network
 from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.model import GreyBoxModel, Port
 from greybox_torch.model.ports import driving_body
 
-NETWORKS: dict[str, type[Network]] = {"friction": FrictionNet, "residual": ResidualNet}
+NETWORKS: dict[str, type[Network]] = {"friction": FrictionNet, "residual": ResidualNet, "memory": MemoryNet}
 """By the name that users choose them by."""
 
 USUAL_SIGNALS = {
@@ -70,7 +71,7 @@ def default_port(model: GreyBoxModel, net: str) -> str:
 
 
 def make_network(net: str, port: Port, signals: Sequence[str], **options: object) -> Network:
-    """A network for ``port``: "friction" or "residual", reading ``signals`` (the usual ones of such a port where there are none).
+    """A network for ``port``: "friction", "residual" or "memory", reading ``signals`` (the usual ones of such a port where there are none).
 
     Raises:
         UserError: no such network, or one that does not belong at such a port.

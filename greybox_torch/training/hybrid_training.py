@@ -53,10 +53,12 @@ def train_hybrid(
     """Estimate ``model`` on the experiments of role "estimation", attach a network, and train it.
 
     Args:
-        net: "friction" (a body's speed, and what else is asked for) or "residual" (any signals at any port).
+        net: "friction" (a body's speed, and what else is asked for) or "residual" (any signals at any port), or "memory" (the
+            same with hidden states).
         port: where; the driving body by default.
         signals: what it reads, by their names at the port.
-        network: further arguments of :class:`FrictionNet` or :class:`ResidualNet`: units, seed, odd, dissipative.
+        network: further arguments of :class:`FrictionNet`, :class:`ResidualNet` or :class:`MemoryNet`: units, seed, odd, dissipative,
+            memories.
         physics: ``model`` as :func:`fit_physics` has estimated it before, so that several trainings share that; estimated here otherwise.
         progress: is called with what is being done, and at the end of every epoch.
         snapshot: a file that the training can be taken up from; it is written at most every half a second.

@@ -16,6 +16,7 @@ from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.friction_net import FrictionNet
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
+from greybox_torch.mechanisms.memory_net import MemoryNet
 from greybox_torch.mechanisms.network import Network
 from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.mechanisms.stored import attachment_json, restored_model
@@ -49,6 +50,7 @@ EVERY = [
     FrictionNet(dissipative=False),
     FrictionNet(("speed", "load"), odd=False, dissipative=False),
     ResidualNet(("speed", "position"), units=5),
+    MemoryNet(("speed",), units=3, memories=2),
 ]
 every = pytest.mark.parametrize("net", EVERY, ids=lambda n: "-".join(map(str, n.options().values())))
 
@@ -63,7 +65,8 @@ def weights(net: Network, seed: int, size: float = 1.0) -> dict[str, float]:
 def force(net: Network, values: dict[str, float], **signals: Any) -> np.ndarray:
     p = Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in values.items()})
     s = Signals("signal", {n: torch.as_tensor(np.asarray(v, dtype=float)) for n, v in signals.items()})
-    return np.asarray(net.force(s, p, Signals("memory", {})))
+    z = Signals("memory", {state.name: torch.tensor(0.3, dtype=torch.float64) for state in net.states(AROUND)})
+    return np.asarray(net.force(s, p, z))
 
 
 SPEEDS = np.linspace(-60.0, 60.0, 241)
