@@ -31,6 +31,10 @@ def operand(graph: Graph, value: Any) -> np.ndarray:
 
 def mapped(function: Callable[..., Any], *arrays: np.ndarray) -> np.ndarray:
     """Apply ``function`` over broadcast arrays of objects."""
+    if all(np.ndim(a) == 0 for a in arrays):  # by far the most
+        single = np.empty((), dtype=object)
+        single[()] = function(*[np.asarray(a, dtype=object)[()] for a in arrays])
+        return single.view(NodeArray)
     pieces = np.broadcast_arrays(*[np.asarray(a, dtype=object) for a in arrays])
     result = np.empty(pieces[0].shape, dtype=object)
     for index in np.ndindex(result.shape):

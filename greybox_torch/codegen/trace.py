@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import torch
-from torch.utils._pytree import tree_map
 
 from greybox_torch.codegen.arrays import NodeArray, UnsupportedOperation, constants
 from greybox_torch.codegen.expression import Graph
@@ -71,7 +70,7 @@ def _symbols_of(graph: Graph, result: Any) -> Any:
 
 
 def _handled(handler: Callable[..., Any], name: str, graph: Graph, args: Any, kwargs: Any) -> Any:
-    operands, named = tree_map(lambda a: _nodes_of(graph, a), (args, kwargs))
+    operands, named = _mapped(lambda a: _nodes_of(graph, a), (args, kwargs))
     try:
         result = handler(graph, *operands, **named)
         return result if isinstance(result, tuple) else np.asarray(result, dtype=object)
@@ -93,8 +92,17 @@ def symbols(graph: Graph, kind: str, count: int) -> Symbol:
 
 def _graph_of(args: Any, kwargs: Any) -> Graph:
     found: list[Graph] = []
-    tree_map(lambda a: found.append(a.graph) if isinstance(a, Symbol) else None, (args, kwargs))
+    _mapped(lambda a: found.append(a.graph) if isinstance(a, Symbol) else None, (args, kwargs))
     return found[0]
+
+
+def _mapped(function: Callable[[Any], Any], value: Any) -> Any:
+    """What ``function`` makes of an operation's arguments, within lists and dictionaries too; faster than torch's tree_map."""
+    if type(value) in (tuple, list):
+        return type(value)([_mapped(function, v) for v in value])
+    if type(value) is dict:
+        return {name: _mapped(function, v) for name, v in value.items()}
+    return function(value)
 
 
 def _nodes_of(graph: Graph, value: Any) -> Any:

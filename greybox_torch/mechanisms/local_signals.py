@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from greybox_torch.mechanisms.attachment import Attachment
@@ -21,6 +21,7 @@ class LocalSignals:
         self.attachments = tuple(attachments)
         self.surroundings = surroundings
         self.ports: dict[str, Port] = {port.name: port for port in base.all_ports}
+        self._grouped: tuple[tuple[str, ...], dict[str, dict[str, str]]] = ((), {})
 
     def at(self, a: Attachment, x: Any, u: Any, p: Any) -> Signals:
         """The signals at the port of an attachment."""
@@ -55,10 +56,10 @@ class LocalSignals:
 
     def parameters(self, a: Attachment, p: Signals) -> Signals:
         """The mechanism's own parameters, by their short names."""
-        start = f"{a.prefix}."
-        return Signals(
-            "parameter", {name.removeprefix(start): value for name, value in p.items() if name.startswith(start)}
-        )
+        names = tuple(p)
+        if names != self._grouped[0]:
+            self._grouped = names, _by_prefix(names, {one.prefix for one in self.attachments})
+        return Signals("parameter", {short: p[name] for short, name in self._grouped[1][a.prefix].items()})
 
     def memory(self, a: Attachment, x: Signals) -> Signals:
         """The mechanism's own states, by their short names."""
@@ -96,3 +97,14 @@ class LocalSignals:
 def value_of(signal: Signal, x: Any, u: Any, p: Any) -> Any:
     """The value of a port's signal: a state, or a function of states, inputs and parameters."""
     return x[signal] if isinstance(signal, str) else signal(x, u, p)
+
+
+def _by_prefix(names: Sequence[str], prefixes: Collection[str]) -> dict[str, dict[str, str]]:
+    """The full names by short ones of what begins with every prefix. (A screen has hundreds of effects and thousands of parameters.)"""
+    found: dict[str, dict[str, str]] = {prefix: {} for prefix in prefixes}
+    for name in names:
+        parts = name.split(".")
+        for k in range(1, len(parts)):
+            if (prefix := ".".join(parts[:k])) in found:
+                found[prefix][".".join(parts[k:])] = name
+    return found

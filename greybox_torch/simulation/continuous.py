@@ -11,6 +11,7 @@ Source: P. Deuflhard, "Newton Methods for Nonlinear Problems", 2004, ch. 2 (simp
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -40,10 +41,11 @@ class Chain:
     windows: Windows
     order: np.ndarray
 
-    def links(self, position: int) -> tuple[np.ndarray, np.ndarray]:
-        """Indices of the windows at a position, and of those that follow them, where one follows."""
-        followed = self.order[:, position + 1] >= 0
-        return self.order[followed, position], self.order[followed, position + 1]
+    @cached_property
+    def links(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """By position, indices of the windows there and of those that follow them, where one follows."""
+        pairs = zip(self.order.T[:-1], self.order.T[1:], strict=True)
+        return [(now[following >= 0], following[following >= 0]) for now, following in pairs]
 
     @property
     def experiment(self) -> np.ndarray:
@@ -137,8 +139,7 @@ def sequential_starts(
     windows = links.windows
     starts = np.empty((len(windows.start), x0.shape[1]))
     starts[links.order[:, 0]] = x0
-    for position in range(links.order.shape[1] - 1):
-        now, following = links.links(position)
+    for now, following in links.links:
         part = Windows(windows.start[now], windows.last[now], windows.steps)
         starts[following] = simulator.run(records, Pass(part, p, starts[now])).x_end
     return starts
@@ -154,8 +155,7 @@ def propagated(links: Chain, first: np.ndarray, own: np.ndarray, transitions: np
     """
     result = np.zeros((*own.shape[:2], first.shape[2]))
     result[links.order[:, 0]] = first
-    for position in range(links.order.shape[1] - 1):
-        now, following = links.links(position)
+    for now, following in links.links:
         result[following, :, : own.shape[2]] = own[now] + result[now] @ transitions[now]
     return result
 
@@ -178,8 +178,7 @@ def _relative(gaps: np.ndarray, starts: np.ndarray) -> float:
 def _corrections(links: Chain, transitions: np.ndarray, gaps: np.ndarray) -> np.ndarray:
     """Newton's step (W, n_t) of the window starts: δ of the next = Φ δ + gap."""
     steps, acting = np.zeros_like(gaps), gaps.shape[1]
-    for position in range(links.order.shape[1] - 1):
-        now, following = links.links(position)
+    for now, following in links.links:
         steps[following] = gaps[following] + (steps[now, None, :] @ transitions[now, :acting])[:, 0]
     return steps
 

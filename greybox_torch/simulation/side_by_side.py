@@ -10,6 +10,7 @@ import os
 import threading
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
 from typing import TypeVar
 
 Result = TypeVar("Result")
@@ -21,7 +22,13 @@ def cores() -> int:
     """Cores that the present thread may use: one within :func:`side_by_side`, else all (or what OMP_NUM_THREADS says)."""
     if getattr(_here, "beside_others", False):
         return 1
-    return max(1, int(os.environ.get("OMP_NUM_THREADS", os.cpu_count() or 1)))
+    return max(1, int(os.environ.get("OMP_NUM_THREADS") or _of_the_machine()))
+
+
+@lru_cache(maxsize=1)
+def _of_the_machine() -> int:
+    """Asked once: the system takes as long to answer as a third of a short pass."""
+    return os.cpu_count() or 1
 
 
 def side_by_side(tasks: Iterable[Callable[[], Result]]) -> list[Result]:
