@@ -138,13 +138,9 @@ def actuator(
     late, slow = (port, "input_delay"), (port, "input_lag")
     found = {
         f"{channel}_delay": Entry(
-            change("delay", lambda g, c: g.uniform(*timing)), (late,), (slow, (port, "unknown")), family=family
+            change("delay", lambda g, c: g.uniform(*timing)), (late,), (slow, (port, "unknown")), family=f"{family} late"
         ),
-        f"{channel}_lag": Entry(change("lag", lambda g, c: g.uniform(*timing)), (slow,), (late,), family=family),
-        f"{channel}_lag_delay": Entry(
-            lambda g, c: Concealed(actuators={channel: {"delay": g.uniform(*timing), "lag": g.uniform(*timing)}}),
-            (late, slow), ports=(port,), family=family,
-        ),
+        f"{channel}_lag": Entry(change("lag", lambda g, c: g.uniform(*timing)), (slow,), (late,), family=f"{family} slow"),
     }  # fmt: skip
     if limit:
         found[f"{channel}_limit"] = Entry(

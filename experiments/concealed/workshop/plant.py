@@ -53,8 +53,13 @@ class Concealed:
 
     def join(self, other: Concealed) -> Concealed:
         return Concealed(
-            self.laws + other.laws, {**self.actuators, **other.actuators}, {**self.sensors, **other.sensors}
+            self.laws + other.laws, _both(self.actuators, other.actuators), _both(self.sensors, other.sensors)
         )
+
+
+def _both(some: Mapping[str, dict[str, float]], others: Mapping[str, dict[str, float]]) -> dict[str, dict[str, float]]:
+    """The changes of both, by channel."""
+    return {name: {**some.get(name, {}), **others.get(name, {})} for name in {**some, **others}}
 
 
 @dataclass(frozen=True)
