@@ -120,7 +120,8 @@ def _fresh(options: argparse.Namespace) -> int:
     if options.family == WORKSHOP:
         from experiments.concealed.workshop.draw import write_workshop
 
-        write_workshop(options.seed, count, options.out, strength=options.strength, tell=print)
+        chosen = listed_effects(options.effects or "")
+        write_workshop(options.seed, count, options.out, effects=chosen, strength=options.strength, tell=print)
         return 0
     effects = listed_effects(options.effects or "")
     planned = fresh_plans(options.family, options.seed, count, effects=effects, strength=options.strength)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -44,22 +44,47 @@ class Drawn:
     word: str
 
 
-def write_workshop(seed: int, cases: int, out: Path, *, strength: str, tell: Callable[[str], None]) -> None:
-    """Draw and write `cases` cases, going round the machines."""
-    names = list(WORKSHOP)
+def write_workshop(
+    seed: int,
+    cases: int,
+    out: Path,
+    *,
+    effects: Sequence[tuple[str, ...]] = (),
+    strength: str,
+    tell: Callable[[str], None],
+) -> None:
+    """Draw and write `cases` cases, going round the machines, and round `effects` where there are any.
+
+    Raises:
+        ValueError: no machine has all effects of a case.
+    """
     for number in range(cases):
         rng = np.random.default_rng(SeedSequence([seed, 5, number]))
-        machine = WORKSHOP[names[(number + seed) % len(names)]]
-        key = write_case(out / f"c{number:03d}", machine, rng, seed=seed, number=number, strength=strength)
+        wanted = effects[number % len(effects)] if effects else None
+        able = [m for m in WORKSHOP.values() if set(wanted or ()) <= set(m.catalogue)]
+        if not able:
+            known = sorted({name for m in WORKSHOP.values() for name in m.catalogue})
+            raise ValueError(f"--effects: no machine has {'+'.join(wanted or ())}; there are none, {', '.join(known)}")
+        machine = able[(number + seed) % len(able)]
+        plan = None if wanted is None else {name: machine.catalogue[name] for name in wanted}
+        folder = out / f"c{number:03d}"
+        key = write_case(folder, machine, rng, seed=seed, number=number, strength=strength, plan=plan)
         tell(f"c{number:03d} {machine.name} {'+'.join(key['effects'])} {key['strength']} {key['visibility']:.3g}")
 
 
 def write_case(
-    folder: Path, machine: Machine, rng: Generator, *, seed: int, number: int, strength: str
+    folder: Path,
+    machine: Machine,
+    rng: Generator,
+    *,
+    seed: int,
+    number: int,
+    strength: str,
+    plan: Mapping[str, Entry] | None = None,
 ) -> dict[str, Any]:
-    """Draw, simulate and write one case. Returns its key."""
+    """Draw, simulate and write one case, with what is concealed drawn as well where there is no `plan`. Returns its key."""
     while True:
-        made = _draw(machine, rng, strength)
+        made = _draw(machine, rng, strength, plan)
         if made is not None:
             break
     folder.mkdir(parents=True, exist_ok=True)
@@ -92,7 +117,7 @@ def write_case(
     return key
 
 
-def _draw(machine: Machine, rng: Generator, strength: str) -> Drawn | None:
+def _draw(machine: Machine, rng: Generator, strength: str, given: Mapping[str, Entry] | None) -> Drawn | None:
     """One draw; None where the machine cannot be simulated so, or the effect cannot be seen."""
     truth = machine.draw_truth(rng)
     drives = [machine.drive(rng, j, truth) for j in range(machine.experiments)]
@@ -104,7 +129,7 @@ def _draw(machine: Machine, rng: Generator, strength: str) -> Drawn | None:
         np.stack([run.inputs for run in plain]),
         np.stack([run.outputs for run in plain]),
     )
-    plan = _plan(machine, rng)
+    plan = _plan(machine, rng) if given is None else given
     word = strength if strength != "drawn" else str(rng.choice(list(STRENGTHS)))
     hidden = Concealed()
     for entry in plan.values():
