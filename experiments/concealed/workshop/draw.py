@@ -98,12 +98,15 @@ def write_case(
     for j, run in enumerate(made.runs):
         write_table(folder / f"e{j}.csv", machine, run, scales)
     (folder / "dataset.toml").write_text(card_text(machine, rng, made.truth, scales), encoding="utf-8")
+    whole = {name: (entry, *entry.beside) for name, entry in made.plan.items()}
+    names = [name + "+" * i for name, some in whole.items() for i in range(len(some))]
+    entries = [entry for some in whole.values() for entry in some]
     key = {
-        "effects": list(made.plan) or ["none"],
-        "accept": [[list(pair) for pair in e.accept] for e in made.plan.values()] or [[]],
-        "near": [[list(pair) for pair in e.near] for e in made.plan.values()] or [[]],
-        "ports": [list(e.places) for e in made.plan.values()] or [[]],
-        "outside": [e.outside for e in made.plan.values()] or [False],
+        "effects": names or ["none"],
+        "accept": [[list(pair) for pair in e.accept] for e in entries] or [[]],
+        "near": [[list(pair) for pair in e.near] for e in entries] or [[]],
+        "ports": [list(e.places) for e in entries] or [[]],
+        "outside": [e.outside for e in entries] or [False],
         "sigma": {c.name: float(s) for c, s in zip(machine.outputs, made.sigma, strict=True)},
         "machine": machine.name,
         "strength": made.word,

@@ -16,12 +16,21 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True)
 class Place:
-    """A port, and what is usual there: the force that matters. `behind`: ports of bodies that move nearly alike."""
+    """A port, and what is usual there: the force that matters.
+
+    `behind`: ports of bodies that move nearly alike; `drive`: the actuator whose input is a force on this very body.
+    """
 
     name: str
     port: Port
     force: Range
     behind: tuple[str, ...] = ()
+    drive: str = ""
+
+    @property
+    def pushed(self) -> tuple[Pair, ...]:
+        """A bias of the drive is a constant force on the body."""
+        return ((self.drive, "input_bias"),) if self.drive else ()
 
 
 def _at(place: Place, draw: Callable[[Generator, Seen], laws.PortLaw]) -> Callable[[Generator, Seen], Concealed]:
@@ -74,7 +83,9 @@ def dry(place: Place) -> dict[str, Entry]:
                     lambda level: laws.uneven(level, level * g.uniform(0.4, 0.8) * (1 if g.random() < 0.5 else -1))
                 )(g.uniform(*place.force)),
             ),
-            _pairs(place, "coulomb_asymmetry"), _pairs(place, *DRY) + _behind(place, "coulomb_asymmetry"), family=name,
+            _pairs(place, *DRY), near, family=name,
+            # where dry friction truly sticks, levels that differ are a bias beside their mean
+            beside=(Entry(_at(place, lambda g, c: laws.coulomb(0.0)), _pairs(place, "coulomb_asymmetry", "constant_bias") + place.pushed),),
         ),
     }  # fmt: skip
 
@@ -125,8 +136,9 @@ def actuator(
     dead: bool = True,
     limit: bool = True,
     level: bool = True,
+    body: str = "",
 ) -> dict[str, Entry]:
-    """Delay, lag, limit, dead zone, gain and bias of an input. `timing`: of delay and lag [s]."""
+    """Delay, lag, limit, dead zone, gain and bias of an input. `timing`: of delay and lag [s]; `body`: on which it is a force."""
 
     def change(name: str, value: Callable[[Generator, Seen], float]) -> Callable[[Generator, Seen], Concealed]:
         return lambda g, c: Concealed(actuators={channel: {name: float(value(g, c))}})
@@ -160,7 +172,7 @@ def actuator(
     if level:
         found[f"{channel}_bias"] = Entry(
             change("bias", lambda g, c: peak(c) * g.uniform(0.03, 0.1) * (1 if g.random() < 0.5 else -1)),
-            ((port, "input_bias"),), ports=(port,), family=family,
+            ((port, "input_bias"), *([(body, "constant_bias")] if body else [])), family=family,
         )  # fmt: skip
     return found
 

@@ -91,6 +91,8 @@ class Entry:
     ports: tuple[str, ...] = ()
     family: str = ""
     outside: bool = False
+    beside: tuple[Entry, ...] = ()
+    """What comes with it and has a name of its own."""
 
     @property
     def places(self) -> tuple[str, ...]:

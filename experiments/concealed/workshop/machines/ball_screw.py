@@ -16,7 +16,7 @@ LEAD = 0.01 / (2.0 * np.pi)
 MOTOR = Port(lambda s, p: s[0], lambda s, p: s[2])
 TABLE = Port(lambda s, p: s[1], lambda s, p: s[3])
 BELT = Port(lambda s, p: LEAD * s[0] - s[1], lambda s, p: LEAD * s[2] - s[3], sign=1.0)
-ROTOR = entries.Place("rotor", MOTOR, (0.02, 0.08))
+ROTOR = entries.Place("rotor", MOTOR, (0.02, 0.08), drive="actuator")
 SLIDE = entries.Place("slide", TABLE, (15.0, 60.0))
 BELTED = entries.Place("belt", BELT, (20.0, 80.0))
 
@@ -48,7 +48,7 @@ class BallScrew(Machine):
             BELTED, "bouc_wen", lambda g, c: laws.bouc_wen(g.uniform(30, 90), g.uniform(5e-6, 2e-5)), ("hysteretic_spring",),
             ("backlash", "nonlinear_stiffness", "nonlinear_damping", "unknown"),
         ),
-        **entries.actuator("actuator", "torque", index=0, timing=(0.0005, 0.003), gain=True),
+        **entries.actuator("actuator", "torque", index=0, timing=(0.0002, 0.003), body="rotor", gain=True),
         **entries.sensor("sensor.position", "position", timing=(0.001, 0.004)),
     }  # fmt: skip
 

@@ -13,7 +13,7 @@ from experiments.concealed.workshop.signals import path, shaking, sweep
 
 ARM = Port(lambda s, p: s[0], lambda s, p: s[2])
 ROD = Port(lambda s, p: s[1], lambda s, p: s[3])
-HUB = entries.Place("arm", ARM, (0.004, 0.02))
+HUB = entries.Place("arm", ARM, (0.004, 0.02), drive="actuator")
 HINGE = entries.Place("pendulum", ROD, (0.0004, 0.002))
 COUNT = 2.0 * pi / 2048
 
@@ -41,7 +41,7 @@ class Furuta(Machine):
         **entries.one(
             HUB, "cogging", lambda g, c: laws.ripple(g.uniform(0.006, 0.02), 12.0, g.uniform(0, 6.28)), ("torque_ripple",)
         ),
-        **entries.actuator("actuator", "voltage", index=0, timing=(0.003, 0.015), gain=True),
+        **entries.actuator("actuator", "voltage", index=0, timing=(0.003, 0.015), body="arm", gain=True),
         **entries.sensor("sensor.pendulum", "pendulum", timing=(0.004, 0.02)),
     }  # fmt: skip
 

@@ -41,7 +41,9 @@ class VoiceCoil(Machine):
         **entries.sensor("sensor.position", "position", timing=(0.0005, 0.003)),
         "current_low": entries.Entry(
             lambda g, c: entries.Concealed(sensors={"current": {"gain": 1.0 - g.uniform(0.08, 0.2)}}),
-            (("sensor.current", "sensor_gain"),), family="sensor current",
+            # force and back-EMF have one constant: any gain on the way tells the same
+            (("sensor.current", "sensor_gain"), ("sensor.position", "sensor_gain"), ("actuator", "input_gain")),
+            family="sensor current",
         ),
     }  # fmt: skip
 

@@ -15,7 +15,7 @@ RADIUS, MASS, G = 0.1, 80.0, 9.81
 DRUM = Port(lambda s, p: s[0], lambda s, p: s[2])
 LOAD = Port(lambda s, p: s[1], lambda s, p: s[3])
 ROPE = Port(lambda s, p: RADIUS * s[0] - s[1], lambda s, p: RADIUS * s[2] - s[3], sign=1.0)
-BEARING = entries.Place("drum", DRUM, (3.0, 12.0))
+BEARING = entries.Place("drum", DRUM, (3.0, 12.0), drive="actuator")
 GUIDE = entries.Place("load", LOAD, (30.0, 120.0))
 STRAND = entries.Place("rope", ROPE, (50.0, 150.0))
 
@@ -42,7 +42,7 @@ class Winch(Machine):
             STRAND, "one_way", lambda g, c: laws.one_way_damper(g.uniform(200, 800)), ("nonlinear_damping",), ("unknown",)
         ),
         **entries.drag(GUIDE, force=(30.0, 120.0)),
-        **entries.actuator("actuator", "torque", index=0, timing=(0.004, 0.02), gain=True, dead=False),
+        **entries.actuator("actuator", "torque", index=0, timing=(0.001, 0.02), body="drum", gain=True, dead=False),
         **entries.sensor("sensor.force", "force", timing=(0.008, 0.03)),
     }  # fmt: skip
 
