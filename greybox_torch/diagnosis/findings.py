@@ -68,7 +68,7 @@ def find(dataset: DataSet, model: GreyBoxModel, make_study: MakeStudy, clock: St
     clock.lap("confirming on held-out experiments")
     (plain, augmented), fitted = _finished(unlimited, state)
     clock.lap("final fits on whole records")
-    judge = partial(_judged, unlimited, dataset, problem, plain)
+    judge = partial(_judged, unlimited, dataset, problem, others, plain)
     again = partial(judge, state, gains, augmented)
     (state, gains, judged), was_judged = or_else(again, again)
     clock.lap("validation and report data")
@@ -136,6 +136,7 @@ def _judged(
     study: Study,
     dataset: DataSet,
     problem: Problem,
+    others: HeldOut | None,
     plain: Final,
     state: SearchState,
     gains: Mapping[str, Gain],
@@ -150,9 +151,10 @@ def _judged(
             state = result_of(drop_superfluous(study, state))
         if empty is not None and empty in state.prefixes:
             state = result_of(drop(study, state, empty))
-            gains = {n: g for n, g in gains.items() if n in state.prefixes}
         else:
-            state, gains = take_back_weakest(study, state, gains)
+            state = take_back_weakest(study, state, gains)
+        # What one of several accounts for, others may take over.
+        gains = held_out_gains(state, others) if others is not None and state.effects else {}
         augmented = finish(state.current, study.settings, study.budget) if state.effects else plain
         judged = judge(state, plain, augmented)
     return state, gains, judged

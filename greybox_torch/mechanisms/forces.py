@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import torch
 
 from greybox_torch.mechanisms.degenerate import beyond, not_a_frequency_of_the_record, not_seen_to_repeat
 from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals, State
+
+KNOWN_PLACE = 0.01
+"""Share of the travel within which a stop has to be known to stand."""
 
 
 class ConstantBias(LinearLaw):
@@ -107,6 +111,14 @@ class EndStop(Mechanism):
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return beyond("where", values["where"], around, "position")
+
+    def degenerate(
+        self, around: Surroundings, values: Mapping[str, float], deviations: Mapping[str, float]
+    ) -> str | None:
+        """Of a rigid stop no recording tells how stiff it is, only that it is stiff: what counts is whether its place is known."""
+        placed = deviations.get("where", np.inf) < KNOWN_PLACE * around.ranges["position"].span
+        told = {name: d for name, d in deviations.items() if not (placed and name == "k")}
+        return super().degenerate(around, values, told)
 
     def signals(self) -> tuple[str, ...]:
         return ("position",)

@@ -108,6 +108,14 @@ def test_zero_is_a_natural_bound_and_so_is_true_sticking(around: Surroundings) -
     assert law_of("end_stop").degenerate(around, values, small(values)) is None
 
 
+def test_how_stiff_a_rigid_stop_is_need_not_be_known_where_it_stands_has_to(around: Surroundings) -> None:
+    law, values = law_of("end_stop"), SOUND["end_stop"]
+    rigid = {**small(values), "k": 2.0 * values["k"]}
+    assert law.degenerate(around, values, rigid) is None
+    nowhere = {**rigid, "where": 0.1 * around.ranges["position"].span}
+    assert "k = " in str(law.degenerate(around, values, nowhere))
+
+
 @pytest.mark.parametrize(("name", "shape"), [("nonlinear_stiffness", "d_0"), ("nonlinear_damping", "r_0")])
 @pytest.mark.parametrize("end", [0, 1])
 def test_the_shape_of_a_part_that_is_not_needed_may_sit_at_its_end(name: str, shape: str, end: int, around) -> None:

@@ -9,6 +9,7 @@ from functools import partial, reduce
 import numpy as np
 
 from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.confirm.along_free_runs import along_free_runs, free_run_states
 from greybox_torch.diagnosis.confirm.start_positions import placed
 from greybox_torch.diagnosis.effect import Timeline
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, lengths
@@ -16,6 +17,7 @@ from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.initial import estimate_initial
+from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 from greybox_torch.simulation.simulator import Simulator
@@ -104,7 +106,7 @@ def held_out_fits(
     fixed = replace(restated, free=np.zeros_like(restated.free))
     started = estimate_initial(fixed, simulator)
     shortest, *longer = lengths(problem, budget)
-    short = placed(started, simulator, shortest, budget)
+    short = placed(started, simulator, shortest, budget) or along_free_runs(started, simulator, shortest, budget)
     if short is None or not longer:
         return () if short is None else (short,)
     found: list[WindowFit] = []
@@ -112,6 +114,7 @@ def held_out_fits(
         there = placed(short.problem, simulator, length, budget, shorter=short) or short
         fit = partial(fit_windows, there.problem, simulator, length, settings=budget.window_iterations)
         ended = reduce(_window_by_window, (fit(shorter=there), fit(shorter=short), fit()))
+        ended = _no_worse_than_free_runs(ended, started, simulator, length, budget)
         if ended is not None:
             found.append(ended)
             short = replace(short, problem=ended.problem)
@@ -130,6 +133,24 @@ def _window_by_window(one: WindowFit | None, other: WindowFit | None) -> WindowF
     share = float(energies.sum()) / max(float(one.energies.sum()), 1e-300)
     starts = np.where(better[:, None], other.starts, one.starts)
     return replace(one, starts=starts, energies=energies, mean_square=share * one.mean_square)
+
+
+def _no_worse_than_free_runs(
+    fit: WindowFit | None, started: Problem, simulator: Simulator, length: int, budget: SearchBudget
+) -> WindowFit | None:
+    """A fit, where free runs of the whole experiments pass through a window nearer to the measurements continued from there.
+
+    Where friction holds, or a sensor is coarse, start states from the measurements of a window alone may end in a local minimum, beside
+    which the model's own free run is right.
+    """
+    starts = None if fit is None else free_run_states(started, simulator, fit.windows)
+    if fit is None or starts is None:
+        return fit
+    along = partial(fit_windows, fit.problem, simulator, length, starts=starts)
+    there = along(settings=Settings(iterations=0))
+    if there is None or (there.energies >= fit.energies).all():
+        return fit
+    return _window_by_window(fit, along(settings=budget.window_iterations))
 
 
 def _mean_squares(fit: WindowFit) -> np.ndarray:

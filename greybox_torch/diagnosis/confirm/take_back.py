@@ -44,14 +44,11 @@ def held_out_gains(state: SearchState, others: HeldOut) -> dict[str, Gain]:
     }
 
 
-def take_back_weakest(
-    study: Study, state: SearchState, gains: Mapping[str, Gain]
-) -> tuple[SearchState, dict[str, Gain]]:
-    """Without the effect that gained least on held-out experiments (the newest where that is not known); the gains of the others."""
+def take_back_weakest(study: Study, state: SearchState, gains: Mapping[str, Gain]) -> SearchState:
+    """Without the effect that gained least on held-out experiments (the newest where that is not known)."""
     names = [e.prefix for e in state.effects]
     weakest = min(names, key=lambda n: gains[n].share) if all(n in gains for n in names) else names[-1]
-    state = result_of(drop(study, state, weakest))
-    return state, {n: g for n, g in gains.items() if n in state.prefixes}
+    return result_of(drop(study, state, weakest))
 
 
 def _names_for_curve(study: Study, state: SearchState, others: HeldOut) -> Stage[SearchState]:
