@@ -10,6 +10,7 @@ import torch
 from greybox_torch.mechanisms.degenerate import too_long
 from greybox_torch.mechanisms.linear_law import LinearLaw, Of, Per
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
+from greybox_torch.mechanisms.short_lag import lag_change, lag_rate
 from greybox_torch.mechanisms.transmission import dead_zone
 from greybox_torch.model import Parameter, Signals, State
 
@@ -21,7 +22,6 @@ class InputLag(Mechanism):
     kinds = ("actuator",)
     needs = ("input",)
     fades = True
-    natural = ("T.lower",)
     nature = "a time shift"
     explanation = "The input acts through a first-order lag (current loop, valve)."
     source = "L. Ljung, System Identification, 2nd ed., 1999"
@@ -29,7 +29,7 @@ class InputLag(Mechanism):
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         step = around.sample_time
-        return [Parameter("T", 3 * step, "s", lower=0.45 * step, upper=2000 * step, description="time constant")]
+        return [Parameter("T", 3 * step, "s", lower=0.0, upper=2000 * step, description="time constant")]
 
     def states(self, around: Surroundings) -> list[State]:
         return [State("lagged", around.force_unit)]
@@ -38,10 +38,10 @@ class InputLag(Mechanism):
         return {"lagged": s.input}
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
-        return {"lagged": (s.input - z.lagged) / p.T}
+        return {"lagged": lag_rate(s.input, z.lagged, p.T, s.sample_time)}
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return z.lagged - s.input
+        return lag_change(s.input, z.lagged, p.T, s.sample_time)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (2, 6, 20, 60)]

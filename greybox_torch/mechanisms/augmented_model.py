@@ -97,7 +97,9 @@ class AugmentedModel(GreyBoxModel):
         for a in self.attachments:
             site = self.local.ports[a.port]
             if isinstance(site, Sensor):
-                local = Signals("signal", {"output": true[site.output], **self.local.clock(x)})
+                local = Signals(
+                    "signal", {"output": true[site.output], **self.local.sampling(a.port), **self.local.clock(x)}
+                )
                 own, memory = self.local.parameters(a, p), self.local.memory(a, x)
                 values[site.output] = values[site.output] + self._share(a, p) * a.mechanism.force(local, own, memory)
         return values
@@ -155,7 +157,10 @@ class AugmentedModel(GreyBoxModel):
         memory = Signals(
             "memory", {s.name: torch.zeros(()) for s in attachment.mechanism.states(self.surroundings[attachment.port])}
         )
-        local, own = Signals("signal", signals), self.local.parameters(attachment, p)
+        local, own = (
+            Signals("signal", {**self.local.sampling(attachment.port), **signals}),
+            self.local.parameters(attachment, p),
+        )
         if attachment.mechanism.kinematic:
             return attachment.mechanism.deflection(local, own) - signals["deflection"]
         return attachment.mechanism.force(local, own, memory)

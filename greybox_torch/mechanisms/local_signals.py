@@ -44,12 +44,21 @@ class LocalSignals:
             values["speed"] = value_of(driving.speed, x, u, p)
         if isinstance(site, Sensor):
             values["output"] = self.base.output(x, u, p)[site.output]
+        values |= self.sampling(a.port)
         if "delayed" in a.mechanism.needs:
             value, slope, at = (u[f"{a.prefix}.{n}"] for n in ("delayed", "slope", "delay"))
             values["delayed"] = value + (p[f"{a.prefix}.T"] - at) * slope
         values |= {f"position@{link}": self._position(link, x, u, p) for link in a.mechanism.links}
         values |= self.clock(x)
         return Signals("signal", values)
+
+    def sampling(self, port: str) -> dict[str, Any]:
+        """The sample time in s, for laws of actuators and sensors that may act within a sample."""
+        return (
+            {"sample_time": self.surroundings[port].sample_time}
+            if isinstance(self.ports[port], Actuator | Sensor)
+            else {}
+        )
 
     def clock(self, x: Signals) -> dict[str, Any]:
         return {"time": x["time"]} if self.need("time") else {}

@@ -8,6 +8,7 @@ from typing import Any
 from greybox_torch.mechanisms.degenerate import too_long
 from greybox_torch.mechanisms.linear_law import LinearLaw, Of
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
+from greybox_torch.mechanisms.short_lag import lag_change, lag_rate
 from greybox_torch.model import Parameter, Signals, State
 
 
@@ -18,7 +19,6 @@ class SensorLag(Mechanism):
     kinds = ("sensor",)
     needs = ("output",)
     fades = True
-    natural = ("T.lower",)
     nature = "a time shift"
     explanation = "The output is recorded through a first-order lag (filter, sensor dynamics)."
     source = "L. Ljung, System Identification, 2nd ed., 1999"
@@ -26,7 +26,7 @@ class SensorLag(Mechanism):
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         step = around.sample_time
-        return [Parameter("T", 3 * step, "s", lower=0.45 * step, upper=2000 * step, description="time constant")]
+        return [Parameter("T", 3 * step, "s", lower=0.0, upper=2000 * step, description="time constant")]
 
     def states(self, around: Surroundings) -> list[State]:
         return [State("lagged", around.units.get("output", ""))]
@@ -35,10 +35,10 @@ class SensorLag(Mechanism):
         return {"lagged": s.output}
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
-        return {"lagged": (s.output - z.lagged) / p.T}
+        return {"lagged": lag_rate(s.output, z.lagged, p.T, s.sample_time)}
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return z.lagged - s.output
+        return lag_change(s.output, z.lagged, p.T, s.sample_time)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (2, 6, 20)]

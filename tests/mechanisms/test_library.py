@@ -35,7 +35,8 @@ def memory_of(mechanism: Mechanism, around: Surroundings) -> dict[str, np.ndarra
 
 def seen(mechanism: Mechanism, anywhere: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     needs = (mechanism.signal,) if isinstance(mechanism, Unknown) else mechanism.needs
-    return {name: anywhere[name] for name in needs or ("speed",)}
+    sampling = {"sample_time": np.array(0.004)} if mechanism.name.endswith("_lag") else {}
+    return {name: anywhere[name] for name in needs or ("speed",)} | sampling
 
 
 def amplitudes(mechanism: Mechanism, around: Surroundings) -> set[str]:
