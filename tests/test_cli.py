@@ -60,3 +60,20 @@ def test_help_loads_nothing_heavy(arguments: list[str]) -> None:
     loaded = {line.rsplit("|", 1)[-1].strip() for line in result.stderr.splitlines()}
     assert "Usage" in result.stdout and "greybox_torch.cli" in loaded
     assert not loaded & {"torch", "numpy", "pandas", "scipy", "matplotlib"}
+
+
+def test_no_warning_of_a_library_reaches_the_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    import logging
+    import warnings
+
+    def warn(*_: object) -> None:
+        warnings.warn("overflow in something", RuntimeWarning, stacklevel=1)
+        warnings.warn("old", UserWarning, stacklevel=1)
+        logging.getLogger("some.library").warning("no font")
+
+    monkeypatch.setattr(sys, "warnoptions", [])
+    monkeypatch.setattr(inspect, "run", warn)
+    before = list(warnings.filters), list(logging.getLogger().handlers)
+    result = CliRunner().invoke(app, ["inspect", "dataset.toml"])
+    assert (result.exit_code, result.output) == (0, "")
+    assert (list(warnings.filters), list(logging.getLogger().handlers)) == before

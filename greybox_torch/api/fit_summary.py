@@ -9,9 +9,10 @@ from rich.text import Text
 
 from greybox_torch.api.estimated import EstimatedStart, estimated_parameters, estimated_starts
 from greybox_torch.api.scores import print_substeps
+from greybox_torch.estimate.brief_lists import brief_pairs
 from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.profile import LEVEL, Profile
-from greybox_torch.estimate.termination import Termination
+from greybox_torch.estimate.termination import Termination, brief
 from greybox_torch.report.tables import number, print_table
 
 
@@ -76,8 +77,7 @@ def _kept(entry: EstimatedStart) -> str:
 def _print_correlations(console: Console, found: Estimation) -> None:
     pairs = found.correlation.strong_pairs() if found.correlation else []
     if pairs:
-        told = ", ".join(f"{a} and {b} {value:+.3f}" for a, b, value in pairs)
-        console.print(Text(f"Estimates that move together (correlation): {told}"), soft_wrap=True)
+        console.print(Text(f"Estimates that move together (correlation): {brief_pairs(pairs)}"), soft_wrap=True)
 
 
 def warnings(found: Estimation) -> list[str]:
@@ -86,7 +86,7 @@ def warnings(found: Estimation) -> list[str]:
     lines = []
     if lost:
         lines.append(
-            f"The data do not determine {', '.join(lost)}, alone or together: fix one of them, or excite the machine more."
+            f"The data do not determine {brief(lost)}, alone or together: fix one of them, or excite the machine more."
         )
     lines += [f"{one.sentence}." for one in found.identifiability]
     for note in found.notes:

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+import logging
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from typing import Any
 
 import typer
@@ -18,7 +22,7 @@ class Commands(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         given = [*ctx._protected_args, *ctx.args]
         try:
-            with json_alone() if "--json" in given else nullcontext():
+            with _libraries_silent(), json_alone() if "--json" in given else nullcontext():
                 return super().invoke(ctx)
         except ArgumentError as error:
             raise _stop(f"error: {error.for_option()}", 2) from None
@@ -28,6 +32,20 @@ class Commands(TyperGroup):
             raise _stop(f"the numbers failed: {error}", 3) from None
         except KeyboardInterrupt:
             raise _stop("interrupted", 130) from None
+
+
+@contextmanager
+def _libraries_silent() -> Iterator[None]:
+    """What libraries warn of is for developers, who ask for it (`python -W default`); messages for users are our own."""
+    nowhere = logging.NullHandler()
+    logging.getLogger().addHandler(nowhere)  # without any, records go to standard error
+    try:
+        with warnings.catch_warnings():
+            if not sys.warnoptions:
+                warnings.simplefilter("ignore")
+            yield
+    finally:
+        logging.getLogger().removeHandler(nowhere)
 
 
 def _stop(message: str, code: int) -> typer.Exit:

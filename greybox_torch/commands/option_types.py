@@ -14,7 +14,7 @@ Model = Annotated[
 ]
 Out = Annotated[
     Path | None,
-    typer.Option(metavar="DIR", help="Where to write results.", show_default="results/<folder of the card>"),
+    typer.Option(metavar="DIR", help="Where to write results.", show_default="results/<folder of the card>[-<card>]"),
 ]
 Seed = Annotated[int, typer.Option(min=0, max=2**32 - 1, help="Start of everything that is drawn at random.")]
 Device = Annotated[str, typer.Option(help='Where to compute: "cpu", "cuda", "cuda:1".')]

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from greybox_torch.api.result import Result
 
 
+USUAL = "dataset"
+"""The name of a card that is the only one in its folder."""
+
 _STANDARD_OUTPUT: ContextVar[TextIO | None] = ContextVar("standard output", default=None)
 
 
@@ -45,8 +48,12 @@ class Options:
     precision: str = "double"
 
     def folder(self, dataset: Path) -> Path:
-        """Where to write results: --out, or results/<name of the folder that holds the data card>."""
-        return self.out if self.out is not None else Path("results") / absolute(dataset).parent.name
+        """Where to write results: --out, else results/<folder of the card>, with the card's name behind it unless that is dataset.toml."""
+        if self.out is not None:
+            return self.out
+        card = absolute(dataset)
+        own = "" if card.stem == USUAL else f"-{card.stem}"
+        return Path("results") / f"{card.parent.name}{own}"
 
     def finish(self, result: Result, folder: Path) -> None:
         """Saves the result, all of it or nothing, and prints it."""

@@ -91,6 +91,11 @@ def descend(problem: Problem, way: Way, starts: int | None) -> Descent | None:
     return found
 
 
+def improved(found: Descent | None, begin: Problem, way: Way) -> Descent | None:
+    """The better of what was found and the optimum that a descent on whole records reaches from the values of ``begin``."""
+    return _better(found, _whole_records(begin, way, 0))
+
+
 def _fits(problem: Problem, simulator: Simulator) -> np.ndarray:
     """Fit in % of every output of every experiment in free run."""
     runs = simulate(problem, simulator)

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.estimate.correlation import CorrelationMatrix, correlation_matrix
-from greybox_torch.estimate.descent import Descent, Progress, Way, descend
+from greybox_torch.estimate.descent import Descent, Progress, Way
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.identifiability import Unidentifiable, identifiability
 from greybox_torch.estimate.levenberg_marquardt import DEFAULT, Settings
+from greybox_torch.estimate.nested import descend_nested
 from greybox_torch.estimate.notes import notes
 from greybox_torch.estimate.overflow import overflow_error
 from greybox_torch.estimate.problem import Problem
@@ -78,6 +79,7 @@ def fit(
     Start values that simulate the records tolerably are refined on whole records at once; others are first improved on short
     windows with free start states, then on longer ones. Where the error then turns out to be less than half of what it was at the
     start values, they were poor, and another valley may be deeper: many more start values are drawn around them and tried.
+    Where parameters start at zero, the model without them is estimated as well; where that is better, the estimation begins there.
 
     Args:
         simulator: with tangents for the problem's free parameters; by default one on the CPU in double precision. How many sub-steps are
@@ -92,7 +94,7 @@ def fit(
     way = Way(simulator, settings, progress, seed)
     if not problem.free.any() and not problem.initial_free.any():
         return _unmoved(FreeRun(problem, way.fine_enough(problem)), problem.samples)
-    found = descend(problem, way, starts)
+    found = descend_nested(problem, way, starts)
     if found is None:
         raise overflow_error("estimating", problem, way.fine_enough(problem))
     unidentifiable = ()

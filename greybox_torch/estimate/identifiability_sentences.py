@@ -7,7 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from greybox_torch.estimate.termination import listed
+from greybox_torch.estimate.termination import brief, listed
+
+MOST_CHANGES = 4
+"""Changes that a sentence spells out, the first ones."""
 
 SUGGESTION = "fix one of them, or measure it by other means"
 
@@ -34,7 +37,7 @@ def sentence(kind: str, step: Direction, *, zeros: Sequence[str] = (), deviation
         zeros: the parameters whose being zero takes the others' effect away.
         deviation: standard deviation along the direction of a weak one, relative to the values.
     """
-    names = listed(step.names)
+    names = brief(step.names)
     if kind == "unmoved":
         return f"{names}: nothing in these recordings depends on it; fix it, or record an experiment in which it acts"
     if kind == "start":
@@ -85,6 +88,8 @@ def _moved(step: Direction, percent: float) -> str:
         size = f"{abs(change) * percent:.3g} %" if step.relative[i] else f"{abs(change) * percent / 100:.3g}"
         terms.append(f"{verb}{step.names[i]} by {size}")
         before = sign
+    if len(terms) > MOST_CHANGES:
+        return f"{', '.join(terms[:MOST_CHANGES])} and the others to match"
     return listed(terms)
 
 
@@ -93,7 +98,7 @@ def _start(step: Direction, zeros: Sequence[str]) -> str:
     if len(step.names) == 1:
         what = f"{step.names[0]}: has no effect at these values{while_zero}, but it has elsewhere"
     else:
-        what = f"{listed(step.names)}: cannot be told apart at these values{while_zero}, but they can elsewhere"
+        what = f"{brief(step.names)}: cannot be told apart at these values{while_zero}, but they can elsewhere"
     return f"{what}; an estimate is possible, and other start values may help it"
 
 
@@ -102,4 +107,4 @@ def _weak(step: Direction, deviation: float) -> str:
         what = f"weakly determined, its standard deviation is about {deviation:.2g} times its value"
         return f"{step.names[0]}: {what}; fix it, or record an experiment in which it acts more"
     change = _moved(step, 100.0)
-    return f"{listed(step.names)}: hardly told apart ({change} shows no more than the errors do); {SUGGESTION}"
+    return f"{brief(step.names)}: hardly told apart ({change} shows no more than the errors do); {SUGGESTION}"

@@ -103,7 +103,7 @@ def test_says_what_the_data_do_not_determine(motor_folder: Make, edit: Edit) -> 
     folder = motor_folder()
     edit(folder / "dataset.toml", "[model.parameters]", "[model.parameters]\nk = { fixed = false }")
     result = fit(folder)
-    assert "The data do not determine J, k, b, alone or together" in result.stdout
+    assert "The data do not determine J, k and b, alone or together" in result.stdout
     assert "undetermined" in result.stdout
     assert json.loads(fit(folder, "--json").stdout)["parameters"]["J"]["std"] is None
 

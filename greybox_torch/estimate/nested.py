@@ -1,0 +1,56 @@
+"""A richer model begins at the optimum of the simpler one that it holds.
+
+A parameter that starts at zero is usually the amplitude of something added to a model that was there before. Estimated all at once from
+poor start values, its descent may end in another valley than the simpler model's, and worse than that. The simpler model is the same one
+with these parameters held where they start; from its optimum a descent can only gain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from greybox_torch.estimate.descent import Descent, Way, descend, improved
+from greybox_torch.estimate.problem import Problem
+
+HELD = "with {} held at zero"
+"""What the stage is called, for those whom the progress is told."""
+
+
+def descend_nested(problem: Problem, way: Way, starts: int | None) -> Descent | None:
+    """The best of a descent from the start values and one by way of the simpler model; as :func:`descend` where nothing starts at zero.
+
+    It never ends worse than the simpler model estimated in the same way.
+    """
+    found = descend(problem, way, starts)
+    zero = problem.free & (problem.values == 0.0)
+    if not zero.any() or zero.sum() == problem.free.sum():
+        return found
+    simpler = replace(problem, free=problem.free & ~zero)
+    names = ", ".join(name for name, is_zero in zip(problem.names, zero, strict=True) if is_zero)
+    there = descend(simpler, _told(way, simpler, HELD.format(names)), starts)
+    if there is None or _cost(there) >= _cost(found):
+        return found
+    begin = problem.with_values(*_optimum(there))
+    return improved(found, begin, way)
+
+
+def _told(way: Way, simpler: Problem, what: str) -> Way:
+    """``way`` for the simpler problem, which has fewer tangents; progress says what it is of."""
+    told = way.progress
+    progress: Callable[[str, int, float], None] | None = None
+    if told is not None:
+        progress = lambda stage, k, error: told(f"{what}: {stage}", k, error)  # noqa: E731
+    simulator = way.simulator.for_model(simpler.model, simpler.free_names)
+    return replace(way, simulator=simulator, progress=progress)
+
+
+def _optimum(found: Descent) -> tuple[np.ndarray, np.ndarray]:
+    problem = found.run.at(found.optimum.point)
+    return problem.values, problem.initial
+
+
+def _cost(found: Descent | None) -> float:
+    return float("inf") if found is None else float(found.optimum.model.cost)

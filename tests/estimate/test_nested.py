@@ -1,0 +1,87 @@
+"""A richer model never ends worse than the simpler one that it holds."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import greybox_torch as gt
+from greybox_torch.estimate import nested
+from greybox_torch.estimate.descent import descend
+from greybox_torch.estimate.fit import fit
+from greybox_torch.estimate.problem import Problem, make_problem
+
+
+class Rippled(gt.GreyBoxModel):
+    """J dw/dt = k v - b w - r sin(3 q), a ripple that begins at zero."""
+
+    states = [gt.State("angle", "rad"), gt.State("speed", "rad/s", initial="measured")]
+    inputs, outputs = [gt.Input("voltage", "V")], [gt.Output("speed", "rad/s")]
+    parameters = [
+        gt.Parameter("J", 0.04, unit="kg m^2", lower=1e-4),
+        gt.Parameter("b", 0.1, unit="N m s/rad", lower=0.0),
+        gt.Parameter("r", 0.0, unit="N m", lower=-1.0, upper=1.0),
+    ]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return {"angle": x.speed, "speed": (0.1 * u.voltage - p.b * x.speed - p.r * (3.0 * x.angle).sin()) / p.J}
+
+    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+        return {"speed": x.speed}
+
+
+@pytest.fixture(scope="module")
+def problem(motor_speed) -> Problem:
+    draw = np.random.default_rng(3)
+    voltage = np.repeat(draw.uniform(-3, 3, 15), 20)
+    speed = motor_speed(voltage) + draw.normal(0, 0.02, len(voltage))
+    signals = {"voltage": voltage, "speed": speed}
+    data = gt.DataSet([gt.Recording.from_arrays("steps", signals, sample_time=0.01)], held_out_by_default=False)
+    return make_problem(data, Rippled(), data.estimation())
+
+
+def held(problem: Problem) -> Problem:
+    return replace(problem, free=np.isin(problem.names, ["J", "b"]))
+
+
+def test_a_descent_that_ends_in_a_worse_valley_is_replaced(problem: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The descent of the richer model is led astray, as it is on machines with many valleys."""
+    simpler = fit(held(problem), starts=1)
+
+    def astray(begin: Problem, way: Any, starts: int | None) -> Any:
+        if begin.free.all():
+            begin = begin.with_values(np.array([0.5, 0.01, 0.9]))
+            way = replace(way, settings=replace(way.settings, iterations=1))
+        return descend(begin, way, starts)
+
+    monkeypatch.setattr(nested, "descend", astray)
+    found = fit(problem, starts=1)
+    assert found.problem.free.all()
+    assert found.mse <= simpler.mse * (1 + 1e-9)
+    assert found.problem.values[0] == pytest.approx(0.02, rel=0.05)
+    assert found.evaluations > simpler.evaluations
+
+
+def test_what_is_better_already_stays(problem: Problem) -> None:
+    found = fit(problem, starts=1)
+    assert found.mse <= fit(held(problem), starts=1).mse
+    assert abs(found.problem.values[2]) < 0.01
+
+
+def test_nothing_is_held_where_nothing_begins_at_zero(problem: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[Problem] = []
+
+    def counted(begin: Problem, way: Any, starts: int | None) -> Any:
+        seen.append(begin)
+        return descend(begin, way, starts)
+
+    monkeypatch.setattr(nested, "descend", counted)
+    fit(held(problem), starts=1)
+    assert len(seen) == 1
+    told: list[str] = []
+    fit(problem, starts=1, progress=lambda stage, k, error: told.append(stage))
+    assert [int(p.free.sum()) for p in seen] == [2, 3, 2]
+    assert "with r held at zero: whole records" in told
