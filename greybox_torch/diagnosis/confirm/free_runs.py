@@ -68,14 +68,17 @@ class Judgement:
         """Root mean square error of the refitted model's free runs beyond the noise, in units of the spread: of the worst experiment."""
         return float(np.sqrt(np.max(np.mean(self._beyond(self.refit, self._floors()), axis=1))))
 
-    def left(self, effects: bool) -> tuple[float, float]:
+    def left(self, effects: bool) -> tuple[float, float, str]:
         """What the recommended model leaves of the validation experiments: the share of the refitted model's mean squared error beyond the
-        noise, and the root mean square error in units of the noise; NaN where no output shows how large that is.
+        noise, the largest root mean square error in units of the noise, and in which experiment; NaN where no output shows the noise.
         """
         final = self.with_effects if effects else self.refit
         beyond = [self._energy(c, self._floors()) for c in (self.refit, final)]
-        times = self._times_noise(final)[self._judging()]
-        return _share_left(*beyond), float(np.nanmax(times)) if np.isfinite(times).any() else np.nan
+        times = np.where(self._judging(), self._times_noise(final), np.nan)
+        if not np.isfinite(times).any():
+            return _share_left(*beyond), np.nan, ""
+        worst = int(np.nanargmax(times))
+        return _share_left(*beyond), float(times[worst]), self.recordings[worst].name
 
     def comparisons(self, effects: bool) -> dict[str, Comparison]:
         return {"start": self.start, "refit": self.refit, "augmented": self.with_effects if effects else self.refit}

@@ -13,20 +13,20 @@ from greybox_torch.diagnosis.verdict import Left
 
 def what_is_left(judged: Judgement, detected: Sequence[Detection], effects: bool) -> Left:
     """What remains on the validation experiments, and whether it is repeatable."""
-    share, times = judged.left(effects)
+    share, times, worst = judged.left(effects)
     beyond = any(d.final.past.beyond for d in detected)
     coloured = any(d.final.colour.beyond for d in detected)
     how = (
-        "it is correlated with past inputs, so that part of it is repeatable"
+        "the error is correlated with past inputs, so that part of it is repeatable"
         if beyond
-        else "it is not white, and no linear function of past inputs"
+        else "the error is not white, and no linear function of past inputs"
         if coloured
-        else "it is white, as noise is"
+        else "the error is white, as noise is"
     )
     size = (
-        f"its error is {times:.2g} times the noise"
+        f"in {worst} the error is {times:.2g} times the noise"
         if np.isfinite(times)
         else "how much of its error is noise does not show"
     )
     whole = f"{100 * share:.2g} % of the mismatch remains" if effects else "The model as it stands is recommended"
-    return Left(share, times, f"{whole}: {size}, and {how}.")
+    return Left(share, times, f"{whole}: {size}. On the experiments that it was estimated from, {how}.")

@@ -1,0 +1,35 @@
+"""What the recommended model leaves: how much on validation, and what it is like where it was estimated."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.describe.left import what_is_left
+
+
+@pytest.mark.parametrize(
+    ("past", "colour", "words"),
+    [
+        (True, True, "the error is correlated with past inputs, so that part of it is repeatable."),
+        (False, True, "the error is not white, and no linear function of past inputs."),
+        (False, False, "the error is white, as noise is."),
+    ],
+)
+def test_size_and_kind_of_error_are_each_told_of_their_experiments(stub, past, colour, words) -> None:
+    """Seen: "its error is 105 times the noise, and it is white": the one on a validation experiment, the other on the estimation ones."""
+    judged = stub(left=lambda effects: (0.634, 105.3, "Validation 1"))
+    found = [stub(final=stub(past=stub(beyond=past), colour=stub(beyond=colour)))]
+    left = what_is_left(judged, found, True)
+    assert (left.share, left.times_noise) == (0.634, 105.3)
+    assert left.sentence == (
+        "63 % of the mismatch remains: in Validation 1 the error is 1.1e+02 times the noise. "
+        f"On the experiments that it was estimated from, {words}"
+    )
+
+
+def test_where_noise_is_not_known(stub) -> None:
+    left = what_is_left(stub(left=lambda effects: (1.0, np.nan, "")), [], False)
+    assert left.sentence.startswith(
+        "The model as it stands is recommended: how much of its error is noise does not show."
+    )
