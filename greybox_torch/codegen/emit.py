@@ -94,15 +94,17 @@ class _Body:
         return len(self._hoisted)
 
     def statements(self, targets: Iterable[tuple[str, int]]) -> str:
-        targets = list(targets)
+        """Assignments to ``targets``, each right after what it needs: the fewer values wait, the faster the program is compiled."""
         varies = self.graph.depends_on(frozenset({"x", "u"}))
-        lines = []
-        for index in self.graph.needed(node for _, node in targets):
-            node = self.graph.nodes[index]
-            if node.operation in ("constant", "leaf") or not varies[index]:
-                continue
-            lines.append(f"{self._type(index)} t{index} = {self._expression(index, varies)};")
-        lines += [f"{target} = {self._number(node, varies)};" for target, node in targets]
+        lines: list[str] = []
+        written: set[int] = set()
+        for target, root in targets:
+            for index in self.graph.needed([root], written):
+                node = self.graph.nodes[index]
+                written.add(index)
+                if node.operation not in ("constant", "leaf") and varies[index]:
+                    lines.append(f"{self._type(index)} t{index} = {self._expression(index, varies)};")
+            lines.append(f"{target} = {self._number(root, varies)};")
         return "\n".join(lines)
 
     def prologue(self) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 
 ARITHMETIC = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
@@ -74,13 +74,13 @@ class Graph:
         """Whether a node is true or false by its operation."""
         return self.nodes[index].operation in BOOLEAN
 
-    def needed(self, roots: Iterable[int]) -> list[int]:
-        """All nodes that ``roots`` depend on, in order of evaluation."""
+    def needed(self, roots: Iterable[int], known: Collection[int] = frozenset()) -> list[int]:
+        """All nodes that ``roots`` depend on, in order of evaluation, but for those ``known`` with all that they depend on."""
         seen: set[int] = set()
         stack = list(roots)
         while stack:
             index = stack.pop()
-            if index not in seen:
+            if index not in seen and index not in known:
                 seen.add(index)
                 stack.extend(self.nodes[index].arguments)
         return sorted(seen)
