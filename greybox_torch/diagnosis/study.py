@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import Deadline
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.reconstruction import Motion
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.simulation.simulator import DEFAULT, SimulationOptions
 
@@ -21,14 +22,16 @@ class Study:
     """The estimation experiments with the model as it stands, and how it is looked for what they lack.
 
     ``options`` are those of every simulation. ``surroundings`` and ``shifts`` are what mechanisms need to know of the ports: where signals
-    moved, and which state carries the deflection of a coupling; both are known once the model as it stands is fitted. ``report`` is told
-    what is being done; it does not stop the search, which ``deadline`` does.
+    moved, and which state carries the deflection of a coupling; both are known once the model as it stands is fitted. ``motion``: what the
+    outputs show of the states, or why they do not. ``report`` is told what is being done; it does not stop the search, which ``deadline``
+    does.
     """
 
     problem: Problem
     options: SimulationOptions = DEFAULT
     surroundings: Mapping[str, Surroundings] = field(default_factory=dict)
     shifts: Mapping[str, str] = field(default_factory=dict)
+    motion: Motion | str | None = None
     settings: DiagnosisSettings = field(default_factory=DiagnosisSettings)
     budget: SearchBudget = field(default_factory=SearchBudget)
     report: Callable[[str], None] = silent

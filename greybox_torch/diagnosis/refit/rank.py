@@ -73,12 +73,12 @@ def rank(study: Study, current: Hypothesis, found: Sequence[Candidate]) -> list[
     def tried(candidate: Candidate, simulator: Simulator) -> Hypothesis | None:
         study.working_on(f"refitting {candidate.attachment.prefix}")
         effects = (*current.effects, candidate.attachment)
-        starts = candidate.starts[: budget.trial_starts]
+        starts = candidate.first_starts(budget.trial_starts)
         return refit(effects, starts, at=middle, limits=budget.trial_iterations, simulator=simulator)
 
     def in_full(candidate: Candidate, before: Hypothesis, simulator: Simulator) -> RankedCandidate | None:
         study.working_on(f"refitting {candidate.attachment.prefix} in full")
-        starts = [before.values(), *candidate.starts[: budget.trial_starts]]
+        starts = [before.values(), *candidate.first_starts(budget.trial_starts)]
         fitted = refit(before.effects, starts, limits=budget.window_iterations, simulator=simulator)
         return None if fitted is None else judged(candidate, current, fitted, study.settings)
 

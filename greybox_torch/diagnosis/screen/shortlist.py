@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,6 +22,12 @@ class Candidate:
     attachment: Attachment
     starts: tuple[dict[str, float], ...]
     explained: float
+    from_motion: tuple[dict[str, float], ...] = ()
+    """Further start values, which the measured motion suggests."""
+
+    def first_starts(self, count: int) -> tuple[dict[str, float], ...]:
+        """The first ``count`` of the screen's start values, and those of the measured motion."""
+        return (*self.starts[:count], *self.from_motion)
 
     @property
     def unknown(self) -> bool:
@@ -81,16 +87,16 @@ def _followed(
     found: dict[tuple, Candidate] = {}
     for at_length, fit in zip(screened, fits, strict=True):
         fitted = dict(zip(fit.problem.names, map(float, fit.problem.values), strict=True))
-        for score in choose(_best_of_each(at_length, surroundings)):
+        for score in choose(best_of_each(at_length, surroundings)):
             if score.explained < study.settings.least_screen_share:
                 continue
             identity = identity_of(score.attachment)
-            suggested = _suggested(score, surroundings)
-            starts = ({**fitted, **card, **suggested}, {**fitted, **suggested})
+            shape = suggested(score, surroundings)
+            starts = ({**fitted, **card, **shape}, {**fitted, **shape})
             if isinstance(score.attachment.mechanism, Unknown):
                 starts = (
-                    {**fitted, **suggested},
-                    {**fitted, **_lower(score, suggested, study.budget.part_of_curve)},
+                    {**fitted, **shape},
+                    {**fitted, **_lower(score, shape, study.budget.part_of_curve)},
                     starts[0],
                 )
             before = found.get(identity)
@@ -109,6 +115,16 @@ def _with_ties(study: Study, ranked: Sequence[ScreenScore]) -> list[ScreenScore]
     return list(ranked[: min(max(study.budget.named_per_length, tied), study.budget.most_screen_ties)])
 
 
+def with_motion(found: Sequence[Candidate], from_motion: Sequence[Candidate]) -> list[Candidate]:
+    """Candidates of the screen, with the start values that the measured motion gives some of them, and what it adds to them."""
+    added = {identity_of(c.attachment): c for c in from_motion}
+    both = [
+        replace(c, from_motion=added.pop(identity_of(c.attachment)).starts) if identity_of(c.attachment) in added else c
+        for c in found
+    ]
+    return [*both, *added.values()]
+
+
 def identity_of(attachment: Attachment) -> tuple:
     """What makes two attachments the same hypothesis."""
     mechanism = attachment.mechanism
@@ -122,7 +138,8 @@ def identity_of(attachment: Attachment) -> tuple:
     )
 
 
-def _best_of_each(scores: Sequence[ScreenScore], surroundings: Mapping[str, Surroundings]) -> list[ScreenScore]:
+def best_of_each(scores: Sequence[ScreenScore], surroundings: Mapping[str, Surroundings]) -> list[ScreenScore]:
+    """Of every hypothesis the probe that explains most, with a size that its law allows; best first."""
     best: dict[tuple, ScreenScore] = {}
     for score in scores:
         identity = identity_of(score.attachment)
@@ -149,7 +166,8 @@ def _lower(score: ScreenScore, suggested: Mapping[str, float], part: float) -> d
     return {n: part * v if n in heights else v for n, v in suggested.items()}
 
 
-def _suggested(score: ScreenScore, surroundings: Mapping[str, Surroundings]) -> dict[str, float]:
+def suggested(score: ScreenScore, surroundings: Mapping[str, Surroundings]) -> dict[str, float]:
+    """Parameters of an effect by their full names, as its score suggests them, within their bounds."""
     prefix = score.attachment.prefix
     values = dict(score.probe.values)
     values |= {n: float(v) for n, v in zip(score.probe.directions, score.size, strict=True) if n != SHARE}

@@ -10,11 +10,11 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order, rank
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
-from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist
+from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist, with_motion
 from greybox_torch.diagnosis.select.choice import chosen, least_gain
 from greybox_torch.diagnosis.select.compare import compare
 from greybox_torch.diagnosis.select.finer_curve import with_finer_curve
-from greybox_torch.diagnosis.select.offered import screen_scores
+from greybox_torch.diagnosis.select.offered import from_motion, screen_scores
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import Stage
@@ -33,6 +33,8 @@ def forward_step(study: Study, state: SearchState, *, curves: bool = True, fine:
     """
     screened = screen_scores(study, state, curves=curves and not state.has_curve, fine=fine)
     found = _worth_a_refit(study, state, screened, fine)
+    if not fine:
+        found = with_motion(found, from_motion(study, state))
     ranked = rank(study, state.current, found)
     further = rank(study, state.current, _at_other_ports(study, state, screened, found, ranked))
     return (yield from take_best(study, state, screened, in_order([*ranked, *further], study.settings)))

@@ -6,8 +6,10 @@ from functools import partial
 
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.screen.candidates import candidates, periodic_candidates
+from greybox_torch.diagnosis.screen.from_motion import candidates_from_motion
 from greybox_torch.diagnosis.screen.periodic_orders import distinct_orders, scan_orders
 from greybox_torch.diagnosis.screen.score_test import Screen, ScreenScore
+from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
@@ -33,6 +35,12 @@ def screen_scores(study: Study, state: SearchState, *, curves: bool, fine: bool)
         study.options,
     )
     return tuple(tuple(scores) for scores in side_by_side(partial(screen.scores, fit) for fit in at.fits))
+
+
+def from_motion(study: Study, state: SearchState) -> list[Candidate]:
+    """What the measured motion itself suggests to join the hypothesis so far."""
+    study.working_on("comparing the equations with the measured motion")
+    return candidates_from_motion(study, state.current, lambda a: not _is_there(a, state.effects))
 
 
 def _is_there(offered: Attachment, effects: tuple[Attachment, ...]) -> bool:

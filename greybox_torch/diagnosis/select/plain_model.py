@@ -8,9 +8,11 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.window_errors import window_errors
 from greybox_torch.diagnosis.refit.refitted import fit
+from greybox_torch.diagnosis.screen.views import views_of
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.errors import NumericalError
+from greybox_torch.estimate.reconstruction import reconstructed
 from greybox_torch.estimate.shifted_states import shifted_states
 from greybox_torch.estimate.surroundings import surroundings_along
 from greybox_torch.estimate.window_fit import states_along
@@ -24,7 +26,9 @@ def fit_plain_model(study: Study) -> tuple[Study, SearchState]:
     """
     study.report("refitting the model as it stands")
     model = study.problem.model
-    plain = fit(study, (), [study.card], None)
+    study = replace(study, motion=reconstructed(study.problem) if study.motion is None else study.motion)
+    views = views_of(study.problem, study.motion)
+    plain = fit(study, (), [study.card, *([] if isinstance(views, str) else views.starts())], None)
     if plain is None:
         raise NumericalError(
             f"simulating {model.title}: the simulation overflows even over windows of a 64th of the record; "

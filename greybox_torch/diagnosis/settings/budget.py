@@ -99,6 +99,13 @@ class SearchBudget:
     )
     order_steps: int = count(400, "Steps of the grid of orders.", chosen_by=TIME, least=4)
 
+    from_motion: int = count(
+        2,
+        "Candidates that the measured motion adds to the screen's, by form of the equations.",
+        chosen_by=TIME,
+        least=0,
+    )
+
     trial_starts: int = count(2, "Start values of a candidate that are tried.", chosen_by=TIME)
     finalists: int = count(3, "Hypotheses that are refitted at every window length after their trial.", chosen_by=TIME)
     most_tied: int = count(6, "Named hypotheses that go on where they tie.", chosen_by=TIME)

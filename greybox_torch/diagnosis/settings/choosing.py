@@ -56,6 +56,19 @@ class ScreenSettings:
         "Share of the residual that a candidate has to explain to be refitted.",
         unit="share of the residual's energy",
     )
+    chance_from_motion: float = number(
+        0.01,
+        "Probability up to which some law may seem to be in the measured motion by chance, all looks at it together.",
+        unit="probability",
+        chosen_by="convention",
+        least=1e-12,
+        most=0.5,
+    )
+    least_left_of_motion: float = share(
+        0.01,
+        "Error of the equations along the measured motion from which laws are looked for in it: below, simulated windows are right.",
+        unit="share of the measured rates (root mean square)",
+    )
     screen_tie: float = share(
         0.97, "Share of the best candidate's from which another ties with it.", unit="share of what the best explains"
     )
