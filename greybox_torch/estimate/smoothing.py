@@ -11,7 +11,9 @@ Savitzky-Golay filter?", IEEE Signal Processing Magazine 28(4), 2011, for their 
 from __future__ import annotations
 
 import numpy as np
-from scipy.signal import savgol_filter, welch
+from numpy.polynomial import polynomial
+
+from greybox_torch.linear_algebra import pseudo_inverse
 
 ABOVE_NOISE = 4.0
 """Times the noise's spectral density from which a signal is seen."""
@@ -39,10 +41,7 @@ def band(y: np.ndarray) -> float:
     """
     if len(y) < FEWEST or not np.ptp(y) > 0:
         return 0.0
-    segment = min(LONGEST_SEGMENT, max(FEWEST, len(y) // 8))
-    frequency, density = welch(
-        y, nperseg=segment, detrend="linear", window="blackmanharris"
-    )  # strong lines stay narrow
+    frequency, density = _spectrum(y, min(LONGEST_SEGMENT, max(FEWEST, len(y) // 8)))
     noise = float(np.quantile(density[frequency > 0.25], 0.2))
     seen = np.flatnonzero(density[1:] > ABOVE_NOISE * noise)
     return float(frequency[seen[-1] + 1]) if len(seen) else 0.0
@@ -57,10 +56,14 @@ def smoothed(y: np.ndarray, cutoff: float, *, slope: bool = False) -> np.ndarray
     half = half_width(cutoff, len(y))
     if half < 2 and not slope:
         return y
-    length = 2 * max(half, 2) + 1
-    if length > len(y):
+    half = max(half, 2)
+    if 2 * half + 1 > len(y):
         return np.gradient(y) if slope else y
-    return np.asarray(savgol_filter(y, length, ORDER, deriv=int(slope)))
+    place = np.arange(-half, half + 1)
+    fit = pseudo_inverse(np.vander(place, ORDER + 1, increasing=True))  # (ORDER + 1, L): coefficients by power
+    inside = np.convolve(y, fit[int(slope)][::-1], "valid")
+    begin, end = (polynomial.polyder(fit @ part, int(slope)) for part in (y[: len(place)], y[-len(place) :]))
+    return np.concatenate([polynomial.polyval(place[:half], begin), inside, polynomial.polyval(place[-half:], end)])
 
 
 def half_width(cutoff: float, samples: int) -> int:
@@ -68,3 +71,19 @@ def half_width(cutoff: float, samples: int) -> int:
     begin = MARGIN * max(cutoff, 1e-6)
     wide = ((ORDER + 1) / (2 * begin) + 4.6) / 3.2
     return int(min(wide, WIDEST * samples)) if begin < 0.5 else 0
+
+
+def _spectrum(y: np.ndarray, segment: int) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies in cycles per sample and the power there: a mean over stretches that overlap by half, without their trends.
+
+    With the Blackman-Harris window, so that strong lines stay narrow.
+
+    Source: P. D. Welch, IEEE Trans. Audio and Electroacoustics 15, 1967; F. J. Harris, Proceedings of the IEEE 66(1), 1978.
+    """
+    first = np.arange(0, len(y) - segment + 1, max(1, segment // 2))
+    parts = y[first[:, None] + np.arange(segment)]
+    line = np.vander(np.linspace(-1, 1, segment), 2)
+    parts = parts - (parts @ pseudo_inverse(line).T) @ line.T
+    angle = 2 * np.pi * np.arange(segment) / segment
+    window = 0.35875 - 0.48829 * np.cos(angle) + 0.14128 * np.cos(2 * angle) - 0.01168 * np.cos(3 * angle)
+    return np.fft.rfftfreq(segment), (np.abs(np.fft.rfft(parts * window)) ** 2).mean(axis=0)

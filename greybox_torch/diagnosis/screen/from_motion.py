@@ -15,7 +15,6 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.screen.candidates import candidates
 from greybox_torch.diagnosis.screen.missing_force import missing_force
 from greybox_torch.diagnosis.screen.position_spectrum import orders_over_position
@@ -26,6 +25,7 @@ from greybox_torch.diagnosis.screen.views import Views, values_of, views_of
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.equation_error import EquationError
 from greybox_torch.estimate.motion_equations import MotionEquations
+from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
@@ -33,23 +33,27 @@ from greybox_torch.model import Body
 
 
 def candidates_from_motion(
-    study: Study, current: Hypothesis, wanted: Callable[[Attachment], bool] = lambda attachment: True
+    study: Study,
+    current: Problem,
+    accepted: Sequence[Attachment] = (),
+    wanted: Callable[[Attachment], bool] = lambda attachment: True,
 ) -> list[Candidate]:
-    """The laws that explain most of what the equations of ``current`` leave of the measured motion, with the values they have there.
+    """The laws that explain most of what the equations leave of the measured motion, with the values they have there.
 
     Of either form of the equations the best few over all scales; none where the outputs do not show the motion, none where the equations
     leave so little of it that the screen around simulated windows is right, and none that does as much by chance.
 
     Args:
+        current: the problem of the hypothesis so far, at its values, with the effects ``accepted``.
         wanted: whether an effect may join the hypothesis.
     """
-    views = views_of(current.problem, study.motion)
+    views = views_of(current, study.motion)
     if isinstance(views, str) or views.left < study.settings.least_left_of_motion:
         return []
     offered = candidates(study.problem.model, study.shifts, study.surroundings, flexible=False)
     periodic, orders = _periodic(study, views)
     tables = [
-        _regressed(study, views, current, [a for a in some if wanted(a)], looks)
+        _regressed(study, views, accepted, [a for a in some if wanted(a)], looks)
         for some, looks in ((offered, 1), (periodic, orders))
     ]
     leaders: dict[tuple, tuple[EquationError, ScreenScore]] = {}
@@ -58,16 +62,16 @@ def candidates_from_motion(
         best = _best_over_scales([[*tables[0][k], *tables[1][k]] for k in rows], study.surroundings)
         for identity, (scale, score) in best[: study.budget.from_motion]:
             leaders.setdefault(identity, (views.each[rows[scale]], score))
-    refined = (_refined(study, current, view, score) for view, score in leaders.values())
+    refined = (_refined(study, current, accepted, view, score) for view, score in leaders.values())
     return [candidate for candidate in refined if candidate is not None]
 
 
 def _regressed(
-    study: Study, views: Views, current: Hypothesis, offered: Sequence[Attachment], looks: int
+    study: Study, views: Views, accepted: Sequence[Attachment], offered: Sequence[Attachment], looks: int
 ) -> list[list[Regression]]:
     """By view, the regressions of effects that chance does not explain at some scale; each stands for so many ``looks``."""
     settings = study.settings
-    found = regressions(views, current.effects, offered, study.surroundings)
+    found = regressions(views, accepted, offered, study.surroundings)
     least = settings.chance_from_motion / max(looks * sum(map(len, found)), 1)
     sure = {
         identity_of(r.score.attachment)
@@ -96,17 +100,20 @@ def _best_over_scales(
     return [(identity, where[identity]) for identity in sorted(left, key=lambda i: left[i])]
 
 
-def _refined(study: Study, current: Hypothesis, view: EquationError, score: ScreenScore) -> Candidate | None:
+def _refined(
+    study: Study, current: Problem, accepted: Sequence[Attachment], view: EquationError, score: ScreenScore
+) -> Candidate | None:
     """An effect with all parameters that leave least in one view: those of the model, its own, and its shape."""
     values = suggested(score, study.surroundings)
-    with_it = with_law(view.problem, current.effects, score.attachment, study.surroundings, values)
+    with_it = with_law(view.problem, accepted, score.attachment, study.surroundings, values)
     equations = MotionEquations(with_it, view.equations.motion, view.equations.rows)
     fitted = EquationError(equations, view.finest, view.coarser, view.inverse, view.scales).fitted()
     if fitted is None:
         return None
     found = values_of(fitted)
     own = {n: v for n, v in found.items() if n.startswith(f"{score.attachment.prefix}.")}
-    return Candidate(score.attachment, (found, {**current.values(), **own}), score.explained)
+    before = dict(zip(current.names, map(float, current.values), strict=True))
+    return Candidate(score.attachment, (found, {**before, **own}), score.explained)
 
 
 def _periodic(study: Study, views: Views) -> tuple[list[Attachment], int]:

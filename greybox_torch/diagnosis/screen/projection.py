@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import f as variance_ratio
+from scipy.special import fdtrc
 
 from greybox_torch.estimate.equation_error import EquationError
 from greybox_torch.linear_algebra import solve
@@ -71,4 +71,4 @@ class Projection:
         spread = sums @ sums.T
         spread += 1e-12 * (np.trace(spread) + float(product @ product)) * np.eye(k)
         ratio = float(product @ solve(spread, product)) * (count - k) / (k * count)
-        return float(variance_ratio.sf(ratio, k, count - k))
+        return float(fdtrc(k, count - k, max(ratio, 0.0)))

@@ -40,7 +40,9 @@ def screen_scores(study: Study, state: SearchState, *, curves: bool, fine: bool)
 def from_motion(study: Study, state: SearchState) -> list[Candidate]:
     """What the measured motion itself suggests to join the hypothesis so far."""
     study.working_on("comparing the equations with the measured motion")
-    return candidates_from_motion(study, state.current, lambda a: not _is_there(a, state.effects))
+    return candidates_from_motion(
+        study, state.current.problem, state.effects, lambda a: not _is_there(a, state.effects)
+    )
 
 
 def _is_there(offered: Attachment, effects: tuple[Attachment, ...]) -> bool:

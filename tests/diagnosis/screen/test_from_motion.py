@@ -21,7 +21,7 @@ from greybox_torch.mechanisms.sensor import SensorGain
 
 
 def test_friction_is_found_with_its_level_and_the_mass_as_it_is(rubbing) -> None:
-    found = {c.attachment.mechanism.name: c for c in candidates_from_motion(rubbing.study, rubbing.current)}
+    found = {c.attachment.mechanism.name: c for c in candidates_from_motion(rubbing.study, rubbing.problem)}
     assert found["coulomb_friction"].explained > 0.9
     start = found["coulomb_friction"].starts[0]
     assert start["sled.coulomb_friction.F_c"] == pytest.approx(1.5, rel=0.03)
@@ -36,9 +36,9 @@ def test_what_is_in_the_hypothesis_is_not_offered_again(rubbing) -> None:
 
 
 def test_a_model_that_lacks_nothing_gives_no_candidates(whole) -> None:
-    assert candidates_from_motion(whole.study, whole.current) == []
+    assert candidates_from_motion(whole.study, whole.problem) == []
     every = replace(whole.study, settings=DiagnosisSettings(least_left_of_motion=0.0))
-    assert candidates_from_motion(every, whole.current) == [], "however little is left"
+    assert candidates_from_motion(every, whole.problem) == [], "however little is left"
 
 
 def test_ripple_is_found_at_its_order(sled_run, begun, machines) -> None:
@@ -46,7 +46,7 @@ def test_ripple_is_found_at_its_order(sled_run, begun, machines) -> None:
 
     data = sled_run(lambda q, v: 0.6 * np.cos(47.0 * q + 0.3), travel=2.0, experiments=1)
     rippled = begun(data, load_model(f"{machines / 'sled.py'}:Sled"))
-    found = candidates_from_motion(rippled.study, rippled.current)
+    found = candidates_from_motion(rippled.study, rippled.problem)
     start = next(c.starts[0] for c in found if isinstance(c.attachment.mechanism, TorqueRipple))
     assert start["sled.torque_ripple.order"] == pytest.approx(47.0, rel=0.01)
     assert np.hypot(start["sled.torque_ripple.a"], start["sled.torque_ripple.b"]) == pytest.approx(0.6, rel=0.1)
@@ -54,7 +54,7 @@ def test_ripple_is_found_at_its_order(sled_run, begun, machines) -> None:
 
 def test_where_sensors_do_not_show_the_motion_nothing_is_added(arm_search) -> None:
     assert isinstance(arm_search.study.motion, str)
-    assert candidates_from_motion(arm_search.study, arm_search.current) == []
+    assert candidates_from_motion(arm_search.study, arm_search.problem) == []
 
 
 def test_laws_with_a_memory_and_sensors_are_not_regressed(rubbing) -> None:
@@ -70,7 +70,7 @@ def test_laws_with_a_memory_and_sensors_are_not_regressed(rubbing) -> None:
 def test_a_hypothesis_with_a_memory_is_not_compared_with_the_motion(rubbing) -> None:
     lagged = rubbing.refitted((attach(rubbing.problem.model, "actuator", InputLag()),), rubbing.current)
     assert views_of(lagged.problem) == "no output shows actuator.input_lag.lagged"
-    assert candidates_from_motion(rubbing.study, lagged) == []
+    assert candidates_from_motion(rubbing.study, lagged.problem, lagged.effects) == []
 
 
 def test_start_values_join_those_of_the_screen() -> None:
