@@ -35,7 +35,7 @@ def motion_of(problem) -> Motion:
 
 def true_speed(e: int, t: np.ndarray) -> np.ndarray:
     waves = [(0.30, 2.1 + 0.3 * e, 0.4), (0.12, 5.3, 1.0 + e), (0.02, 11.7, 0.2)]
-    return sum(a * w * np.cos(w * t + f) for a, w, f in waves)
+    return np.sum([a * w * np.cos(w * t + f) for a, w, f in waves], axis=0)
 
 
 def test_the_speed_behind_a_measured_position_is_that_of_the_motion(problem) -> None:

@@ -14,10 +14,11 @@ from greybox_torch.diagnosis.screen.views import Views, views_of
 from greybox_torch.diagnosis.select.offered import from_motion
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.actuator import InputLag
-from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.sensor import SensorGain
+from greybox_torch.systems.load import load_model
 
 
 def test_friction_is_found_with_its_level_and_the_mass_as_it_is(rubbing) -> None:
@@ -42,8 +43,6 @@ def test_a_model_that_lacks_nothing_gives_no_candidates(whole) -> None:
 
 
 def test_ripple_is_found_at_its_order(sled_run, begun, machines) -> None:
-    from greybox_torch.systems.load import load_model
-
     data = sled_run(lambda q, v: 0.6 * np.cos(47.0 * q + 0.3), travel=2.0, experiments=1)
     rippled = begun(data, load_model(f"{machines / 'sled.py'}:Sled"))
     found = candidates_from_motion(rippled.study, rippled.problem)
@@ -74,17 +73,11 @@ def test_a_hypothesis_with_a_memory_is_not_compared_with_the_motion(rubbing) -> 
 
 
 def test_start_values_join_those_of_the_screen() -> None:
-    model = type("M", (), {})
     one, two, three = ({"m": v} for v in (1.0, 2.0, 3.0))
-    coulomb, bias = (Candidate(a, (one, one), 0.5) for a in (_at(CoulombFriction()), _at(ConstantBias())))
+    coulomb, bias = (
+        Candidate(a, (one, one), 0.5) for a in (Attachment("sled", law) for law in (CoulombFriction(), ConstantBias()))
+    )
     both = with_motion([coulomb], [replace(coulomb, starts=(two,)), replace(bias, starts=(three,))])
     assert [c.attachment.mechanism.name for c in both] == ["coulomb_friction", "constant_bias"]
     assert both[0].first_starts(1) == (one, two)
     assert both[1].first_starts(2) == (three,)
-    del model
-
-
-def _at(law):
-    from greybox_torch.mechanisms.attachment import Attachment
-
-    return Attachment("sled", law)
