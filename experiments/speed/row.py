@@ -49,7 +49,7 @@ class Target:
 @dataclass(frozen=True)
 class Row:
     """``agreement`` says how the results of the rivals were compared and how near they are; ``curves`` are points (x, seconds) by
-    name, for the plot; ``skipped`` says why there is nothing else.
+    name, for the plot; ``details`` are kept beside the table; ``skipped`` says why there is nothing else.
     """
 
     key: str
@@ -59,6 +59,7 @@ class Row:
     agreement: str = ""
     notes: tuple[str, ...] = ()
     curves: dict[str, list[tuple[float, float]]] = field(default_factory=dict)
+    details: dict[str, Any] = field(default_factory=dict)
     skipped: str = ""
 
     def as_json(self) -> dict[str, Any]:

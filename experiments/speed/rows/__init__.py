@@ -20,6 +20,7 @@ KEYS = (
     "growth",
     "hypotheses",
     "robustness",
+    "diagnosis",
 )
 
 Progress = Callable[[str], None]

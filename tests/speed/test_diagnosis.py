@@ -1,0 +1,63 @@
+"""Diagnoses timed: what a pass is for, the cases, and what is asked of them."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from experiments.speed.diagnosis.cases import ARM, DEMO, PENDULUM, cases, development_cases
+from experiments.speed.diagnosis.profiled import CARRYING, PURPOSES, purpose_of
+from experiments.speed.diagnosis.timed import Timed, checked_out
+from experiments.speed.rows.diagnosis import _entry, _targets
+
+PACKAGE = Path(__file__).resolve().parents[2] / "greybox_torch"
+
+
+def called_from(*places: tuple[str, str]) -> str:
+    """The purpose of what runs in functions of these files, the outermost first."""
+
+    def here() -> str:
+        return purpose_of(sys._getframe(1))
+
+    call = here
+    for file, function in reversed(places):
+        scope: dict = {}
+        exec(compile(f"def {function}(inner):\n    return inner()", f"/somewhere/{file}", "exec"), scope)
+        call = (lambda outer, inner: lambda: outer(inner))(scope[function], call)
+    return call()
+
+
+def test_the_innermost_purpose_counts_and_carrying_is_told_apart() -> None:
+    assert called_from(("pipeline.py", "diagnose")) == "other"
+    assert called_from(("explore.py", "_from_given"), ("rank.py", "in_full")) == "finalists"
+    assert called_from(("rank.py", "tried"), ("window_fit.py", "carried_starts")) == "trials, carrying states"
+
+
+@pytest.mark.parametrize(("file", "function"), sorted({*PURPOSES, *CARRYING} - {("carried.py", "carried_starts")}))
+def test_every_purpose_is_a_function_of_the_package(file, function) -> None:
+    assert any(f"def {function}(" in path.read_text() for path in PACKAGE.rglob(file))
+
+
+def test_targets_count_what_did_not_end_as_missed() -> None:
+    names = [DEMO, "d01", "d02", "d03", ARM, PENDULUM]
+    assert development_cases(names) == ["d01", "d02", "d03"]
+    found = {t.text: t for t in _targets({"d01": 3.0, "d02": 8.0, ARM: 20.0}, names)}
+    assert found["development cases, median"].measured == 8.0
+    assert [found[text].met for text in ("development cases, slowest", ARM, PENDULUM)] == [False, True, False]
+
+
+def test_a_case_is_told_with_what_took_longest_and_how_it_compares() -> None:
+    passes = {"trials": {"seconds": 2.0}, "polishing": {"seconds": 3.0}}
+    slow, fast = (Timed(s, s + 4.0, {}, passes, "rotor coulomb_friction") for s in (10.0, 5.0))
+    entry = _entry("demo, at abc", slow, fast)
+    assert (entry.seconds, entry.compile_seconds, entry.ours) == (10.0, 4.0, False)
+    assert entry.note == "2.00 times as long; rotor coulomb_friction; polishing 3.0 s, trials 2.0 s"
+    assert _entry("demo", None).seconds is None
+
+
+def test_the_demo_is_always_there_and_an_unknown_commit_is_said() -> None:
+    assert cases()[DEMO].exists()
+    with pytest.raises(ValueError, match="--against nowhere"), checked_out("nowhere"):
+        pass
