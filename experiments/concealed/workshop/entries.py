@@ -53,8 +53,9 @@ def dry(place: Place) -> dict[str, Entry]:
     def lugre(g: Generator, c: Seen) -> laws.PortLaw:
         usual, level = c.usual(place.port.rate), g.uniform(*place.force)
         low, high = c.reach(place.port.position)
+        travel = high - low or usual  # a second's worth where the port has no position
         return laws.lugre(
-            level, level * g.uniform(0.1, 0.5), usual * g.uniform(0.03, 0.1), (high - low) * g.uniform(0.002, 0.02)
+            level, level * g.uniform(0.1, 0.5), usual * g.uniform(0.03, 0.1), travel * g.uniform(0.002, 0.02)
         )
 
     return {

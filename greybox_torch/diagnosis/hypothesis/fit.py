@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from greybox_torch.diagnosis.hypothesis.local_minima import no_worse_than_longer
 from greybox_torch.diagnosis.hypothesis.noise import reaches_noise
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.levenberg_marquardt import Settings
@@ -96,7 +97,8 @@ def hypothesis(
     problems = [without_free(problem_for(base, model, start), frozen) for start in starts]
     simulator = simulator or Simulator.of(model, problems[0].free_names, options)
     limits, fits = limits or budget.window_iterations, []
-    for length in at or lengths(base, budget):
+    at = at or lengths(base, budget)
+    for length in at:
         trials = _distinct([*([fits[-1].problem] if fits else []), *problems])
         fit = _best_fit(trials, simulator, length, shorter, limits, budget)
         if fit is None:
@@ -105,6 +107,7 @@ def hypothesis(
             fit = _states_first(fit, fits, simulator, length, limits, budget)
         fits.append(fit)
         shorter = fit
+    fits = no_worse_than_longer(fits, at, simulator, limits)
     return Hypothesis(tuple(effects), model, simulator, tuple(fits), _floor(base, settings), frozen)
 
 

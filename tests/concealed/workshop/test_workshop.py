@@ -18,7 +18,7 @@ from experiments.concealed.workshop import laws
 from experiments.concealed.workshop.draw import lose
 from experiments.concealed.workshop.integrate import Experiment, simulate
 from experiments.concealed.workshop.machines import WORKSHOP
-from experiments.concealed.workshop.plant import Channel, Concealed, Drive, Machine, Port, State
+from experiments.concealed.workshop.plant import Channel, Concealed, Drive, Machine, Port, Seen, State
 from greybox_torch.data import load_dataset
 from greybox_torch.mechanisms.library import LIBRARY
 
@@ -66,6 +66,16 @@ def test_what_a_catalogue_says_of_answers_is_there_in_model_and_library(name: st
             assert port in ports
             assert mechanism in NAMES | GENERAL
         assert set(entry.places) <= ports
+
+
+@pytest.mark.parametrize("name", WORKSHOP)
+def test_every_entry_can_be_drawn(name: str) -> None:
+    machine, rng = WORKSHOP[name], np.random.default_rng(3)
+    moved = rng.uniform(0.1, 1.0, (3, 50, len(machine.states)))
+    seen = Seen(machine.truth, moved, np.ones((3, 50, len(machine.inputs))), np.ones((3, 50, len(machine.outputs))))
+    for entry in machine.catalogue.values():
+        found = entry.draw(rng, seen)
+        assert found.laws or found.actuators or found.sensors
 
 
 class Slider(Machine):
