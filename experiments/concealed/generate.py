@@ -13,7 +13,7 @@ turn ("none" and pairs "a+b" are allowed). A case depends on the seed, its numbe
 
 With --family (mujoco, own, or the name of one machine of `machines/`) the cases are as in the proof, keys beside: 12 by default, effects
 going round, one case in four without, strengths weak, moderate, dominant, overwhelming (encoder-grade noise), or drawn.
-With --family workshop they are on eight machines of everyday, which are in no proof; what is concealed is drawn.
+With --family workshop they are on nine machines of everyday, which are in no proof; what is concealed is drawn.
 """
 
 from __future__ import annotations

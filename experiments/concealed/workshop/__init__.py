@@ -1,1 +1,1 @@
-"""A workshop of machines that the package does not ship: eight machines, their laws and their integrator, in plain Python."""
+"""A workshop of machines that the package does not ship: nine machines, their laws and their integrator, in plain Python."""

@@ -142,7 +142,12 @@ def _draw(machine: Machine, rng: Generator, strength: str, given: Mapping[str, E
         clean = _runs(machine, truth, drives, starts, hidden)
         if not all(np.isfinite(run.outputs).all() for run in clean):
             return None
-        left = left_by_a_refit(machine, truth, clean, starts, usual)
+        if machine.unstable:  # what the effect does under the same feedback
+            left = float(
+                np.sqrt(np.mean([((c.outputs - q.outputs) / usual) ** 2 for c, q in zip(clean, plain, strict=True)]))
+            )
+        else:
+            left = left_by_a_refit(machine, truth, clean, starts, usual)
         share = left / float(np.exp(rng.uniform(*np.log(STRENGTHS[word]))))
     else:
         word, left = "none", 0.0

@@ -120,6 +120,8 @@ class Machine(ABC):
     samples: ClassVar[int] = 1500
     substeps: ClassVar[int] = 10
     experiments: ClassVar[int] = 3
+    unstable: ClassVar[bool] = False
+    """Whether it falls without its feedback, so that no simulation on recorded inputs alone stays near."""
     states: ClassVar[tuple[str, ...]]
     inputs: ClassVar[tuple[Channel, ...]]
     outputs: ClassVar[tuple[Channel, ...]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from experiments.concealed.workshop.machines.balancer import Balancer
 from experiments.concealed.workshop.machines.ball_screw import BallScrew
 from experiments.concealed.workshop.machines.cylinder import Cylinder
 from experiments.concealed.workshop.machines.furuta import Furuta
@@ -13,5 +14,5 @@ from experiments.concealed.workshop.machines.winch import Winch
 from experiments.concealed.workshop.plant import Machine
 
 WORKSHOP: dict[str, Machine] = {
-    m.name: m for m in (BallScrew(), Cylinder(), Winch(), Pump(), Heater(), Gimbal(), Furuta(), VoiceCoil())
+    m.name: m for m in (BallScrew(), Cylinder(), Winch(), Pump(), Heater(), Gimbal(), Furuta(), VoiceCoil(), Balancer())
 }
