@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from greybox_torch.api.design_result import DesignResult
     from greybox_torch.api.diagnose import diagnose
     from greybox_torch.api.diagnosis_result import DiagnosisResult
+    from greybox_torch.api.export import ExportResult, export
     from greybox_torch.api.fit import fit
     from greybox_torch.api.fit_result import FitResult
     from greybox_torch.api.inspect import InspectionResult, inspect
@@ -67,6 +68,7 @@ __all__ = [
     "DiagnosisResult",
     "DiagnosisSettings",
     "Evaluation",
+    "ExportResult",
     "FitResult",
     "FrictionNet",
     "GreyBoxModel",
@@ -99,6 +101,7 @@ __all__ = [
     "diagnose",
     "evaluate",
     "explain",
+    "export",
     "fit",
     "fit_physics",
     "inspect",
@@ -135,6 +138,7 @@ _HOME_OF = {
     "DiagnosisResult": "greybox_torch.api.diagnosis_result",
     "DiagnosisSettings": "greybox_torch.diagnosis.settings",
     "Evaluation": "greybox_torch.evaluation",
+    "ExportResult": "greybox_torch.api.export",
     "FitResult": "greybox_torch.api.fit_result",
     "FrictionNet": "greybox_torch.mechanisms.friction_net",
     "GreyBoxModel": "greybox_torch.model",
@@ -167,6 +171,7 @@ _HOME_OF = {
     "diagnose": "greybox_torch.api.diagnose",
     "evaluate": "greybox_torch.evaluation",
     "explain": "greybox_torch.training",
+    "export": "greybox_torch.api.export",
     "fit": "greybox_torch.api.fit",
     "fit_physics": "greybox_torch.training",
     "inspect": "greybox_torch.api.inspect",

@@ -1,4 +1,4 @@
-"""How the commands that go on from the results of a diagnosis are written on the command line: `design`."""
+"""How the commands that go on from the results of a diagnosis are written on the command line: `design`, `export`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from greybox_torch.commands.options import Options
 
 def declare(app: typer.Typer) -> None:
     """Enter the commands into `app`."""
-    app.command()(design)
+    for command in (design, export):
+        app.command()(command)
 
 
 def design(
@@ -35,3 +36,30 @@ def design(
     from greybox_torch.commands import design
 
     design.run(results, precision, seconds, Options(model, out, seed, json=json))
+
+
+def export(
+    results: Annotated[
+        Path, typer.Argument(metavar="RESULTS", help="Folder of fit, train or diagnose, or a checkpoint.")
+    ],
+    to: Annotated[str, typer.Option(metavar="c|torch|fmu", help="What to export to.")],
+    dataset: Annotated[
+        Path | None,
+        typer.Option(metavar="DATASET.toml", help="Names the model; integration steps are what its recordings need."),
+    ] = None,
+    model: Model = None,
+    name: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Of functions and files.", show_default="the model's")
+    ] = None,
+    step: Annotated[
+        float | None, typer.Option(metavar="SECONDS", help="Largest integration step.", show_default="as needed")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Where to write.", show_default="beside the checkpoint")
+    ] = None,
+    json: Json = False,
+) -> None:
+    """Take the model with its effects home: C, a module of torch, an FMU."""
+    from greybox_torch.commands import export
+
+    export.run(results, to, dataset, name, step, Options(model, out, json=json))

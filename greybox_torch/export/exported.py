@@ -1,0 +1,124 @@
+"""What is exported of a model: its equations as an expression graph, its variables, and a switch for every effect."""
+
+from __future__ import annotations
+
+import keyword
+import re
+from dataclasses import dataclass
+
+from greybox_torch.codegen.arrays import UnsupportedOperation
+from greybox_torch.codegen.lower import Equations, lower
+from greybox_torch.errors import ArgumentError, UserError
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.mechanism import SHARE
+from greybox_torch.mechanisms.stored import restored_model, stored_effects
+from greybox_torch.model import GreyBoxModel
+
+USUAL_STEP = 1e-3
+"""Seconds of an integration step where nothing says how many are needed."""
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A state (``value`` its start), an input or output (``value`` 0), or a parameter, in ``unit``."""
+
+    name: str
+    unit: str
+    value: float
+    description: str = ""
+    lower: float = float("-inf")
+    upper: float = float("inf")
+    is_switch: bool = False
+
+
+@dataclass(frozen=True)
+class ExportedModel:
+    """A model as it is exported.
+
+    ``identifier`` names functions and files, ``step`` is the largest integration step in seconds, ``hold`` how inputs run between samples
+    ("zoh" or "foh"); a parameter that ``is_switch`` is 1 where
+    its effect acts and 0 where it does not. Variables stand in the order of the leaves of ``equations``.
+    """
+
+    identifier: str
+    title: str
+    description: str
+    equations: Equations
+    states: tuple[Variable, ...]
+    inputs: tuple[Variable, ...]
+    outputs: tuple[Variable, ...]
+    parameters: tuple[Variable, ...]
+    step: float
+    hold: str = "zoh"
+
+
+def exported(
+    model: GreyBoxModel, identifier: str | None = None, step: float | None = None, hold: str = "zoh"
+) -> ExportedModel:
+    """The model with the values that it holds.
+
+    Args:
+        identifier: letters, digits and underscores; by default made from the model's title.
+        step: largest integration step in seconds; by default that of the recordings that effects were found in.
+
+    Raises:
+        ArgumentError: no identifier in C and Python, or a step that is none.
+        UserError: equations without a compiled form, or an effect that needs more than the present inputs.
+    """
+    name = _identifier(model.title) if identifier is None else identifier
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,60}", name) or keyword.iskeyword(name):
+        raise ArgumentError("name", name, "expected letters, digits and underscores, beginning with a letter")
+    if step is not None and not 0.0 < step < float("inf"):
+        raise ArgumentError("step", step, "expected seconds, above 0")
+    values = model.values()
+    whole, switches = _switchable(model)
+    try:
+        equations = lower(whole, ())
+    except UnsupportedOperation as error:
+        raise UserError(
+            f"model {model.title}: {error} has no form outside of torch; greybox check says what to write"
+        ) from None
+    return ExportedModel(
+        name,
+        model.title,
+        " ".join((type(model.plain).__doc__ or "").split("\n\n")[0].split()),
+        equations,
+        tuple(
+            Variable(s.name, s.unit, 0.0 if s.initial == "measured" else float(s.initial), s.description)
+            for s in whole.states
+        ),
+        tuple(Variable(i.name, i.unit, 0.0, i.description) for i in whole.inputs),
+        tuple(Variable(o.name, o.unit, 0.0, o.description) for o in whole.outputs),
+        tuple(
+            Variable(p.name, p.unit, values.get(p.name, 1.0), p.description, *p.bounds, is_switch=p.name in switches)
+            for p in whole.declared_parameters
+        ),
+        step if step is not None else _sample_time(whole),
+        hold,
+    )
+
+
+def _switchable(model: GreyBoxModel) -> tuple[GreyBoxModel, set[str]]:
+    """The model with a factor on each effect, and the names of these factors."""
+    effects = stored_effects(model)
+    if not effects:
+        return model, set()
+    flat = restored_model(model.plain, effects)
+    delayed = [a.prefix for a in flat.attachments if "delayed" in a.mechanism.needs]
+    if delayed:
+        raise UserError(
+            f"model {model.title}: {', '.join(delayed)} needs inputs of before, which cannot be exported; expected effects that "
+            "depend on what is there now, such as a lag in the place of the delay"
+        )
+    made = AugmentedModel(flat.base, flat.attachments, flat.surroundings, probed=flat.attachments)
+    return made, {f"{a.prefix}.{SHARE}" for a in flat.attachments}
+
+
+def _sample_time(model: GreyBoxModel) -> float:
+    around = model.surroundings.values() if isinstance(model, AugmentedModel) else ()
+    return min((s.sample_time for s in around if s.sample_time > 0.0), default=USUAL_STEP)
+
+
+def _identifier(title: str) -> str:
+    made = re.sub(r"\W+", "_", title, flags=re.ASCII).strip("_") or "model"
+    return made if made[0].isalpha() else f"model_{made}"

@@ -1,0 +1,39 @@
+"""Torch in Python for expression graphs; every value is a tensor of the batch, or a number."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from greybox_torch.codegen.expression import ARITHMETIC, COMPARISONS
+
+_LOGIC = {"and": "&", "or": "|"}
+_CALLED = {"min": "minimum", "max": "maximum"}
+
+
+class Torch:
+    """See :class:`greybox_torch.export.statements.Language`."""
+
+    def constant(self, value: float) -> str:
+        return f"c({value!r})" if abs(value) != float("inf") else f'c(float("{value}"))'
+
+    def leaf(self, kind: str, index: int) -> str:
+        return f"{kind}[..., {index}]"
+
+    def operation(self, name: str, arguments: Sequence[str]) -> str:
+        signs = {**ARITHMETIC, **COMPARISONS, **_LOGIC}
+        if name in signs:
+            return f"{arguments[0]} {signs[name]} {arguments[1]}"
+        if name == "neg":
+            return f"-{arguments[0]}"
+        if name == "not":
+            return f"~{arguments[0]}"
+        return f"torch.{_CALLED.get(name, name)}({', '.join(arguments)})"
+
+    def as_number(self, condition: str) -> str:
+        return f"{condition}.to(x.dtype)"
+
+    def as_condition(self, number: str) -> str:
+        return f"({number} != 0)"
+
+    def declaration(self, name: str, is_condition: bool, value: str) -> str:
+        return f"        {name} = {value}"
