@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from greybox_torch.api.export import ExportResult, export
     from greybox_torch.api.fit import fit
     from greybox_torch.api.fit_result import FitResult
+    from greybox_torch.api.fleet import fleet
+    from greybox_torch.api.fleet_result import FleetResult
     from greybox_torch.api.inspect import InspectionResult, inspect
     from greybox_torch.api.new import NewModel, new
     from greybox_torch.api.residuals import ResidualResult, residuals
@@ -70,6 +72,7 @@ __all__ = [
     "Evaluation",
     "ExportResult",
     "FitResult",
+    "FleetResult",
     "FrictionNet",
     "GreyBoxModel",
     "Input",
@@ -104,6 +107,7 @@ __all__ = [
     "export",
     "fit",
     "fit_physics",
+    "fleet",
     "inspect",
     "load",
     "load_checkpoint",
@@ -140,6 +144,7 @@ _HOME_OF = {
     "Evaluation": "greybox_torch.evaluation",
     "ExportResult": "greybox_torch.api.export",
     "FitResult": "greybox_torch.api.fit_result",
+    "FleetResult": "greybox_torch.api.fleet_result",
     "FrictionNet": "greybox_torch.mechanisms.friction_net",
     "GreyBoxModel": "greybox_torch.model",
     "Input": "greybox_torch.model",
@@ -174,6 +179,7 @@ _HOME_OF = {
     "export": "greybox_torch.api.export",
     "fit": "greybox_torch.api.fit",
     "fit_physics": "greybox_torch.training",
+    "fleet": "greybox_torch.api.fleet",
     "inspect": "greybox_torch.api.inspect",
     "load": "greybox_torch.restored",
     "load_checkpoint": "greybox_torch.checkpoint",

@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 
 from greybox_torch import __version__
-from greybox_torch.commands import after_diagnosis, first_steps
+from greybox_torch.commands import after_diagnosis, first_steps, many_machines
 from greybox_torch.commands.exit_codes import Commands
 from greybox_torch.commands.option_types import DataSetFile, Device, Json, Model, Out, Precision, Seed, Settings
 from greybox_torch.commands.options import Options
@@ -43,6 +43,7 @@ def greybox(
 
 first_steps.declare(app)
 after_diagnosis.declare(app)
+many_machines.declare(app)
 
 
 @app.command()

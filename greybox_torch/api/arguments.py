@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any, TypeVar
 
 import torch
@@ -12,6 +13,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
 from greybox_torch.estimate.precision import PRECISIONS
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.systems import BUILT_IN, load_model
 
 Settings = TypeVar("Settings")
 
@@ -29,6 +31,22 @@ def check_model(model: Any) -> GreyBoxModel:
         name = model.__name__
         raise ArgumentError("model", Kind(f"the class {name}"), f"expected an object of it: {name}()")
     raise ArgumentError("model", Kind.of(model), "expected a model, or the result of fit or diagnose")
+
+
+def named_model(card: Path, data: DataSet, name: str | None = None) -> GreyBoxModel:
+    """The model called ``name``, or else as the data set's card says.
+
+    Raises:
+        UserError: neither names one, or it cannot be loaded; the message begins with ``card``, the card's place.
+    """
+    wanted = name or data.model
+    if wanted is None:
+        known = ", ".join(BUILT_IN)
+        raise UserError(
+            f"{card}: [model] name is missing and no --model is given; expected a built-in system ({known}) or a file and class "
+            "such as my_motor.py:Motor"
+        )
+    return load_model(wanted)
 
 
 def check_data(data: Any) -> DataSet:

@@ -7,13 +7,12 @@ from pathlib import Path
 
 import torch
 
-from greybox_torch.api.arguments import check_device, check_precision
+from greybox_torch.api.arguments import check_device, check_precision, named_model
 from greybox_torch.commands.options import Options
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.systems import BUILT_IN, load_model
 
 
 @dataclass(frozen=True)
@@ -38,15 +37,8 @@ def load_task(dataset: Path, options: Options) -> Task:
     folder = options.folder(dataset)
     check_folder(folder)
     data = load_dataset(dataset)
-    name = options.model or data.model
-    if name is None:
-        known = ", ".join(BUILT_IN)
-        raise UserError(
-            f"{dataset}: [model] name is missing and no --model is given; expected a built-in system ({known}) or a file and class "
-            "such as my_motor.py:Motor"
-        )
     torch.manual_seed(options.seed)
-    model = load_model(name)
+    model = named_model(dataset, data, options.model)
     make_problem(data, model, data.recordings)  # card and model fit together, whatever the command then takes of it
     return Task(data, model, device, folder, precision)
 

@@ -6,13 +6,14 @@ The format is fixed by the project's contract; see the README for an example.
 from __future__ import annotations
 
 from collections import Counter
+from datetime import date
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, ValidationError, field_validator, model_validator
+from pydantic import Field, PlainValidator, ValidationError, field_validator, model_validator
 
 from greybox_torch.data.card_channels import ChannelEntry, Entry, ExperimentEntry, Finite, Text, TimeEntry, printable
-from greybox_torch.data.card_errors import describe
+from greybox_torch.data.card_errors import describe, quoted
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.reading import read_toml
 
@@ -60,11 +61,19 @@ class ModelEntry(Entry):
     initial: dict[str, InitialEntry] = {}
 
 
+def _a_date(recorded: Any) -> date:
+    """A date of TOML, with a time of day or without."""
+    if not isinstance(recorded, date):
+        raise ValueError(f"found {quoted(recorded)}, expected a date without quotes, such as 2026-03-01")
+    return recorded
+
+
 class Card(Entry):
     """The whole of `dataset.toml`. Either `sample_time` (s) is given or `time`, a column of time stamps.
 
     `resample` makes the time stamps even, that many seconds apart; `decimate` keeps one sample of so many, behind a low pass.
     `diagnosis` names settings of `greybox diagnose`, `limits` what `greybox design` may ask of the machine; those commands check them.
+    For `greybox fleet`, `machine` says which machine was recorded (several cards may be of one) and `recorded` when.
     """
 
     name: Text | None = None
@@ -78,6 +87,8 @@ class Card(Entry):
     model: ModelEntry = ModelEntry()
     diagnosis: dict[str, Any] = {}
     limits: dict[str, Any] = {}
+    machine: Text | None = None
+    recorded: Annotated[date | None, PlainValidator(_a_date)] = None
 
     @field_validator("time", mode="before")
     @classmethod

@@ -72,7 +72,7 @@ def _problem(details: Any, content: dict[str, Any], card: type[BaseModel]) -> st
     place = _at(location, content)
     if kind == "value_error":
         return place + str(details["ctx"]["error"])
-    return place + f"found {_quoted(details['input'])}, expected {expected or details['msg']}"
+    return place + f"found {quoted(details['input'])}, expected {expected or details['msg']}"
 
 
 def _at(location: Sequence[str | int], content: dict[str, Any]) -> str:
@@ -110,7 +110,8 @@ def _without_none(kind: Any) -> Any:
     return next(k for k in kinds if k is not NoneType) if NoneType in kinds else kind
 
 
-def _quoted(value: Any) -> str:
+def quoted(value: Any) -> str:
+    """A value of the card in a message."""
     try:
         text = json.dumps(value, default=str, ensure_ascii=False)
     except (ValueError, RecursionError):  # digits without end, nested without end

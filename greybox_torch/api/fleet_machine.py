@@ -1,0 +1,62 @@
+"""What a worker does with one data set of a fleet. Whether anything is to be done at all is found out before torch is loaded."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from dataclasses import replace
+
+from greybox_torch.data.card import read_card
+from greybox_torch.errors import NumericalError, UserError
+from greybox_torch.fleets.fingerprint import fingerprint
+from greybox_torch.fleets.job import Job
+from greybox_torch.fleets.row import Row
+from greybox_torch.fleets.store import store_failure, stored
+
+
+def diagnose_machine(job: Job) -> tuple[Row, bool]:
+    """The row of one data set, and whether it is that of an earlier run, as nothing has changed since.
+
+    Whatever goes wrong with the data set is a row as well; only what ends the process is not.
+    """
+    began = time.perf_counter()
+    row = Row(job.name, str(job.card), "failed", machine=job.name)
+    try:
+        card = read_card(job.card)
+        row = row.described(card)
+        row = replace(row, fingerprint=fingerprint(job, card))
+        done = stored(job, row.fingerprint)
+        if done is not None:
+            return done, True
+        from greybox_torch.api.fleet_diagnosis import diagnosed
+
+        return diagnosed(job, row, began), False
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # sys.exit in a reader of the user's is one too
+        kind, message = _why(error)
+        row = replace(row, failure=kind, message=message, seconds=time.perf_counter() - began)
+        return _failed(job, row), False
+
+
+def _why(error: BaseException) -> tuple[str, str]:
+    """The kind of a failure, and what to say of it."""
+    match error:
+        case UserError():
+            return "input", str(error)
+        case NumericalError():
+            return "numbers", str(error)
+        case MemoryError():
+            return "memory", "needs more memory than there is"
+        case _:
+            last = traceback.extract_tb(error.__traceback__)[-1]
+            return "error", f"{type(error).__name__}: {error} ({last.filename}, line {last.lineno})"
+
+
+def _failed(job: Job, row: Row) -> Row:
+    """The row, written; it says so where even that fails."""
+    try:
+        store_failure(job, row)
+    except UserError as error:
+        return replace(row, message=f"{row.message}; {error}")
+    return row

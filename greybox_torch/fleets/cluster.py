@@ -1,0 +1,111 @@
+"""The workers of a fleet: Dask's, on this machine or wherever a scheduler has some."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from greybox_torch import __version__
+from greybox_torch.errors import ArgumentError, UserError
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+EXTRA = ("dask", "distributed", "ruptures")
+WAIT = 30.0
+"""Seconds to wait for a scheduler, and for its first worker."""
+LIVES = 1
+"""Times that a data set is begun once more after the worker process that had it ended, on the cluster that is started here."""
+
+
+def check_installed() -> None:
+    """Raises UserError where the extra `fleet` is not installed."""
+    lacking = [name for name in EXTRA if find_spec(name) is None]
+    if lacking:
+        raise UserError(
+            f"a fleet needs {', '.join(lacking)}, not installed here; expected: pip install 'greybox_torch[fleet]'"
+        )
+
+
+@contextmanager
+def connected(scheduler: str | None, workers: int | None, folders: list[Path]) -> Iterator[Client]:
+    """A client of the scheduler at that address; of a cluster on this machine, gone at the end, where it is None.
+
+    Args:
+        workers: processes of the cluster on this machine, one thread each; by default one for each core.
+        folders: what workers elsewhere have to see under the same path as this machine does.
+
+    Raises:
+        ArgumentError: there is no scheduler at the address, it has no workers, or they have another version of this package or see other
+            files.
+    """
+    check_installed()
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what becomes of a worker is told in the table
+    if scheduler is None:
+        with _local(workers) as client:
+            yield client
+        return
+    from distributed import Client
+
+    try:
+        client = Client(scheduler, timeout=WAIT, set_as_default=False)
+    except (OSError, ValueError) as error:  # TimeoutError is an OSError
+        raise ArgumentError("scheduler", scheduler, f"no answer ({error}); expected tcp://host:port") from None
+    with client:
+        _check_workers(client, scheduler, folders)
+        yield client
+
+
+@contextmanager
+def _local(workers: int | None) -> Iterator[Client]:
+    from dask.config import set as configured
+    from dask.system import CPU_COUNT
+    from distributed import Client, LocalCluster
+
+    from greybox_torch.fleets.worker_process import ProcessOfOurs
+
+    alone: dict[str, Any] = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), 1)
+    own = {"distributed.scheduler.allowed-failures": LIVES, "distributed.nanny.pre-spawn-environ": alone}
+    with (
+        configured(own),
+        LocalCluster(
+            n_workers=workers or CPU_COUNT,
+            threads_per_worker=1,
+            processes=True,
+            dashboard_address=cast(str, None),  # none at all
+            silence_logs=logging.CRITICAL,
+        ) as cluster,
+        Client(cluster, set_as_default=False) as client,
+    ):
+        client.register_plugin(ProcessOfOurs())
+        yield client
+
+
+def _check_workers(client: Client, scheduler: str, folders: list[Path]) -> None:
+    """Workers elsewhere can do the work."""
+    try:
+        client.wait_for_workers(1, timeout=WAIT)
+    except TimeoutError:
+        raise ArgumentError("scheduler", scheduler, f"has no worker after {WAIT:.0f} s; expected some") from None
+    try:
+        seen: Any = client.run(look_around, folders)
+    except ImportError as error:
+        raise ArgumentError("scheduler", scheduler, f"its workers lack this package ({error})") from None
+    for worker, (version, missing) in seen.items():
+        if version != __version__:
+            problem = f"worker {worker} has greybox_torch {version}; expected {__version__}, as here"
+            raise ArgumentError("scheduler", scheduler, problem)
+        if missing:
+            problem = (
+                f"worker {worker} does not see {missing[0]}; expected the folders of this machine, under the same path"
+            )
+            raise ArgumentError("scheduler", scheduler, problem)
+
+
+def look_around(folders: list[Path]) -> tuple[str, list[Path]]:
+    """Asked of a worker: the version of this package there, and which of the folders it does not see."""
+    return __version__, [folder for folder in folders if not folder.is_dir()]

@@ -1,0 +1,47 @@
+"""The folder of one data set's results: what `greybox diagnose` writes there, and beside it the row of the fleet's table.
+
+The row is written together with the other files, all of them or none. So a data set counts as done exactly when its row is there, whoever
+was killed meanwhile: a worker, the scheduler or the command itself.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+
+from greybox_torch.errors import UserError
+from greybox_torch.files import json_text, write_all, write_text
+from greybox_torch.fleets.job import Job
+from greybox_torch.fleets.row import Row
+from greybox_torch.reading import read_text
+
+ROW = "fleet_row.json"
+RESULTS = ("verdict.json", "report.html", "model.json", "model.safetensors")
+
+
+def stored(job: Job, fingerprint: str) -> Row | None:
+    """The row of an earlier run, if it came to a verdict on the same files with the same choices, and its files are all there."""
+    try:
+        row = Row.from_json(json.loads(read_text(job.folder / ROW, "a row of the fleet's table")))
+    except (UserError, ValueError):
+        return None
+    whole = all((job.folder / name).is_file() for name in RESULTS)
+    return row if whole and not row.failed and row.fingerprint == fingerprint else None
+
+
+def store(job: Job, row: Row, files: Mapping[Path, str | bytes]) -> None:
+    """Write the results of a diagnosis with their row. Raises UserError where one cannot be written, and then writes none."""
+    write_all({**files, job.folder / ROW: json_text(row.as_json())})
+
+
+def store_failure(job: Job, row: Row) -> None:
+    """Write the row of a data set without a verdict, and remove the results that an earlier run had for it.
+
+    Raises UserError where it cannot be written.
+    """
+    for name in RESULTS:
+        with suppress(OSError):
+            (job.folder / name).unlink()
+    write_text(job.folder / ROW, json_text(row.as_json()))
