@@ -99,8 +99,8 @@ def _run(
     state = Progress(len(jobs))
     folders = [folder, *{job.card.parent for job in jobs[:1]}]
     try:
-        with cluster.connected(scheduler, workers and min(workers, len(jobs)), folders) as client:
-            for job, done in share_out(client, jobs, diagnose_machine):
+        with cluster.connected(scheduler, workers and min(workers, len(jobs)), folders) as there:
+            for job, done in share_out(there, jobs, diagnose_machine):
                 row, kept = (killed_row(job), False) if isinstance(done, Killed) else done
                 rows.append(row)
                 add(row)

@@ -19,9 +19,7 @@ def declare(app: typer.Typer) -> None:
 def fleet(
     places: Annotated[
         list[str],
-        typer.Argument(
-            metavar="FOLDER|GLOB...", help="Every dataset.toml below it, or the cards that match. Repeatable."
-        ),
+        typer.Argument(metavar="FOLDER|GLOB", help="Every dataset.toml below it, or the cards that match. Repeatable."),
     ],
     time_limit: Annotated[
         float | None, typer.Option(min=1.0, metavar="SECONDS", help="When to stop searching on one data set.")

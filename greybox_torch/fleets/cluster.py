@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from greybox_torch import __version__
 from greybox_torch.errors import ArgumentError, UserError
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
 EXTRA = ("dask", "distributed", "ruptures")
 WAIT = 30.0
 """Seconds to wait for a scheduler, and for its first worker."""
-LIVES = 1
-"""Times that a data set is begun once more after the worker process that had it ended, on the cluster that is started here."""
+LIVES = 0
+"""Times that Dask begins a data set once more whose worker process ended, on the cluster that is started here; the schedule does, alone."""
 
 
 def check_installed() -> None:
@@ -31,9 +32,23 @@ def check_installed() -> None:
         )
 
 
+@dataclass(frozen=True)
+class Workers:
+    """What shares out the work; ``restore`` is called now and then, and starts once more what is to be there and is gone."""
+
+    client: Client
+    restore: Callable[[], None] = lambda: None
+
+    @property
+    def threads(self) -> int:
+        """Those that there are now."""
+        there: Any = self.client.nthreads()
+        return sum(there.values())
+
+
 @contextmanager
-def connected(scheduler: str | None, workers: int | None, folders: list[Path]) -> Iterator[Client]:
-    """A client of the scheduler at that address; of a cluster on this machine, gone at the end, where it is None.
+def connected(scheduler: str | None, workers: int | None, folders: list[Path]) -> Iterator[Workers]:
+    """The workers of the scheduler at that address; of a cluster on this machine, gone at the end, where it is None.
 
     Args:
         workers: processes of the cluster on this machine, one thread each; by default one for each core.
@@ -46,8 +61,8 @@ def connected(scheduler: str | None, workers: int | None, folders: list[Path]) -
     check_installed()
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what becomes of a worker is told in the table
     if scheduler is None:
-        with _local(workers) as client:
-            yield client
+        with _local(workers) as here:
+            yield here
         return
     from distributed import Client
 
@@ -57,32 +72,35 @@ def connected(scheduler: str | None, workers: int | None, folders: list[Path]) -
         raise ArgumentError("scheduler", scheduler, f"no answer ({error}); expected tcp://host:port") from None
     with client:
         _check_workers(client, scheduler, folders)
-        yield client
+        yield Workers(client)
 
 
 @contextmanager
-def _local(workers: int | None) -> Iterator[Client]:
+def _local(workers: int | None) -> Iterator[Workers]:
     from dask.config import set as configured
     from dask.system import CPU_COUNT
     from distributed import Client, LocalCluster
 
     from greybox_torch.fleets.worker_process import ProcessOfOurs
 
+    count = workers or CPU_COUNT
     alone: dict[str, Any] = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), 1)
     own = {"distributed.scheduler.allowed-failures": LIVES, "distributed.nanny.pre-spawn-environ": alone}
     with (
         configured(own),
         LocalCluster(
-            n_workers=workers or CPU_COUNT,
+            n_workers=count,
             threads_per_worker=1,
             processes=True,
-            dashboard_address=cast(str, None),  # none at all
+            dashboard_address="127.0.0.1:0",
             silence_logs=logging.CRITICAL,
         ) as cluster,
         Client(cluster, set_as_default=False) as client,
     ):
         client.register_plugin(ProcessOfOurs())
-        yield client
+        started: Any = cluster
+        here = Workers(client, lambda: None if here.threads >= count else started.scale(count))
+        yield here
 
 
 def _check_workers(client: Client, scheduler: str, folders: list[Path]) -> None:

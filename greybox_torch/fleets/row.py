@@ -78,7 +78,7 @@ class Row:
             ValueError: it is of another form, such as one that another version has written.
         """
         known = {entry.name for entry in dataclasses.fields(cls)}
-        if not set(content) <= known or content.get("answer") not in ANSWERS:
+        if not isinstance(content, dict) or not set(content) <= known or content.get("answer") not in ANSWERS:
             raise ValueError("not a row of a fleet's table")
         try:
             return cls(**content)

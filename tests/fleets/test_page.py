@@ -1,0 +1,99 @@
+"""The page as HTML, and as a browser shows it."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from greybox_torch.fleets.history import histories
+from greybox_torch.fleets.in_common import groups
+from greybox_torch.fleets.page import render_fleet
+from greybox_torch.fleets.row import Row
+
+BROWSER = next(
+    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
+)
+
+
+@pytest.fixture(scope="module")
+def rows(coulomb: Callable[..., Row]) -> list[Row]:
+    """Six dated machines of which one changes and one stands out, one with nothing missing, and one that failed."""
+    dated = [
+        coulomb(f"pump{k}", 0.3 + 0.002 * ((7 * k + 3 * m) % 5) + (0.2 if k == 1 and m > 6 else 0.0), month=m)
+        for k in range(6)
+        for m in range(1, 13)
+    ]
+    failed = replace(
+        coulomb("<b>bad</b>", None), answer="failed", failure="input", message="dataset.toml: a & b", report=""
+    )
+    return [*dated, coulomb("a healthy one", None, fit_before=99.123, fit_after=99.123), failed]
+
+
+@pytest.fixture(scope="module")
+def html(rows: list[Row]) -> str:
+    return render_fleet(rows, groups(rows), histories(rows), waiting=3)
+
+
+def text_of(html: str) -> str:
+    return " ".join(re.sub(r"<[^>]+>", " ", re.sub(r"<(script|style)>.*?</\1>", "", html, flags=re.DOTALL)).split())
+
+
+def test_what_is_told(html: str) -> None:
+    text = text_of(html)
+    assert (
+        "8 machines: in 6 something is missing from the model; 1 of 6 recorded over time changed; 1 data set failed."
+        in text
+    )
+    assert "Stopped: 3 data sets not begun or not finished. The same command goes on with them." in text
+    assert "an effect with a name 72 nothing missing 1 failed 1" in text
+    assert (
+        "pump1 : Coulomb friction at rotor: F_c goes from 0.303 N·m to 0.504 N·m between 2026-06-01 and 2026-07-01"
+        in text
+    )
+    assert "F_c = 0.300 ± 0.010 N·m" in text
+    assert "80.0 % 98.0 %" in text
+    assert "Input at fault more dataset.toml: a &amp; b" in text
+    assert "deviation between machines" in text
+    assert text.count("No change that is more than chance.") == 5
+
+
+def test_it_needs_no_network_and_escapes(html: str) -> None:
+    assert "<b>bad</b>" not in html and "&lt;b&gt;bad&lt;/b&gt;" in html
+    assert not re.search(r'(src|href)="(?!#)(https?:|//)', html)
+    assert "<link" not in html and "@import" not in html
+    assert '<a href="a%20healthy%20one/report.html">' in html
+
+
+def test_a_fleet_without_dates_or_verdicts(coulomb: Callable[..., Row]) -> None:
+    text = text_of(render_fleet([coulomb("one", 0.3)], (), ()))
+    assert "Over time" not in text and "Recorded" not in text and "in common" not in text
+    assert "0 machines: in 0 something is missing" in text_of(render_fleet([], (), ()))
+
+
+@pytest.mark.skipif(BROWSER is None, reason="no Chromium on this machine")
+def test_in_a_browser(html: str, tmp_path: Path) -> None:
+    """Searched, filtered and sorted by what stands in the address."""
+    page = tmp_path / "fleet.html"
+    page.write_text(html, encoding="utf-8")
+    address = f"{page.as_uri()}#q=pump1&answer=named&sort=-parameter"
+    options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom"]
+    shown = subprocess.run(
+        [str(BROWSER), *options, address], capture_output=True, text=True, check=True, timeout=120
+    ).stdout
+    assert ">12 of 74</output>" in shown
+    visible = [
+        row
+        for row in re.findall(r"<tr (?:class|data)[^>]*>.*?</tr>", shown, re.DOTALL)
+        if "hidden" not in row.split(">")[0]
+    ]
+    levels = [
+        float(found) for row in visible for found in re.findall(r'data-label="Key parameter" data-value="([^"]+)"', row)
+    ]
+    assert len(levels) == 12 and levels == sorted(levels, reverse=True)
+    assert 'data-key="parameter" class="number" aria-sort="descending"' in shown

@@ -1,0 +1,130 @@
+"""Sharing out the work: nothing lost with a worker, what ends workers told apart, and never more under way than there are threads."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from distributed import Client, LocalCluster
+
+from greybox_torch.errors import ArgumentError, UserError
+from greybox_torch.fleets import cluster, schedule
+from greybox_torch.fleets.job import Job
+from greybox_torch.fleets.schedule import Killed, share_out
+
+
+@pytest.fixture(scope="module")
+def threads() -> Iterator[Client]:
+    with (
+        LocalCluster(n_workers=2, threads_per_worker=1, processes=False, dashboard_address="127.0.0.1:0") as both,
+        Client(both, set_as_default=False) as client,
+    ):
+        yield client
+
+
+def jobs(count: int) -> list[Job]:
+    return [Job(f"p{k}", Path("dataset.toml"), Path("out")) for k in range(count)]
+
+
+class UnderWay:
+    """Counts the calls of `work` that run at the same time, in this process."""
+
+    lock = threading.Lock()
+    now = most = 0
+
+
+def work(job: Job) -> str:
+    with UnderWay.lock:
+        UnderWay.now += 1
+        UnderWay.most = max(UnderWay.most, UnderWay.now)
+    time.sleep(0.005)
+    with UnderWay.lock:
+        UnderWay.now -= 1
+    return job.name
+
+
+def test_all_results_and_no_more_under_way_than_threads(threads: Client) -> None:
+    given = 0
+
+    def counted() -> Iterator[Job]:
+        nonlocal given
+        for job in jobs(12):
+            given += 1
+            yield job
+
+    results = []
+    for done, (job, name) in enumerate(share_out(cluster.Workers(threads), counted(), work), start=1):
+        results.append((job.name, name))
+        assert given <= done + 2
+    assert sorted(results) == sorted((job.name, job.name) for job in jobs(12))
+    assert 1 <= UnderWay.most <= 2
+
+
+def test_workers_that_do_not_come_back_are_started_once_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(schedule, "TICK", 0.1)
+    local: dict[str, Any] = {"threads_per_worker": 1, "processes": False, "dashboard_address": "127.0.0.1:0"}
+    with LocalCluster(n_workers=0, **local) as empty, Client(empty, set_as_default=False) as client:
+        there = cluster.Workers(client, lambda: empty.scale(1))
+        assert there.threads == 0
+        assert [name for _, name in share_out(there, jobs(2), work)] == ["p0", "p1"]
+
+
+def test_no_scheduler() -> None:
+    with (
+        pytest.raises(ArgumentError, match="expected tcp://host:port") as error,
+        cluster.connected("nowhere", None, []),
+    ):
+        pass
+    assert error.value.for_option().startswith("--scheduler nowhere: no answer")
+
+
+def test_a_scheduler_elsewhere(threads: Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is used as it is, and asked for what its workers have."""
+    address = str(threads.scheduler_info()["address"])
+    with cluster.connected(address, None, [tmp_path]) as client:
+        assert [name for _, name in share_out(client, jobs(3), lambda job: job.card)] == [Path("dataset.toml")] * 3
+    with (
+        pytest.raises(ArgumentError, match=r"does not see .*elsewhere"),
+        cluster.connected(address, None, [tmp_path / "elsewhere"]),
+    ):
+        pass
+    monkeypatch.setattr(cluster, "look_around", lambda folders: ("0.0.0", []))
+    with (
+        pytest.raises(ArgumentError, match=r"has greybox_torch 0\.0\.0; expected"),
+        cluster.connected(address, None, [tmp_path]),
+    ):
+        pass
+
+
+def test_without_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster, "EXTRA", ("dask", "no_such_package"))
+    with pytest.raises(UserError, match=r"needs no_such_package, .* pip install 'greybox_torch\[fleet\]'"):
+        cluster.check_installed()
+
+
+def test_workers_that_are_lost_and_one_that_ends_them(tmp_path: Path) -> None:
+    """Real processes: one data set ends every worker that has it, another's worker is killed once; all others come to a result."""
+
+    def work(job: Job) -> Any:
+        import os
+        import signal
+        from pathlib import Path
+
+        if job.name == "p1":
+            os._exit(1)
+        once = Path(job.folder) / "killed"
+        if job.name == "p2" and not once.exists():
+            once.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        return os.environ["OMP_NUM_THREADS"], signal.getsignal(signal.SIGINT) == signal.SIG_IGN
+
+    given = [Job(job.name, job.card, tmp_path) for job in jobs(5)]
+    with cluster.connected(None, 2, []) as client:
+        results = {job.name: done for job, done in share_out(client, given, work)}
+    assert isinstance(results.pop("p1"), Killed)
+    assert results == dict.fromkeys(("p0", "p2", "p3", "p4"), ("1", True))
+    assert (tmp_path / "killed").exists()
