@@ -64,7 +64,7 @@ class EquationError:
         """Means (…, R M) over the stretches of what was averaged over the finest ones (…, R, M_finest), in units of the scales."""
         means = finest_means if self.coarser is None else self.coarser.mean(finest_means)
         means = means / self.scales[:, None]
-        return means.reshape(*means.shape[:-2], -1)
+        return means.reshape(*means.shape[:-2], len(self.scales) * self.count)
 
     def mean(self, errors: np.ndarray) -> np.ndarray:
         """Means (…, R M) of errors (…, R, N), in units of the scales."""

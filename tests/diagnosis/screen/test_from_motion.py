@@ -7,12 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from greybox_torch.data import ParameterEntry
 from greybox_torch.diagnosis.screen.from_motion import candidates_from_motion
 from greybox_torch.diagnosis.screen.regression import regressions
 from greybox_torch.diagnosis.screen.shortlist import Candidate, with_motion
 from greybox_torch.diagnosis.screen.views import Views, views_of
 from greybox_torch.diagnosis.select.offered import from_motion
 from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.estimate.problem import make_problem
 from greybox_torch.mechanisms.actuator import InputLag
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, TorqueRipple
@@ -27,6 +29,17 @@ def test_friction_is_found_with_its_level_and_the_mass_as_it_is(rubbing) -> None
     start = found["coulomb_friction"].starts[0]
     assert start["sled.coulomb_friction.F_c"] == pytest.approx(1.5, rel=0.03)
     assert start["m"] == pytest.approx(2.5, rel=0.03)
+
+
+def test_a_model_without_free_parameters_is_compared_as_well(sled_run, machines, rubbing) -> None:
+    model, known = load_model(f"{machines / 'sled.py'}:Sled"), {"m": (2.5, True), "c": (0.8, True)}
+    data = sled_run(lambda q, v: -1.5 * np.tanh(v / 0.02))
+    entries = {n: ParameterEntry(value=v, fixed=fixed) for n, (v, fixed) in known.items()}
+    problem = make_problem(replace(data, parameters=entries), model, data.estimation())
+    study = replace(rubbing.study, problem=problem)
+    found = candidates_from_motion(study, problem)
+    start = next(c.starts[0] for c in found if isinstance(c.attachment.mechanism, CoulombFriction))
+    assert start["sled.coulomb_friction.F_c"] == pytest.approx(1.5, rel=0.03)
 
 
 def test_what_is_in_the_hypothesis_is_not_offered_again(rubbing) -> None:
