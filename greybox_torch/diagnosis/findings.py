@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
 from greybox_torch.diagnosis.confirm.free_runs import Judgement
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.promotion import promote_validation, serves
@@ -70,9 +71,11 @@ def find(dataset: DataSet, model: GreyBoxModel, make_study: MakeStudy, clock: St
     clock.lap("final fits on whole records")
     judge = partial(_judged, unlimited, dataset, problem, others, plain)
     again = partial(judge, state, gains, augmented)
-    (state, gains, judged), was_judged = or_else(again, again)
+    (state, gains, judged, told), was_judged = or_else(again, again)
     clock.lap("validation and report data")
-    return Findings(dataset, study, state, others, gains, judged, complete and confirmed and fitted and was_judged)
+    return Findings(
+        dataset, study, state, others, gains, judged, complete and confirmed and fitted and was_judged, told
+    )
 
 
 def find_with_more(first: Findings, model: GreyBoxModel, make_study: MakeStudy, clock: Stopwatch) -> Findings:
@@ -141,23 +144,24 @@ def _judged(
     state: SearchState,
     gains: Mapping[str, Gain],
     augmented: Final,
-) -> tuple[SearchState, Mapping[str, Gain], Judgement]:
-    """Effects taken back, the weakest first, until those left hold on the validation experiments."""
+) -> tuple[SearchState, Mapping[str, Gain], Judgement, tuple[str, ...]]:
+    """Effects taken back, the weakest first, until those left hold on the validation experiments; and what a reader has to know of it."""
     study.working_on("judging on the validation experiments")
     judge = partial(Judgement, study, dataset, problem)
-    judged = judge(state, plain, augmented)
+    judged, told = judge(state, plain, augmented), ()
     while state.effects and ((empty := _empty(study, state, augmented)) or not judged.holds):
         if not state.compared_without:
             state = result_of(drop_superfluous(study, state))
         if empty is not None and empty in state.prefixes:
             state = result_of(drop(study, state, empty))
         else:
-            state = take_back_weakest(study, state, gains)
+            before, state = state, take_back_weakest(study, state, gains)
+            told += said_of_windows(before, state, gains, judged, study.settings)
         # What one of several accounts for, others may take over.
         gains = held_out_gains(state, others) if others is not None and state.effects else {}
         augmented = finish(state.current, study.settings, study.budget) if state.effects else plain
         judged = judge(state, plain, augmented)
-    return state, gains, judged
+    return state, gains, judged, told
 
 
 def _empty(study: Study, state: SearchState, augmented: Final) -> str | None:
