@@ -15,6 +15,7 @@ import numpy as np
 
 from greybox_torch.estimate.levenberg_marquardt import ROUGH, Settings
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.rival import Rival
 from greybox_torch.estimate.rough_starts import rough_starts
 from greybox_torch.estimate.window_step import Hold, WindowModel, held, stepped
 from greybox_torch.simulation.passes import Pass
@@ -34,10 +35,15 @@ CARRY_EVERY = 4
 """Accepted steps after which carried states are brought along anew, with the parameters as they then are."""
 
 
+UNDAMPED = 1e-9
+"""Damping of a step that goes to the lowest point of the quadratic model; what is singular stays as it is."""
+
+
 @dataclass(frozen=True)
 class WindowFit:
     """Result: the problem with its parameters improved, window starts (W, n_x), mean squared weighted error, energy of the error per
-    window (W,), evaluations used.
+    window (W,), evaluations used; ``promise``, the mean squared error that the Gauss-Newton model there still promises; ``along``, the
+    starts with carried states brought along (W, n_x), where that is known.
     """
 
     problem: Problem
@@ -46,6 +52,8 @@ class WindowFit:
     mean_square: float
     energies: np.ndarray
     evaluations: int
+    promise: float = 0.0
+    along: np.ndarray | None = None
 
 
 def fit_windows(
@@ -57,6 +65,7 @@ def fit_windows(
     shorter: WindowFit | None = None,
     settings: Settings = ROUGH,
     size: float | None = None,
+    rival: Rival | None = None,
 ) -> WindowFit | None:
     """Estimate the free parameters on windows of ``length`` samples with free start states; None where even these overflow.
 
@@ -65,6 +74,7 @@ def fit_windows(
             values where a state is measured and the model's start value where not.
         shorter: a fit on shorter windows, of this model or of the model that it extends.
         size: the size at which a shrunk parameter costs :data:`SHRINKING` samples' worth of error; the largest start value by default.
+        rival: a fit of the same windows from another start, beside which this one is given up early where it is far behind.
     """
     windows = cut(problem.records, length)
     states = starts
@@ -77,8 +87,10 @@ def fit_windows(
         return None
     hold = _weak_hold(problem, states, here.mean_square, windows.steps, size)
     here = held(here, hold)
-    evaluations, accepted_steps, damping, growth = 1, 0, 1e-2, 2.0
-    for _ in range(settings.iterations):
+    evaluations, accepted_steps, damping, growth, along = 1, 0, 1e-2, 2.0, None
+    for iteration in range(settings.iterations):
+        if rival is not None and rival.lost(here.mean_square, iteration, settings.iterations - iteration):
+            break
         accepted = False
         for _ in range(settings.trials):
             trial, trial_states, predicted = stepped(problem, here, states, damping)
@@ -91,22 +103,29 @@ def fit_windows(
             gain = -1.0 if there is None else (here.cost - there.cost) / predicted
             if there is not None and gain > LEAST_GAIN_RATIO:
                 change = (here.cost - there.cost) / here.cost
-                problem, states, here, accepted = trial, trial_states, there, True
+                problem, states, here, accepted, along = trial, trial_states, there, True, None
                 damping, growth = max(damping * max(0.1, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3), 1e-9), 2.0
                 accepted_steps += 1
                 break
             damping, growth = damping * growth, growth * 2.0
         still = not accepted or change < settings.tolerance
         if problem.carried.any() and (still or accepted_steps % CARRY_EVERY == 0):
-            carried = carried_starts(problem, simulator, windows, states)
-            again = _evaluate(problem, simulator, windows, carried, hold)
+            along = carried_starts(problem, simulator, windows, states)
+            again = _evaluate(problem, simulator, windows, along, hold)
             evaluations += 1
             if again is not None and again.cost < here.cost:
                 still = still and again.cost > (1 - settings.tolerance) * here.cost
-                states, here, damping = carried, again, min(damping, 1e-2)
+                states, here, damping = along, again, min(damping, 1e-2)
         if still:
             break
-    return WindowFit(problem, windows, states, here.mean_square, here.energies, evaluations)
+    promise = _promise(problem, here, states)
+    return WindowFit(problem, windows, states, here.mean_square, here.energies, evaluations, promise, along)
+
+
+def _promise(problem: Problem, here: WindowModel, states: np.ndarray) -> float:
+    """The mean squared error at the lowest point, within bounds, of the quadratic model of ``here``."""
+    predicted = stepped(problem, here, states, UNDAMPED)[2]
+    return here.mean_square * max(1.0 - predicted / max(here.cost, 1e-300), 0.0)
 
 
 def _starts_of(shorter: WindowFit, problem: Problem, simulator: Simulator, windows: Windows) -> np.ndarray:

@@ -9,6 +9,7 @@ import pytest
 
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, make_problem
+from greybox_torch.estimate.rival import Rival
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.simulation.simulator import Simulator
@@ -75,6 +76,30 @@ def test_with_an_unknown_at_its_bound_the_others_reach_their_optimum(data_set: A
     assert bounded.mean_square == pytest.approx(alone.mean_square, rel=1e-4)
     assert bounded.problem.values == pytest.approx(alone.problem.values, rel=5e-3, abs=1e-12)
     assert bounded.evaluations < 30
+
+
+def test_a_fit_at_its_optimum_promises_no_more_and_one_before_it_does(data_set: Any) -> None:
+    problem = recorded(data_set, 0.7)
+    simulator = Simulator.of(problem.model, problem.free_names)
+    begun = fit_windows(problem, simulator, 100, settings=Settings(iterations=3, tolerance=1e-12))
+    assert begun is not None
+    ended = fit_windows(begun.problem, simulator, 100, starts=begun.starts, settings=TIGHT)
+    assert ended is not None
+    assert begun.promise < begun.mean_square
+    assert ended.promise == pytest.approx(ended.mean_square, rel=1e-3)
+
+
+def test_a_fit_far_behind_its_rival_is_given_up(data_set: Any) -> None:
+    problem = recorded(data_set, 0.7)
+    simulator = Simulator.of(problem.model, problem.free_names)
+    plain = fit_windows(problem, simulator, 100, settings=TIGHT)
+    beside_worse = fit_windows(problem, simulator, 100, settings=TIGHT, rival=Rival(1e6, 1.0, 1.0))
+    beside_better = fit_windows(problem, simulator, 100, settings=TIGHT, rival=Rival(1e-30, 1.0, 1.0))
+    assert plain is not None
+    assert beside_worse is not None
+    assert beside_better is not None
+    assert beside_worse.mean_square == plain.mean_square
+    assert beside_better.evaluations < plain.evaluations
 
 
 class WithSpare(TwoGains):

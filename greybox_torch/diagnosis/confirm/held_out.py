@@ -132,7 +132,7 @@ def _window_by_window(one: WindowFit | None, other: WindowFit | None) -> WindowF
     energies = np.where(better, other.energies, one.energies)
     share = float(energies.sum()) / max(float(one.energies.sum()), 1e-300)
     starts = np.where(better[:, None], other.starts, one.starts)
-    return replace(one, starts=starts, energies=energies, mean_square=share * one.mean_square)
+    return replace(one, starts=starts, energies=energies, mean_square=share * one.mean_square, along=None)
 
 
 def _no_worse_than_free_runs(

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.local_minima import no_worse_than_longer
-from greybox_torch.diagnosis.hypothesis.noise import reaches_noise
+from greybox_torch.diagnosis.hypothesis.noise import floor_known, reaches_noise
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for
+from greybox_torch.estimate.rival import Rival
 from greybox_torch.estimate.window_fit import WindowFit, carried_starts, fit_windows
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
@@ -20,6 +21,9 @@ from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import SimulationOptions, Simulator
+
+SETTLED = 0.02
+"""Share of its error that a fit near its optimum promises to lose at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +104,9 @@ def hypothesis(
     at = at or lengths(base, budget)
     for length in at:
         trials = _distinct([*([fits[-1].problem] if fits else []), *problems])
-        fit = _best_fit(trials, simulator, length, shorter, limits, budget)
+        fit = _best_fit(
+            trials, simulator, length, shorter, partial(_as_far_as_counts, base, limits, settings, budget), budget
+        )
         if fit is None:
             return None
         if fits and reaches_noise(base, fits[-1], settings) and not reaches_noise(base, fit, settings):
@@ -131,16 +137,30 @@ def _best_fit(
     simulator: Simulator,
     length: int,
     shorter: WindowFit | None,
-    limits: Settings,
+    limits_of: Callable[[WindowFit], Settings],
     budget: SearchBudget,
 ) -> WindowFit | None:
-    begin = partial(fit_windows, simulator=simulator, length=length, shorter=shorter)
-    begun = side_by_side(partial(begin, t, settings=budget.first_iterations) for t in trials)
+    first, *others = trials
+    begin = partial(fit_windows, simulator=simulator, length=length, shorter=shorter, settings=budget.first_iterations)
+    leading = begin(first)
+    rival = None if leading is None else Rival(leading.mean_square, budget.rival_start, budget.rival_pace)
+    begun = [leading, *side_by_side(partial(begin, t, rival=rival) for t in others)]
     found = sorted((fit for fit in begun if fit is not None), key=lambda f: f.mean_square)
     if not found:
         return None
-    ended = side_by_side(partial(continued, fit, simulator, length, limits, budget) for fit in _apart(found, budget))
+    ended = side_by_side(
+        partial(continued, fit, simulator, length, limits_of(fit), budget) for fit in _apart(found, budget)
+    )
     return min(ended, key=lambda f: f.mean_square)
+
+
+def _as_far_as_counts(
+    base: Problem, limits: Settings, settings: DiagnosisSettings, budget: SearchBudget, fit: WindowFit
+) -> Settings:
+    """``limits`` with the tolerance that decisions can still see: at the noise all samples count, where more is left they do not."""
+    if reaches_noise(base, fit, settings, settings.above_noise) or not floor_known(base, settings):
+        return limits
+    return replace(limits, tolerance=max(limits.tolerance, budget.mismatch_tolerance))
 
 
 def _states_first(
@@ -166,22 +186,29 @@ def _states_first(
 
 
 def _apart(found: Sequence[WindowFit], budget: SearchBudget) -> list[WindowFit]:
-    """The best, and the next one that seems to be on its way to another optimum: being ahead early says little."""
+    """The best, and the next one that may be on its way to another, lower optimum: being ahead early says little."""
     best = found[0]
     values = best.problem.values
     rivals = [
         f
         for f in found[1:]
         if f.mean_square < budget.rival_start * best.mean_square
+        and not _ends_above(f, (1 - budget.least_rival_gain) * best.mean_square)
         and not np.allclose(f.problem.values, values, rtol=0.02)
     ]
     return [best, *rivals[:1]]
 
 
+def _ends_above(fit: WindowFit, mean_square: float) -> bool:
+    """Whether a fit that is near its optimum, where its Gauss-Newton model can be believed, is not going to come below an error."""
+    return fit.promise > (1 - SETTLED) * fit.mean_square and fit.promise >= mean_square
+
+
 def continued(fit: WindowFit, simulator: Simulator, length: int, limits: Settings, budget: SearchBudget) -> WindowFit:
     """The fit carried on to the end; where states are carried, in turns with bringing those along anew, while that gains anything."""
     for _ in range(budget.most_turns):
-        starts = carried_starts(fit.problem, simulator, fit.windows, fit.starts)
+        along = fit.along
+        starts = carried_starts(fit.problem, simulator, fit.windows, fit.starts) if along is None else along
         again = fit_windows(fit.problem, simulator, length, starts=starts, settings=limits)
         if again is None or again.mean_square > fit.mean_square:
             break

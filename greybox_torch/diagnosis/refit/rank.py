@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, augmented, lengths, score_of, without_free
 from greybox_torch.diagnosis.hypothesis.significance import white_samples, window_significance
 from greybox_torch.diagnosis.refit.curve import laws_on_curve
@@ -88,11 +89,16 @@ def rank(study: Study, current: Hypothesis, found: Sequence[Candidate]) -> list[
         (trial.score, candidate, trial, simulator) for trial, (candidate, simulator) in trials if trial is not None
     ]
     at_middle = [f for f in current.fits if f.windows.steps == cut(study.problem.records, middle[0]).steps]
-    hopeless = score_of(at_middle, current.floor) + study.settings.trial_allowance
+    before = score_of(at_middle, current.floor)
+    hopeless = before + study.settings.trial_allowance
     first = sorted((entry for entry in first if entry[0] < hopeless), key=lambda entry: entry[0])
-    # Curves take longest: begun last, they would leave the other cores idle.
-    longest_first = sorted(_finalists(first, study), key=lambda entry: not entry[1].unknown)
-    final = [r for r in side_by_side(partial(in_full, *entry[1:]) for entry in longest_first) if r is not None]
+    final: list[RankedCandidate] = []
+    for some in _leading_and_rest(_finalists(first, study), before, study.settings):
+        if any(_pays(study, r) for r in final):
+            break
+        # Curves take longest: begun last, they would leave the other cores idle.
+        longest_first = sorted(some, key=lambda entry: not entry[1].unknown)
+        final += [r for r in side_by_side(partial(in_full, *entry[1:]) for entry in longest_first) if r is not None]
     return in_order([*final, *_laws_behind_curve(study, current, final, frozen)], study.settings)
 
 
@@ -103,6 +109,28 @@ def judged(
     return RankedCandidate(
         candidate, fitted, before.score - fitted.score, window_significance(before, fitted, settings)
     )
+
+
+def _pays(study: Study, ranked: RankedCandidate) -> bool:
+    """Whether a named candidate improves on the hypothesis before it, surely, and by a law that says something of the machine."""
+    settings, attachment = study.settings, ranked.candidate.attachment
+    improves = ranked.gain > settings.least_gain and ranked.significance > settings.least_significance
+    sound = degenerate(attachment, study.surroundings, ranked.fitted.values()) is None
+    return improves and sound and not ranked.unknown
+
+
+def _leading_and_rest(
+    entries: Sequence[tuple[float, Candidate, Hypothesis, Simulator]], before: float, settings: DiagnosisSettings
+) -> list[list[tuple[float, Candidate, Hypothesis, Simulator]]]:
+    """Those whose trial came within reach of the best, and the others.
+
+    Args:
+        before: the score without any of them.
+    """
+    best = min((entry[0] for entry in entries), default=before)
+    reach = before - settings.finalist_share * (before - best) + settings.trial_allowance
+    leading = [entry for entry in entries if entry[0] <= reach]
+    return [leading, [entry for entry in entries if entry[0] > reach]]
 
 
 def _laws_behind_curve(

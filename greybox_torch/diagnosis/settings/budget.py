@@ -54,6 +54,13 @@ class SearchBudget:
         "How far what is compared in the end is refitted.",
         chosen_by=TIME,
     )
+    mismatch_tolerance: float = share(
+        3e-4,
+        "Tolerance of a fit that leaves more than noise, if not larger: decisions are then by differences of some "
+        "thousandths in the logarithm of the error, not by the likelihood of every sample.",
+        unit="share of the cost",
+        chosen_by="a tenth of the price of a parameter",
+    )
     record_first_iterations: Settings = iteration(
         Settings(iterations=12, tolerance=1e-3),
         "How far every start of the final fit on whole records is followed.",
@@ -77,6 +84,20 @@ class SearchBudget:
         4.0,
         "How many times the best mean squared error a start may be at, after its first iterations, and still be followed.",
         unit="times the best mean squared error",
+        chosen_by=TIME,
+    )
+    rival_pace: float = ratio(
+        1.6,
+        "The factor that a start far behind is expected to gain on the best in every iteration still to come; "
+        "where that would not bring it near enough, it is given up.",
+        unit="times the mean squared error per iteration",
+        chosen_by=TIME,
+    )
+    least_rival_gain: float = share(
+        0.003,
+        "How much lower than the best so far the Gauss-Newton model of another start must promise to come for that "
+        "to be followed to its end: the price of a parameter, below which no decision is taken.",
+        unit="share of the mean squared error",
         chosen_by=TIME,
     )
     most_turns: int = count(

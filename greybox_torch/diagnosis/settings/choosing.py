@@ -116,6 +116,13 @@ class ComparisonSettings:
     trial_allowance: float = number(
         0.05, "How much worse than without it a candidate may be after its trial.", unit=LOG_ERROR
     )
+    finalist_share: float = share(
+        0.25,
+        "Share of the gain of the best trial, less the allowance for one, from which a rival is refitted in full; "
+        "the others are only where none of those pays.",
+        unit="share of the best gain",
+        chosen_by="far below the share from which a rival is polished; development cases",
+    )
     polish_share: float = share(
         0.7, "Share of the best gain from which a rival is polished.", unit="share of the best gain"
     )
