@@ -134,3 +134,21 @@ def test_not_a_card(tmp_path: Path) -> None:
     (tmp_path / "latin.toml").write_bytes("name = 'Prüfstand'".encode("latin-1"))
     with pytest.raises(UserError, match="not UTF-8 text"):
         read_card(tmp_path / "latin.toml")
+
+
+@pytest.mark.parametrize("date", ["2026-03-01", "2026-03-01T14:30:00", "2026-03-01T14:30:00Z"])
+def test_machine_and_date(tmp_path: Path, date: str) -> None:
+    path = tmp_path / "dataset.toml"
+    path.write_text(f'machine = "pump 7"\nrecorded = {date}\n' + TOP + CHANNELS + EXPERIMENT)
+    card = read_card(path)
+    assert card.machine == "pump 7"
+    assert card.recorded is not None and card.recorded.isoformat().startswith(date.removesuffix("Z"))
+
+
+@pytest.mark.parametrize("date", ['"2026-03-01"', "20260301", "14:30:00"])
+def test_dates_that_are_none(tmp_path: Path, date: str) -> None:
+    message = message_of(tmp_path, f"recorded = {date}\n" + TOP + CHANNELS + EXPERIMENT)
+    assert (
+        message == f'recorded: found "{date.strip(chr(34))}", expected a date without quotes, such as 2026-03-01'
+        or (message == f"recorded: found {date}, expected a date without quotes, such as 2026-03-01")
+    )

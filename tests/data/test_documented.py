@@ -11,7 +11,7 @@ from greybox_torch.data.expression import _FUNCTIONS
 from greybox_torch.data.readers import BUILT_IN
 
 PAGE = (Path(__file__).parents[2] / "docs" / "data.md").read_text(encoding="utf-8")
-SMALLEST, CHANNELS, TIME, FILES = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+SMALLEST, CHANNELS, TIME, MACHINE, FILES = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
 
 
 def test_every_suffix_is_in_the_table() -> None:
@@ -33,3 +33,4 @@ def test_the_cards_are_cards() -> None:
     Card.model_validate(smallest | tomllib.loads(FILES))
     timed = {key: value for key, value in smallest.items() if key != "sample_time"}
     Card.model_validate(timed | tomllib.loads(TIME))
+    Card.model_validate(smallest | tomllib.loads(MACHINE))
