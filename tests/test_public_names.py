@@ -52,3 +52,11 @@ def test_experiments_take_the_engine_from_where_it_is_public(part: str) -> None:
     ]
     assert not deep
     assert all(hasattr(package, name) for name in package.__all__)
+
+
+def test_no_public_name_is_hidden_by_a_package() -> None:
+    """A package `greybox_torch.NAME` would replace the public NAME as soon as anything imports it."""
+    from pathlib import Path
+
+    home = Path(greybox_torch.__file__).parent
+    assert not [n for n in greybox_torch.__all__ if (home / n).is_dir() or (home / f"{n}.py").is_file()]

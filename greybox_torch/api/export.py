@@ -16,9 +16,10 @@ from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError, did_you_mean
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.simulators import simulator_for
-from greybox_torch.export.c_source import c_files
-from greybox_torch.export.exported import ExportedModel, exported
-from greybox_torch.export.torch_module import torch_files
+from greybox_torch.exporting.c_source import c_files
+from greybox_torch.exporting.exported import ExportedModel, exported
+from greybox_torch.exporting.fmu import fmu_files
+from greybox_torch.exporting.torch_module import torch_files
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 WRITERS: dict[str, Callable[[ExportedModel], Mapping[str, str | bytes]]] = {
     "c": c_files,
     "torch": torch_files,
+    "fmu": fmu_files,
 }
 """What a model can be exported to: functions that give the contents of files by name."""
 

@@ -11,7 +11,7 @@ _CALLED = {"min": "minimum", "max": "maximum"}
 
 
 class Torch:
-    """See :class:`greybox_torch.export.statements.Language`."""
+    """See :class:`greybox_torch.exporting.statements.Language`."""
 
     def constant(self, value: float) -> str:
         return f"c({value!r})" if abs(value) != float("inf") else f'c(float("{value}"))'

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from greybox_torch.export.exported import ExportedModel, Variable
-from greybox_torch.export.fill import filled
-from greybox_torch.export.statements import statements
-from greybox_torch.export.torch_language import Torch
+from greybox_torch.exporting.exported import ExportedModel, Variable
+from greybox_torch.exporting.fill import filled
+from greybox_torch.exporting.statements import statements
+from greybox_torch.exporting.torch_language import Torch
 
 
 def torch_files(model: ExportedModel) -> dict[str, str]:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from greybox_torch.export.c_language import C
-from greybox_torch.export.exported import ExportedModel, Variable
-from greybox_torch.export.fill import filled
-from greybox_torch.export.statements import statements
+from greybox_torch.exporting.c_language import C
+from greybox_torch.exporting.exported import ExportedModel, Variable
+from greybox_torch.exporting.fill import filled
+from greybox_torch.exporting.statements import statements
 
 
 def c_files(model: ExportedModel) -> dict[str, str]:

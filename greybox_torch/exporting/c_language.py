@@ -16,7 +16,7 @@ _CALLED = {"abs": "fabs", "min": "minimum", "max": "maximum"}
 
 
 class C:
-    """See :class:`greybox_torch.export.statements.Language`; ``helpers`` are the functions that what was written calls."""
+    """See :class:`greybox_torch.exporting.statements.Language`; ``helpers`` are the functions that what was written calls."""
 
     def __init__(self) -> None:
         self._used: set[str] = set()
