@@ -14,7 +14,8 @@ from greybox_torch.report.chart.marks import HEIGHT, WIDTH, Mark
 from greybox_torch.report.chart.panel import Chart, Panel, side_by_side
 from greybox_torch.report.chart.scale import Scale, Tick, linear
 
-DAYS_OF_A_MONTH = 30.44
+MONTHS_FROM, HOURS_BELOW = 150.0, 3.0
+"""Days of an axis above which months are enough to mark it, and below which hours are needed."""
 MOST_PANELS = 3
 
 
@@ -23,10 +24,12 @@ class Dates(Scale):
     """An axis of days since 1970-01-01."""
 
     def ticks(self, most: int = 6) -> tuple[Tick, ...]:
-        """As many dates as fit, evenly spaced."""
-        whole = np.linspace(self.low, self.high, 5)[1:-1]
+        """Few enough for the labels to stand side by side on a phone: months over a long time, days and hours over a short one."""
+        span = self.high - self.low
+        form = "%Y-%m" if span > MONTHS_FROM else "%Y-%m-%d" if span > HOURS_BELOW else "%m-%d %H:%M"
+        shares = (1 / 6, 1 / 2, 5 / 6) if span > MONTHS_FROM else (1 / 4, 3 / 4)
+        whole = self.low + span * np.array(shares)
         dates = [datetime.fromtimestamp(86400.0 * day, UTC) for day in whole]
-        form = "%Y-%m-%d" if self.high - self.low < 24 * DAYS_OF_A_MONTH else "%Y-%m"
         places = self.place(whole)
         return tuple(Tick(float(p), date.strftime(form)) for p, date in zip(places, dates, strict=True))
 
@@ -66,7 +69,7 @@ def _title(series: Series) -> str:
 
 def _panel(series: Series) -> Panel:
     spread = np.nan_to_num(2.0 * series.deviations)
-    span = max(float(np.ptp(series.days)), 1.0)
+    span = max(float(np.ptp(series.days)), 1e-3)
     x = Dates(float(series.days[0]) - 0.05 * span, float(series.days[-1]) + 0.05 * span)
     y = Scale(-0.15, 1.15) if series.presence else linear(series.values - spread, series.values + spread, room=0.12)
     label = "" if series.presence else text.with_unit(series.name.rpartition(".")[2], f"[{series.unit or '1'}]")

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from datetime import UTC, datetime
 
 import pytest
 
-from greybox_torch.fleets.charts import change_sentences, history_chart
+from greybox_torch.fleets.charts import Dates, change_sentences, history_chart
 from greybox_torch.fleets.history import histories
 from greybox_torch.fleets.row import Row
 
@@ -62,6 +63,17 @@ def test_which_rows_count(coulomb: Coulomb) -> None:
     bad = [replace(coulomb("a", 9.0, month=6), answer=answer) for answer in ("failed", "unfinished")]
     found = histories([*bad, *once, *steady, *grown])
     assert [(history.machine, len(history.rows)) for history in found] == [("b", 12), ("a", 12)]
+
+
+@pytest.mark.parametrize(
+    ("days", "labels"),
+    [(365, ["2026-03", "2026-07", "2026-11"]), (40, ["2026-01-11", "2026-01-31"]), (1, ["01-01 06:00", "01-01 18:00"])],
+)
+def test_dates_on_the_axis(days: int, labels: list[str]) -> None:
+    begin = datetime(2026, 1, 1, tzinfo=UTC).timestamp() / 86400.0
+    ticks = Dates(begin, begin + days).ticks()
+    assert [tick.label for tick in ticks] == labels
+    assert all(0.0 < tick.place < 1.0 for tick in ticks)
 
 
 @pytest.mark.parametrize(
