@@ -99,7 +99,7 @@ def _run(
     state = Progress(len(jobs))
     folders = [folder, *{job.card.parent for job in jobs[:1]}]
     try:
-        with cluster.connected(scheduler, workers and min(workers, len(jobs)), folders) as there:
+        with cluster.connected(scheduler, min(workers or cluster.cores(), len(jobs)), folders) as there:
             for job, done in share_out(there, jobs, diagnose_machine):
                 row, kept = (killed_row(job), False) if isinstance(done, Killed) else done
                 rows.append(row)

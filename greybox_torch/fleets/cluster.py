@@ -46,12 +46,19 @@ class Workers:
         return sum(there.values())
 
 
+def cores() -> int:
+    """Cores that this process may use, limits of its container included."""
+    from dask.system import CPU_COUNT
+
+    return CPU_COUNT
+
+
 @contextmanager
-def connected(scheduler: str | None, workers: int | None, folders: list[Path]) -> Iterator[Workers]:
+def connected(scheduler: str | None, workers: int, folders: list[Path]) -> Iterator[Workers]:
     """The workers of the scheduler at that address; of a cluster on this machine, gone at the end, where it is None.
 
     Args:
-        workers: processes of the cluster on this machine, one thread each; by default one for each core.
+        workers: processes of the cluster on this machine, one thread each.
         folders: what workers elsewhere have to see under the same path as this machine does.
 
     Raises:
@@ -76,20 +83,18 @@ def connected(scheduler: str | None, workers: int | None, folders: list[Path]) -
 
 
 @contextmanager
-def _local(workers: int | None) -> Iterator[Workers]:
+def _local(workers: int) -> Iterator[Workers]:
     from dask.config import set as configured
-    from dask.system import CPU_COUNT
     from distributed import Client, LocalCluster
 
     from greybox_torch.fleets.worker_process import ProcessOfOurs
 
-    count = workers or CPU_COUNT
     alone: dict[str, Any] = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS"), 1)
     own = {"distributed.scheduler.allowed-failures": LIVES, "distributed.nanny.pre-spawn-environ": alone}
     with (
         configured(own),
         LocalCluster(
-            n_workers=count,
+            n_workers=workers,
             threads_per_worker=1,
             processes=True,
             dashboard_address="127.0.0.1:0",
@@ -99,7 +104,7 @@ def _local(workers: int | None) -> Iterator[Workers]:
     ):
         client.register_plugin(ProcessOfOurs())
         started: Any = cluster
-        here = Workers(client, lambda: None if here.threads >= count else started.scale(count))
+        here = Workers(client, lambda: None if here.threads >= workers else started.scale(workers))
         yield here
 
 

@@ -55,7 +55,8 @@ def done(client: Client, monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Makes the workers threads of this process that diagnose nothing; the list tells which data sets they had."""
 
     @contextmanager
-    def local(workers: int | None) -> Iterator[cluster.Workers]:
+    def local(workers: int) -> Iterator[cluster.Workers]:
+        assert 1 <= workers <= 8  # no more than there are data sets
         yield cluster.Workers(client)
 
     had: list[str] = []

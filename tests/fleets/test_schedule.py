@@ -76,7 +76,7 @@ def test_workers_that_do_not_come_back_are_started_once_more(monkeypatch: pytest
 def test_no_scheduler() -> None:
     with (
         pytest.raises(ArgumentError, match="expected tcp://host:port") as error,
-        cluster.connected("nowhere", None, []),
+        cluster.connected("nowhere", 1, []),
     ):
         pass
     assert error.value.for_option().startswith("--scheduler nowhere: no answer")
@@ -85,17 +85,17 @@ def test_no_scheduler() -> None:
 def test_a_scheduler_elsewhere(threads: Client, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It is used as it is, and asked for what its workers have."""
     address = str(threads.scheduler_info()["address"])
-    with cluster.connected(address, None, [tmp_path]) as client:
+    with cluster.connected(address, 1, [tmp_path]) as client:
         assert [name for _, name in share_out(client, jobs(3), lambda job: job.card)] == [Path("dataset.toml")] * 3
     with (
         pytest.raises(ArgumentError, match=r"does not see .*elsewhere"),
-        cluster.connected(address, None, [tmp_path / "elsewhere"]),
+        cluster.connected(address, 1, [tmp_path / "elsewhere"]),
     ):
         pass
     monkeypatch.setattr(cluster, "look_around", lambda folders: ("0.0.0", []))
     with (
         pytest.raises(ArgumentError, match=r"has greybox_torch 0\.0\.0; expected"),
-        cluster.connected(address, None, [tmp_path]),
+        cluster.connected(address, 1, [tmp_path]),
     ):
         pass
 
