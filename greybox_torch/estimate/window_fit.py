@@ -35,15 +35,10 @@ CARRY_EVERY = 4
 """Accepted steps after which carried states are brought along anew, with the parameters as they then are."""
 
 
-UNDAMPED = 1e-9
-"""Damping of a step that goes to the lowest point of the quadratic model; what is singular stays as it is."""
-
-
 @dataclass(frozen=True)
 class WindowFit:
     """Result: the problem with its parameters improved, window starts (W, n_x), mean squared weighted error, energy of the error per
-    window (W,), evaluations used; ``promise``, the mean squared error that the Gauss-Newton model there still promises; ``along``, the
-    starts with carried states brought along (W, n_x), where that is known.
+    window (W,), evaluations used; ``along``, the starts with carried states brought along (W, n_x), where that is known.
     """
 
     problem: Problem
@@ -52,7 +47,6 @@ class WindowFit:
     mean_square: float
     energies: np.ndarray
     evaluations: int
-    promise: float = 0.0
     along: np.ndarray | None = None
 
 
@@ -118,14 +112,7 @@ def fit_windows(
                 states, here, damping = along, again, min(damping, 1e-2)
         if still:
             break
-    promise = _promise(problem, here, states)
-    return WindowFit(problem, windows, states, here.mean_square, here.energies, evaluations, promise, along)
-
-
-def _promise(problem: Problem, here: WindowModel, states: np.ndarray) -> float:
-    """The mean squared error at the lowest point, within bounds, of the quadratic model of ``here``."""
-    predicted = stepped(problem, here, states, UNDAMPED)[2]
-    return here.mean_square * max(1.0 - predicted / max(here.cost, 1e-300), 0.0)
+    return WindowFit(problem, windows, states, here.mean_square, here.energies, evaluations, along)
 
 
 def _starts_of(shorter: WindowFit, problem: Problem, simulator: Simulator, windows: Windows) -> np.ndarray:

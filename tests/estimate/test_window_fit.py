@@ -78,17 +78,6 @@ def test_with_an_unknown_at_its_bound_the_others_reach_their_optimum(data_set: A
     assert bounded.evaluations < 30
 
 
-def test_a_fit_at_its_optimum_promises_no_more_and_one_before_it_does(data_set: Any) -> None:
-    problem = recorded(data_set, 0.7)
-    simulator = Simulator.of(problem.model, problem.free_names)
-    begun = fit_windows(problem, simulator, 100, settings=Settings(iterations=3, tolerance=1e-12))
-    assert begun is not None
-    ended = fit_windows(begun.problem, simulator, 100, starts=begun.starts, settings=TIGHT)
-    assert ended is not None
-    assert begun.promise < begun.mean_square
-    assert ended.promise == pytest.approx(ended.mean_square, rel=1e-3)
-
-
 def test_a_fit_far_behind_its_rival_is_given_up(data_set: Any) -> None:
     problem = recorded(data_set, 0.7)
     simulator = Simulator.of(problem.model, problem.free_names)

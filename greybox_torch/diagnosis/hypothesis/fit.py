@@ -22,9 +22,6 @@ from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 
-SETTLED = 0.02
-"""Share of its error that a fit near its optimum promises to lose at most."""
-
 
 @dataclass(frozen=True, eq=False)
 class Hypothesis:
@@ -186,22 +183,16 @@ def _states_first(
 
 
 def _apart(found: Sequence[WindowFit], budget: SearchBudget) -> list[WindowFit]:
-    """The best, and the next one that may be on its way to another, lower optimum: being ahead early says little."""
+    """The best, and the next one that seems to be on its way to another optimum: being ahead early says little."""
     best = found[0]
     values = best.problem.values
     rivals = [
         f
         for f in found[1:]
         if f.mean_square < budget.rival_start * best.mean_square
-        and not _ends_above(f, (1 - budget.least_rival_gain) * best.mean_square)
         and not np.allclose(f.problem.values, values, rtol=0.02)
     ]
     return [best, *rivals[:1]]
-
-
-def _ends_above(fit: WindowFit, mean_square: float) -> bool:
-    """Whether a fit that is near its optimum, where its Gauss-Newton model can be believed, is not going to come below an error."""
-    return fit.promise > (1 - SETTLED) * fit.mean_square and fit.promise >= mean_square
 
 
 def continued(fit: WindowFit, simulator: Simulator, length: int, limits: Settings, budget: SearchBudget) -> WindowFit:

@@ -93,13 +93,6 @@ class SearchBudget:
         unit="times the mean squared error per iteration",
         chosen_by=TIME,
     )
-    least_rival_gain: float = share(
-        0.003,
-        "How much lower than the best so far the Gauss-Newton model of another start must promise to come for that "
-        "to be followed to its end: the price of a parameter, below which no decision is taken.",
-        unit="share of the mean squared error",
-        chosen_by=TIME,
-    )
     most_turns: int = count(
         3, "How often a fit is taken up again after carried states were brought along.", chosen_by=TIME
     )
