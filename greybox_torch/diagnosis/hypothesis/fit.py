@@ -137,6 +137,8 @@ def _best_fit(
     limits_of: Callable[[WindowFit], Settings],
     budget: SearchBudget,
 ) -> WindowFit | None:
+    if not trials:
+        return None  # none is admissible
     first, *others = trials
     begin = partial(fit_windows, simulator=simulator, length=length, shorter=shorter, settings=budget.first_iterations)
     leading = begin(first)

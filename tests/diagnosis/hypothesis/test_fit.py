@@ -1,0 +1,21 @@
+"""Refits on windows, from several starts."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from greybox_torch.diagnosis.hypothesis.fit import hypothesis
+from greybox_torch.simulation.simulator import DEFAULT
+
+
+class Never:
+    """Holds no parameters for admissible."""
+
+    def __get__(self, problem: Any, kind: Any) -> Any:
+        return lambda values: False
+
+
+def test_there_is_no_hypothesis_where_no_start_is_admissible(dead_zone_search, monkeypatch) -> None:
+    problem = dead_zone_search.study.problem
+    monkeypatch.setattr(type(problem), "admissible", Never())
+    assert hypothesis(problem, (), {}, [dead_zone_search.study.card], options=DEFAULT) is None
