@@ -188,13 +188,18 @@ def _unexplained(study: Study, state: SearchState, others: HeldOut | None, judge
     """How many times the noise the model's error is on the worst experiment, if that is too much for badly determined friction.
 
     By windows and by free runs: where either shows hardly more than noise, nothing says that anything is missing. Nor where the error is
-    less than simulations of one machine differ by.
+    less than simulations of one machine differ by. Where the recordings show no more than an upper bound of the noise, that bound is
+    counted only against errors that anybody sees.
     """
     settings = study.settings
-    if max(mismatch_share(state.plain, settings), judged.mismatch_share) < settings.least_mismatch:
+    shares = (mismatch_share(state.plain, settings), judged.mismatch_share)
+    if max(shares) < settings.least_mismatch:
         return None
-    errors = [times_noise(study.problem, state.plain, settings)] if floor_known(study.problem, settings) else []
-    if others is not None and floor_known(others.problem, settings):
+    plain_to_see = min(shares) > settings.obvious_mismatch
+    errors = []
+    if plain_to_see or floor_known(study.problem, settings):
+        errors.append(times_noise(study.problem, state.plain, settings))
+    if others is not None and (plain_to_see or floor_known(others.problem, settings)):
         errors += list(others.times_noise(state.plain))
     by_windows = max((e for e in errors if settings.far_above_noise < e < np.inf), default=0.0)
     least = min(by_windows, float(np.nanmax(judged.times_noise, initial=0.0)))

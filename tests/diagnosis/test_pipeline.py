@@ -93,9 +93,11 @@ def nothing_found(study, state):
     return state
 
 
-def test_what_nothing_explains_is_said_to_be_missing(motor_data, motor, monkeypatch) -> None:
-    """Seen: an error of twelve times the noise, and "nothing is missing"."""
+@pytest.mark.parametrize("floor_is_known", [True, False])
+def test_what_nothing_explains_is_said_to_be_missing(motor_data, motor, monkeypatch, floor_is_known) -> None:
+    """Seen: an error of twelve times the noise, and "nothing is missing"; 330 times its upper bound, where impacts are in the record."""
     monkeypatch.setattr("greybox_torch.diagnosis.findings.search", nothing_found)
+    monkeypatch.setattr("greybox_torch.diagnosis.pipeline.floor_known", lambda problem, settings: floor_is_known)
     verdict = diagnose(motor_data(acting=dead_zone), motor).verdict
     assert verdict.complete and verdict.mismatch and verdict.effects == () and verdict.unexplained > 3.0
     assert verdict.confidence == DiagnosisSettings().confidence_missing_unnamed

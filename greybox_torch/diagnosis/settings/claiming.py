@@ -41,6 +41,13 @@ class ConfirmationSettings:
         unit="share of the outputs' spread (root mean square)",
         chosen_by="the difference between simulators of first and of fourth order at usual steps",
     )
+    obvious_mismatch: float = share(
+        0.05,
+        "Error of the plain model, by windows and by free runs, from which something is missing also where the recordings show no more "
+        "than an upper bound of the noise, if it is far above that.",
+        unit="share of the outputs' spread (root mean square)",
+        chosen_by="a simulated curve that lies visibly beside the measured one",
+    )
     least_size: float = share(
         0.02,
         "Size from which an effect is a finding: the part of the plain model's held-out mismatch that leaving it out brings back. "
