@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from greybox_torch.data import DataSet, Recording, load_dataset
     from greybox_torch.data.readers import register_reader, unregister_reader
     from greybox_torch.data.readers.table import Table
+    from greybox_torch.diagnosis.progress import Progress
     from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
     from greybox_torch.errors import NumericalError, UserError
     from greybox_torch.evaluation import Evaluation, evaluate
@@ -84,6 +85,7 @@ __all__ = [
     "Output",
     "Parameter",
     "Probe",
+    "Progress",
     "Recording",
     "ResidualNet",
     "ResidualResult",
@@ -156,6 +158,7 @@ _HOME_OF = {
     "Output": "greybox_torch.model",
     "Parameter": "greybox_torch.model",
     "Probe": "greybox_torch.mechanisms.mechanism",
+    "Progress": "greybox_torch.diagnosis.progress",
     "Recording": "greybox_torch.data",
     "ResidualNet": "greybox_torch.mechanisms.residual_net",
     "ResidualResult": "greybox_torch.api.residuals",

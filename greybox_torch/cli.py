@@ -150,7 +150,7 @@ def diagnose(
     dataset: DataSetFile,
     time_limit: Annotated[
         float | None,
-        typer.Option(min=1.0, metavar="SECONDS", help="When to stop searching and answer with the best found so far."),
+        typer.Option(min=1.0, metavar="SECONDS", help="When the best answer found so far is to stand."),
     ] = None,
     settings: Settings = None,
     model: Model = None,

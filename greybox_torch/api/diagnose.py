@@ -15,8 +15,10 @@ from greybox_torch.api.arguments import (
     check_seed,
 )
 from greybox_torch.api.diagnosis_result import DiagnosisResult
+from greybox_torch.codegen.build import check_compiler
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis import pipeline
+from greybox_torch.diagnosis.progress import Progress
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, settings_from_mapping
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel
@@ -32,6 +34,7 @@ def diagnose(
     seed: int = 0,
     device: str = "cpu",
     progress: Callable[[str], None] = lambda text: None,
+    on_progress: Callable[[Progress], None] = lambda progress: None,
 ) -> DiagnosisResult:
     """Find what physics the model leaves out: whether, where it acts, what it is, how sure that is, and the model with it.
 
@@ -41,23 +44,29 @@ def diagnose(
     Args:
         model: searched from the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else the
             declared ones. It stays as it is; the result's ``model`` is a copy with the effects that were found.
-        time_limit: seconds after which the search stops and the best answer so far is given.
+        time_limit: seconds after which the best answer so far stands, with what was not tried any more. Only what no answer can be without
+            takes longer where it has to: the fit of the model as it stands, and the comparison of the result with all experiments.
         settings: the thresholds that it decides by; by default what the card's table [diagnosis] says, else the defaults.
         budget: how much it may compute; likewise.
         seed: kept in the verdict; the search itself draws no random numbers.
         device: "cpu", "cuda" or "cuda:N".
-        progress: is told what is being done.
+        progress: is told what is being done, in words.
+        on_progress: is told where the diagnosis stands whenever that changes: a :class:`Progress` with the seconds, what is being done, and
+            the leading finding. It is called from several threads; what it raises ends the diagnosis.
 
     Raises:
-        UserError: model and data do not fit, there is no experiment to choose with, or an argument is at fault.
+        UserError: there is no C++ compiler (the installation extra ``compiler`` brings one), model and data do not fit, there is no
+            experiment to choose with, or an argument is at fault.
         NumericalError: even short stretches of the simulation overflow.
 
     Example:
-        ``print(diagnose(Motor(), data, time_limit=60).sentence)``
+        ``print(diagnose(Motor(), data, time_limit=60, on_progress=lambda now: print(now.leading)).sentence)``
     """
     given, device = check_model(model), check_device(device)
     limit = None if time_limit is None else check_seconds("time_limit", time_limit)
     check_estimation(check_data(data))
+    if device == "cpu":
+        check_compiler("a diagnosis")
     make_problem(data, given, data.recordings)  # all of them fit the model, whatever the search takes first
     own = settings_from_mapping(data.diagnosis, data.place("[diagnosis]"))
     found = pipeline.diagnose(
@@ -69,5 +78,6 @@ def diagnose(
         settings=own[0] if settings is None else check_kind("settings", settings, DiagnosisSettings),
         budget=own[1] if budget is None else check_kind("budget", budget, SearchBudget),
         progress=progress,
+        on_progress=on_progress,
     )
     return DiagnosisResult(data, given, found, device)

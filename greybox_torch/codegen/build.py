@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import ctypes
 import hashlib
+import importlib.util
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 from functools import lru_cache
 from pathlib import Path
+
+from greybox_torch.errors import UserError
 
 FLAGS = (
     "-O2",
@@ -23,11 +27,32 @@ FLAGS = (
 )
 
 
-def compiler() -> str | None:
-    """The C++ compiler: ``$CXX``, else g++; None where there is none or ``GREYBOX_COMPILER=off``."""
+ZIG = (sys.executable, "-m", "ziglang", "c++")
+"""The compiler that comes as a Python package."""
+
+
+def compiler() -> tuple[str, ...] | None:
+    """How the C++ compiler is called: ``$CXX``, else g++, else clang++, else that of the package ziglang.
+
+    None where there is none of them, or with ``GREYBOX_COMPILER=off``.
+    """
     if os.environ.get("GREYBOX_COMPILER", "") == "off":
         return None
-    return shutil.which(os.environ.get("CXX", "g++"))
+    for name in (os.environ.get("CXX", ""), "g++", "clang++"):
+        found = shutil.which(name) if name else None
+        if found is not None:
+            return (found,)
+    return ZIG if importlib.util.find_spec("ziglang") is not None else None
+
+
+def check_compiler(what: str) -> None:
+    """Raises UserError, with the line that installs one, where there is no compiler for ``what``, which would take hours without."""
+    if compiler() is None:
+        off = "; GREYBOX_COMPILER is off" if os.environ.get("GREYBOX_COMPILER", "") == "off" else ""
+        raise UserError(
+            f"{what} needs a C++ compiler: found neither $CXX nor g++ nor clang++ nor the package ziglang{off}; "
+            "expected one of them: pip install 'greybox_torch[compiler]'"
+        )
 
 
 def cache_folder() -> Path:
@@ -42,7 +67,7 @@ def library(source: str) -> ctypes.CDLL | None:
     program = compiler()
     if program is None:
         return None
-    key = hashlib.sha256("\0".join([source, program, *FLAGS, _processor()]).encode()).hexdigest()[:32]
+    key = hashlib.sha256("\0".join([source, *program, *FLAGS, _processor()]).encode()).hexdigest()[:32]
     file = cache_folder() / f"{key}.so"
     if not file.exists() and not _compile(program, source, file):
         return None
@@ -53,16 +78,16 @@ def library(source: str) -> ctypes.CDLL | None:
         return ctypes.CDLL(str(file)) if _compile(program, source, file) else None
 
 
-def _compile(program: str, source: str, file: Path) -> bool:
-    """Compile with vector mathematics and threads where they are to be had, plainer where they are not."""
+def _compile(program: tuple[str, ...], source: str, file: Path) -> bool:
+    """Compile with vector mathematics and threads where they are to be had, plainer where they are not (ziglang has neither)."""
     file.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=file.parent) as folder:
         text = Path(folder) / "stepper.cpp"
         text.write_text(source)
         made = Path(folder) / "stepper.so"
-        for extra in (["-DVECTOR_MATH", "-fopenmp"], ["-fopenmp"], []):
+        for extra in [[]] if program == ZIG else (["-DVECTOR_MATH", "-fopenmp"], ["-fopenmp"], []):
             libraries = ["-lmvec", "-lm"] if "-DVECTOR_MATH" in extra else ["-lm"]
-            command = [program, *FLAGS, *extra, str(text), "-o", str(made), *libraries]
+            command = [*program, *FLAGS, *extra, str(text), "-o", str(made), *libraries]
             done = subprocess.run(command, capture_output=True, text=True, check=False)
             if done.returncode == 0 and _loads(made):
                 made.replace(file)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from greybox_torch.api.diagnose import diagnose
 from greybox_torch.commands.options import Options
-from greybox_torch.commands.progress import stages
+from greybox_torch.commands.progress import diagnosing
 from greybox_torch.commands.task import load_task
 from greybox_torch.diagnosis.settings import settings_from_file, settings_from_mapping
 
@@ -17,7 +17,7 @@ def run(dataset: Path, time_limit: float | None, options: Options, settings: Pat
     own = settings_from_mapping(task.data.diagnosis, task.data.place("[diagnosis]"))
     if settings is not None:
         own = settings_from_mapping(settings_from_file(settings), str(settings), own)
-    with stages(f"diagnosing {task.data.name}") as progress:
+    with diagnosing(f"diagnosing {task.data.name}") as hear:
         found = diagnose(
             task.model,
             task.data,
@@ -26,6 +26,6 @@ def run(dataset: Path, time_limit: float | None, options: Options, settings: Pat
             time_limit=time_limit,
             settings=own[0],
             budget=own[1],
-            progress=progress,
+            on_progress=hear,
         )
     options.finish(found, task.folder)

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+if TYPE_CHECKING:
+    from greybox_torch.diagnosis.progress import Progress as Standing
 
 
 @contextmanager
@@ -29,6 +34,42 @@ def stages(first: str) -> Iterator[Callable[[str], None]]:
     ) as bar:
         task = bar.add_task(escape(first))
         yield lambda what: bar.update(task, description=escape(what))
+
+
+@contextmanager
+def diagnosing(first: str) -> Iterator[Callable[[Standing], None]]:
+    """A function that is told where a diagnosis stands.
+
+    On a terminal one line that changes, with the leading finding beside what is being done; elsewhere a line whenever that finding changes.
+    """
+    console = Console(stderr=True, highlight=False)
+    if not console.is_terminal:
+        yield _findings(console, first)
+        return
+    columns = (
+        SpinnerColumn(),
+        TimeElapsedColumn(),
+        TextColumn("[bold]{task.fields[leading]}"),
+        TextColumn("[dim]{task.description}"),
+    )
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task(escape(first), leading="")
+        yield lambda now: bar.update(task, description=escape(now.doing or first), leading=escape(now.leading))
+
+
+def _findings(console: Console, first: str) -> Callable[[Standing], None]:
+    """A line for every leading finding."""
+    console.print(f"{0.0:7.1f} s  {escape(first)}", soft_wrap=True)
+    told, lock = "", threading.Lock()
+
+    def tell(now: Standing) -> None:
+        nonlocal told
+        with lock:
+            if now.leading != told:
+                told = now.leading
+                console.print(f"{now.seconds:7.1f} s  {escape(told or 'nothing so far')}", soft_wrap=True)
+
+    return tell
 
 
 LINE_SECONDS = 5.0

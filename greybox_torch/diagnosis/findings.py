@@ -1,8 +1,9 @@
 """What a search on the estimation experiments finds, and what the other experiments make of it.
 
-Ctrl-C cuts the present stage short and the next ones go on from the best that is known: first the search, then the confirmation, then
-the final fits. What a verdict cannot be without (the fit of the model as it stands, the comparison with validation) is begun once more
-where it was interrupted, and a second Ctrl-C there ends the diagnosis.
+A time limit or Ctrl-C cuts the present stage short and the next ones go on from the best that is known: first the search, then the
+confirmation, then the final fits, each with a part of the time of its own. What a verdict cannot be without (the fit of the model as it
+stands, its comparison with all experiments) has no limit; it is begun once more where Ctrl-C interrupted it, and a second Ctrl-C there
+ends the diagnosis.
 """
 
 from __future__ import annotations
@@ -12,33 +13,43 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from greybox_torch.data import DataSet
+from greybox_torch.deadline import Deadline, TimeIsUp, until
 from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
-from greybox_torch.diagnosis.confirm.free_runs import Judgement
-from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
+from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
+from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
+from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.promotion import promote_validation, serves
 from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains, take_back_weakest
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.final import Final, finish, from_longest_windows
+from greybox_torch.diagnosis.schedule import Schedule
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.plain_model import fit_plain_model, weighted_by_noise
 from greybox_torch.diagnosis.select.search import search
 from greybox_torch.diagnosis.select.state import SearchState
-from greybox_torch.diagnosis.stopping import TimeIsUp, best_so_far, or_else, result_of
+from greybox_torch.diagnosis.stopping import best_so_far, or_else, result_of
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study
-from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
+from greybox_torch.estimate.problem import all_starts_free, make_problem
 from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.model import GreyBoxModel
 
 MakeStudy = partial[Study]
+
+SEARCH = "searching: screen, refit, select"
+CONFIRMING = "confirming on held-out experiments"
+FITTING = "final fits on whole records"
+JUDGING = "validation and report data"
+AGAIN = "searching again with a held-out experiment to choose with"
 
 
 @dataclass(frozen=True)
 class Findings:
     """What a search came to on the estimation experiments of a data set, and what the others made of it.
 
-    ``gains`` by effect, on held-out experiments; ``complete``: whether nothing was cut short; ``more``: which experiments were taken to
-    choose with besides those of the card, in sentences.
+    ``gains`` by effect, on held-out experiments; ``others`` None where there are none or time was too short to ask them. ``complete``:
+    whether nothing was cut short; ``cut``: the stages that were. ``more``: which experiments were taken to choose with besides those of the
+    card, in sentences.
     """
 
     dataset: DataSet
@@ -49,78 +60,102 @@ class Findings:
     judged: Judgement
     complete: bool
     more: tuple[str, ...] = ()
+    cut: tuple[str, ...] = ()
 
 
-def find(dataset: DataSet, model: GreyBoxModel, make_study: MakeStudy, clock: Stopwatch) -> Findings:
+def find(
+    dataset: DataSet, model: GreyBoxModel, make_study: MakeStudy, clock: Stopwatch, end: Deadline = Deadline()
+) -> Findings:
     """Search on the estimation experiments, and let the others confirm what was found or take it back.
 
     Args:
         make_study: :class:`Study` with everything but the problem and how it is simulated.
+        end: when the answer has to stand.
     """
     problem = all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
     study = make_study(problem)
     study = replace(study, options=simulator_for(problem, study.options).options)
+    free_runs = FreeRuns(study, dataset)
     clock.lap("preparing")
-    study, state, complete = _searched(study)
-    clock.lap("searching: screen, refit, select")
-    unlimited = study.without_limit()
+    begun = fit_plain_model(study)
+    schedule = Schedule.within(end, free_runs.seconds, study.budget)
+    study, state, complete = _searched(*begun, schedule.searching)
+    clock.lap(SEARCH)
     others = HeldOut(dataset, study) if dataset.validation() else None
-    state, gains, confirmed = _confirmed(unlimited, state, others)
-    clock.lap("confirming on held-out experiments")
-    (plain, augmented), fitted = _finished(unlimited, state)
-    clock.lap("final fits on whole records")
-    judge = partial(_judged, unlimited, dataset, problem, others, plain)
-    again = partial(judge, state, gains, augmented)
-    (state, gains, judged, told), was_judged = or_else(again, again)
-    clock.lap("validation and report data")
-    return Findings(
-        dataset, study, state, others, gains, judged, complete and confirmed and fitted and was_judged, told
-    )
+    state, gains, confirmed = _confirmed(study, state, others, schedule.confirming)
+    clock.lap(CONFIRMING)
+    (plain, augmented), fitted = _finished(study, state, schedule.fitting)
+    clock.lap(FITTING)
+    judge = partial(_judged, study, free_runs, others, plain, state, gains, augmented, schedule.judging)
+    (state, gains, judged, told, held), whole = or_else(judge, judge)
+    clock.lap(JUDGING)
+    ended = {SEARCH: complete, CONFIRMING: confirmed, FITTING: fitted, JUDGING: held and whole}
+    cut = tuple(stage for stage, whole in ended.items() if not whole)
+    return Findings(dataset, study, state, None if cut else others, gains, judged, not cut, told, cut)
 
 
-def find_with_more(first: Findings, model: GreyBoxModel, make_study: MakeStudy, clock: Stopwatch) -> Findings:
-    """``first``, or what is found with more experiments to choose with, where those show what the others do not."""
+def find_with_more(
+    first: Findings, model: GreyBoxModel, make_study: MakeStudy, clock: Stopwatch, end: Deadline = Deadline()
+) -> Findings:
+    """``first``, or what is found with more experiments to choose with, where those show what the others do not.
+
+    Args:
+        end: when all of it has to be known.
+    """
     best = last = first
     try:
-        while last.complete and last.others is not None:
-            more = promote_validation(last.study, last.dataset, last.state, last.others)
-            if more is None:
-                return best
-            last.study.working_on(f"searching again, {more.taken} among the experiments to choose with")
-            last = replace(find(more.dataset, model, make_study, clock), more=(*last.more, more.sentence()))
-            if last.state.effects and last.others and serves(last.others, best.state, last.state):
-                best = last
+        with until(end):
+            while last.complete and last.others is not None:
+                more = promote_validation(last.study, last.dataset, last.state, last.others)
+                if more is None:
+                    return best
+                last.study.working_on(f"searching again, {more.taken} among the experiments to choose with")
+                found = find(more.dataset, model, make_study, clock, end)
+                last = replace(found, more=(*last.more, more.sentence()))
+                if last.state.effects and last.others and serves(last.others, best.state, last.state):
+                    best = last
     except (TimeIsUp, KeyboardInterrupt):
-        return replace(best, complete=False)
-    return replace(best, complete=best.complete and last.complete)
+        return replace(best, complete=False, others=None, cut=(*best.cut, AGAIN))
+    if best.complete and not last.complete:
+        return replace(best, complete=False, cut=(AGAIN,))
+    return best
 
 
-def _searched(study: Study) -> tuple[Study, SearchState, bool]:
+def _searched(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState, bool]:
     """The study with what is known of the ports, the best state, and whether the search ended by itself."""
-    begun, complete = fit_plain_model(study), True
-    if len(study.problem.weights) > 1:
-        begun, complete = or_else(lambda: fit_plain_model(weighted_by_noise(*begun)), lambda: begun)
-    study, state = begun
-    if complete:
-        state, complete = best_so_far(search(study, state), state)
-    return study, state, complete
+
+    def told(better: SearchState) -> None:
+        effects = [(e.port, e.mechanism.name) for e in better.effects]
+        study.journal.found(effects, size(better.plain.fits, better.plain.fits, better.current.fits, study.settings))
+
+    begun, complete = (study, state), True
+    with until(deadline):
+        if len(study.problem.weights) > 1:
+            begun, complete = or_else(lambda: fit_plain_model(weighted_by_noise(study, state)), lambda: (study, state))
+        if complete:
+            best, complete = best_so_far(search(*begun), begun[1], told)
+            return begun[0], best, complete
+    return *begun, complete
 
 
-def _confirmed(study: Study, state: SearchState, others: HeldOut | None) -> tuple[SearchState, dict[str, Gain], bool]:
+def _confirmed(
+    study: Study, state: SearchState, others: HeldOut | None, deadline: Deadline
+) -> tuple[SearchState, dict[str, Gain], bool]:
     """What held-out experiments leave of a state, what its effects gain there, and whether they could all be asked."""
     complete = True
-    if not state.compared_without:  # the search was stopped
-        state, complete = best_so_far(drop_superfluous(study, state), state)
-    if others is None or not complete:
-        return state, {}, complete
-    state, complete = best_so_far(confirm(study, state, others), state)
-    if not (complete and state.effects):
-        return state, {}, complete
-    gains, complete = or_else(lambda: held_out_gains(state, others), dict)
-    return state, gains, complete
+    with until(deadline):
+        if not state.compared_without:  # the search was stopped
+            state, complete = best_so_far(drop_superfluous(study, state), state)
+        if others is None or not complete:
+            return state, {}, complete
+        state, complete = best_so_far(confirm(study, state, others), state)
+        if not (complete and state.effects):
+            return state, {}, complete
+        gains, complete = or_else(lambda: held_out_gains(state, others), dict)
+        return state, gains, complete
 
 
-def _finished(study: Study, state: SearchState) -> tuple[tuple[Final, Final], bool]:
+def _finished(study: Study, state: SearchState, deadline: Deadline) -> tuple[tuple[Final, Final], bool]:
     """The model as it stands and the one with effects, fitted to whole records; as windows have them, where that was stopped."""
 
     def fits() -> tuple[Final, Final]:
@@ -132,24 +167,45 @@ def _finished(study: Study, state: SearchState) -> tuple[tuple[Final, Final], bo
         plain = from_longest_windows(state.plain)
         return plain, from_longest_windows(state.current) if state.effects else plain
 
-    return or_else(fits, as_they_are)
+    with until(deadline):
+        return or_else(fits, as_they_are)
+
+
+Judged = tuple[SearchState, Mapping[str, Gain], Judgement, tuple[str, ...], bool]
+"""What is left of a state, its gains, its free runs, what a reader has to know of it, and whether there was time to judge it."""
 
 
 def _judged(
     study: Study,
-    dataset: DataSet,
-    problem: Problem,
+    free_runs: FreeRuns,
     others: HeldOut | None,
     plain: Final,
     state: SearchState,
     gains: Mapping[str, Gain],
     augmented: Final,
-) -> tuple[SearchState, Mapping[str, Gain], Judgement, tuple[str, ...]]:
-    """Effects taken back, the weakest first, until those left hold on the validation experiments; and what a reader has to know of it."""
+    deadline: Deadline,
+) -> Judged:
+    """Effects taken back, the weakest first, until those left hold on the validation experiments, and whether there was time for that.
+
+    Where there is none, nothing is left of effects that do not hold as they are.
+    """
     study.working_on("judging on the validation experiments")
-    judge = partial(Judgement, study, dataset, problem)
-    judged, told = judge(state, plain, augmented), ()
-    while state.effects and ((empty := _empty(study, state, augmented)) or not judged.holds):
+    judged = Judgement.of(free_runs, plain)
+    if state.effects:
+        judged = judged.having(augmented)
+
+    def nothing() -> Judged:
+        return state.at(state.plain), {}, judged.without_effects(), (), False
+
+    with until(deadline):
+        return or_else(lambda: _holding(study, state, others, gains, judged), nothing)[0]
+
+
+def _holding(
+    study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], judged: Judgement
+) -> Judged:
+    told: tuple[str, ...] = ()
+    while state.effects and ((empty := _empty(study, state, judged.augmented)) or not judged.holds):
         if not state.compared_without:
             state = result_of(drop_superfluous(study, state))
         if empty is not None and empty in state.prefixes:
@@ -157,11 +213,12 @@ def _judged(
         else:
             before, state = state, take_back_weakest(study, state, gains)
             told += said_of_windows(before, state, gains, judged, study.settings)
+        if not state.effects:
+            return state, {}, judged.without_effects(), told, True
         # What one of several accounts for, others may take over.
-        gains = held_out_gains(state, others) if others is not None and state.effects else {}
-        augmented = finish(state.current, study.settings, study.budget) if state.effects else plain
-        judged = judge(state, plain, augmented)
-    return state, gains, judged, told
+        gains = held_out_gains(state, others) if others is not None else {}
+        judged = judged.having(finish(state.current, study.settings, study.budget))
+    return state, gains, judged, told, True
 
 
 def _empty(study: Study, state: SearchState, augmented: Final) -> str | None:

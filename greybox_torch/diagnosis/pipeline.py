@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.data import DataSet
-from greybox_torch.diagnosis.confirm.free_runs import Judgement
+from greybox_torch.deadline import Deadline
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
+from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.standing import least_size, sizes
 from greybox_torch.diagnosis.contradictions import contradictions
 from greybox_torch.diagnosis.describe.effects import describe
@@ -25,13 +26,14 @@ from greybox_torch.diagnosis.findings import Findings, find, find_with_more
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
+from greybox_torch.diagnosis.progress import Journal, Progress
 from greybox_torch.diagnosis.select.posterior import confidence, of_a_stopped_search
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
-from greybox_torch.diagnosis.stopping import Deadline, or_else
+from greybox_torch.diagnosis.stopping import or_else
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study, silent
-from greybox_torch.diagnosis.verdict import Verdict
+from greybox_torch.diagnosis.verdict import NotTried, Verdict
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.start_states import starts_of
 from greybox_torch.mechanisms.stored import attachment_json
@@ -65,6 +67,7 @@ def diagnose(
     settings: DiagnosisSettings = DiagnosisSettings(),
     budget: SearchBudget = SearchBudget(),
     progress: Callable[[str], None] = silent,
+    on_progress: Callable[[Progress], None] = lambda progress: None,
 ) -> Diagnosis:
     """Find what physics ``model`` leaves out, from the estimation experiments; judge it on the validation experiments.
 
@@ -76,17 +79,25 @@ def diagnose(
 
     Args:
         seed: kept in the verdict; the search itself draws no random numbers.
-        time_limit: seconds after which the search stops and the best verdict so far is given.
+        time_limit: seconds after which the best verdict so far stands. The fit of the model as it stands, and the comparison of the result
+            with all experiments, take the time that they need.
         settings: the thresholds that it decides by.
         budget: how much it may compute.
         progress: told what is being done.
+        on_progress: told where the diagnosis stands, the leading finding with it; from several threads.
 
     Raises:
         UserError: there is no estimation experiment.
         NumericalError: the model cannot be simulated from the start values even over short windows.
         KeyboardInterrupt: Ctrl-C before the model as it stands was fitted, or twice in what a verdict cannot be without.
     """
-    clock = Stopwatch()
+    clock, end = Stopwatch(), Deadline.after(time_limit)
+    journal = Journal(on_progress)
+
+    def report(text: str) -> None:
+        journal.doing(text)
+        progress(text)
+
     if not dataset.estimation():
         raise UserError(
             f"{dataset.place('[[experiment]] role:')} no experiment has the role 'estimation'; expected at least one"
@@ -96,10 +107,11 @@ def diagnose(
         options=SimulationOptions(device),
         settings=settings,
         budget=budget,
-        report=progress,
-        deadline=Deadline.after(time_limit),
+        report=report,
+        journal=journal,
     )
-    found = find_with_more(find(dataset, model, make_study, clock), model, make_study, clock)
+    found = find(dataset, model, make_study, clock, end)
+    found = find_with_more(found, model, make_study, clock, Deadline(end.at - budget.seconds_for_writing))
     told = partial(_diagnosis, found, dataset, model, seed, clock)
     return or_else(told, told)[0]
 
@@ -161,6 +173,7 @@ def _as_found(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int,
         left=what_is_left(judged, detected, bool(effects)),
         settings=study.settings,
         budget=study.budget,
+        not_tried=NotTried() if found.complete else NotTried(found.cut, study.journal.left),
     )
     final = judged.augmented if effects else judged.plain
     chosen = state.current if effects else state.plain

@@ -7,43 +7,13 @@ interrupts the search, the state yielded last is the answer.
 
 from __future__ import annotations
 
-import math
-import time
 from collections.abc import Callable, Generator
-from dataclasses import dataclass
 from typing import TypeVar
+
+from greybox_torch.deadline import TimeIsUp
 
 State = TypeVar("State")
 Stage = Generator[State, None, State]
-
-
-class TimeIsUp(Exception):
-    """The time limit has passed."""
-
-
-@dataclass(frozen=True)
-class Deadline:
-    """The time ``at`` (s, by :func:`time.perf_counter`) at which work is to stop."""
-
-    at: float = math.inf
-
-    @staticmethod
-    def after(seconds: float | None) -> Deadline:
-        """So many seconds from now; never where None."""
-        return Deadline() if seconds is None else Deadline(time.perf_counter() + seconds)
-
-    @property
-    def passed(self) -> bool:
-        return time.perf_counter() > self.at
-
-    def check(self) -> None:
-        """Asked wherever a longer piece of work begins.
-
-        Raises:
-            TimeIsUp: the deadline has passed.
-        """
-        if self.passed:
-            raise TimeIsUp
 
 
 def result_of(stage: Stage[State]) -> State:
@@ -66,12 +36,18 @@ def only_if(stage: Stage[State], accepted: Callable[[State], bool]) -> Stage[Sta
             yield state
 
 
-def best_so_far(stage: Stage[State], begun: State) -> tuple[State, bool]:
-    """What a stage returns, or, where the deadline or Ctrl-C stops it, what it yielded last (``begun`` where nothing); whether it ended."""
+def best_so_far(
+    stage: Stage[State], begun: State, better: Callable[[State], None] = lambda state: None
+) -> tuple[State, bool]:
+    """What a stage returns, or, where the deadline or Ctrl-C stops it, what it yielded last (``begun`` where nothing); whether it ended.
+
+    ``better`` is told every state that is yielded.
+    """
     best = begun
     try:
         while True:
             best = next(stage)
+            better(best)
     except StopIteration as ended:
         return ended.value, True
     except (TimeIsUp, KeyboardInterrupt):

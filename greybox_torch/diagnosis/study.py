@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
+from greybox_torch.deadline import check_time
+from greybox_torch.diagnosis.progress import Journal
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
-from greybox_torch.diagnosis.stopping import Deadline
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.reconstruction import Motion
 from greybox_torch.mechanisms.mechanism import Surroundings
@@ -23,8 +24,7 @@ class Study:
 
     ``options`` are those of every simulation. ``surroundings`` and ``shifts`` are what mechanisms need to know of the ports: where signals
     moved, and which state carries the deflection of a coupling; both are known once the model as it stands is fitted. ``motion``: what the
-    outputs show of the states, or why they do not. ``report`` is told what is being done; it does not stop the search, which ``deadline``
-    does.
+    outputs show of the states, or why they do not. ``report`` is told what is being done, ``journal`` which candidates are tried.
     """
 
     problem: Problem
@@ -35,7 +35,7 @@ class Study:
     settings: DiagnosisSettings = field(default_factory=DiagnosisSettings)
     budget: SearchBudget = field(default_factory=SearchBudget)
     report: Callable[[str], None] = silent
-    deadline: Deadline = Deadline()
+    journal: Journal = field(default_factory=Journal)
 
     def working_on(self, text: str) -> None:
         """Report what is begun now, if there is time left for it.
@@ -44,11 +44,7 @@ class Study:
             TimeIsUp: there is not.
         """
         self.report(text)
-        self.deadline.check()
-
-    def without_limit(self) -> Study:
-        """The same without a deadline."""
-        return replace(self, deadline=Deadline())
+        check_time()
 
     @property
     def card(self) -> dict[str, float]:

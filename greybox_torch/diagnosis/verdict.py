@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.diagnosis.effect import Effect
+from greybox_torch.diagnosis.one_of import spoken
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
 from greybox_torch.estimate.comparison import Score, fit_rows
 
@@ -24,6 +25,32 @@ class Left:
     share: float
     times_noise: float
     sentence: str
+
+
+@dataclass(frozen=True)
+class NotTried:
+    """What was left when a diagnosis was stopped: the ``stages`` that were cut short or left out, and the ``candidates`` (port, mechanism)
+    of the present step that were not yet refitted.
+    """
+
+    stages: tuple[str, ...] = ()
+    candidates: tuple[tuple[str, str], ...] = ()
+
+    def sentences(self) -> tuple[str, ...]:
+        """For a reader."""
+        told = []
+        if self.stages:
+            told.append(f"Cut short: {'; '.join(self.stages)}.")
+        if self.candidates:
+            named = ", ".join(f"{spoken(mechanism)} at {port}" for port, mechanism in self.candidates)
+            told.append(f"Not tried any more: {named}.")
+        return tuple(told)
+
+    def as_json(self) -> dict[str, Any]:
+        return {
+            "stages": list(self.stages),
+            "candidates": [{"port": port, "mechanism": mechanism} for port, mechanism in self.candidates],
+        }
 
 
 @dataclass(frozen=True)
@@ -70,6 +97,7 @@ class Verdict:
     settings: DiagnosisSettings = DiagnosisSettings()
     """By what it was decided, and with ``budget`` how much was computed for it."""
     budget: SearchBudget = SearchBudget()
+    not_tried: NotTried = NotTried()
 
     @property
     def mismatch(self) -> bool:
@@ -108,7 +136,10 @@ class Verdict:
         return f"; with {them} the validation fit goes from {before:.1f} % to {after:.1f} %"
 
     def as_json(self) -> dict[str, Any]:
-        """The dictionary of `verdict.json` (contract sections 4 and 8), and beside it "settings": those that differ from their default."""
+        """The dictionary of `verdict.json` (contract sections 4 and 8).
+
+        Beside that "settings": those that differ from their default, and "not_tried": what was left when the search was stopped.
+        """
         return {
             "schema": SCHEMA,
             "dataset": self.dataset,
@@ -127,5 +158,6 @@ class Verdict:
             "fit": fit_rows(self.scores),
             "evidence": list(self.evidence),
             "stages": dict(self.stages),
+            "not_tried": self.not_tried.as_json(),
             "settings": changed_settings(self.settings, self.budget),
         }

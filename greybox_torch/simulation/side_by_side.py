@@ -10,8 +10,11 @@ import os
 import threading
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 from functools import lru_cache
 from typing import TypeVar
+
+from greybox_torch.deadline import until
 
 Result = TypeVar("Result")
 
@@ -32,15 +35,22 @@ def _of_the_machine() -> int:
 
 
 def side_by_side(tasks: Iterable[Callable[[], Result]]) -> list[Result]:
-    """Results of independent ``tasks``, in their order; where one raises, what has not begun is left undone and the exception goes on."""
+    """Results of independent ``tasks``, in their order.
+
+    Where one raises, or Ctrl-C interrupts, what has not begun is left undone, what has ends at its next pass, and the exception goes on.
+    """
     tasks = list(tasks)
     workers = min(cores(), len(tasks))
     if workers < 2:
         return [task() for task in tasks]
-    pool = ThreadPoolExecutor(workers, initializer=_begin)
+    pool, given_up = ThreadPoolExecutor(workers, initializer=_begin), threading.Event()
     try:
-        waiting = [pool.submit(task) for task in tasks]
+        with until(given_up.is_set):  # a context of its own for each, with the deadlines of the present one
+            waiting = [pool.submit(copy_context().run, task) for task in tasks]
         return [each.result() for each in waiting]
+    except BaseException:
+        given_up.set()
+        raise
     finally:
         pool.shutdown(cancel_futures=True)
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from greybox_torch.codegen.arrays import UnsupportedOperation
 from greybox_torch.codegen.lower import lower
+from greybox_torch.deadline import check_time
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.native import native_stepper
@@ -91,7 +92,12 @@ class Simulator:
         return self.options.substeps
 
     def run(self, records: Records, asked: Pass) -> Run:
-        """Advance all windows of a pass."""
+        """Advance all windows of a pass.
+
+        Raises:
+            TimeIsUp: what asks for it has no time left, see :func:`greybox_torch.deadline.until`.
+        """
+        check_time()
         return self.stepper.run(records, asked, self.options.substeps)
 
 
@@ -103,6 +109,7 @@ def make_stepper(
     options: SimulationOptions = DEFAULT,
 ) -> Stepper:
     """The fastest stepper for a model: compiled for the CPU, else torch operations on any device; see :meth:`Simulator.of`."""
+    check_time()
     eager = EagerStepper.of(model, sensitive, options.device, options.precision)
     if options.device != "cpu":
         return eager

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -168,3 +170,47 @@ def test_stribeck_term_does_not_overflow_at_high_speed() -> None:
     assert run.dy is not None
     assert np.isfinite(run.y).all()
     assert np.isfinite(run.dy).all()
+
+
+@pytest.fixture
+def no_compiler(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A machine without any: nothing on the PATH, no package."""
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CXX", raising=False)
+    monkeypatch.delenv("GREYBOX_COMPILER", raising=False)
+    monkeypatch.setattr(build.importlib.util, "find_spec", lambda name: None)
+
+
+@pytest.mark.usefixtures("no_compiler")
+def test_what_needs_a_compiler_says_so(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    assert build.compiler() is None
+    with pytest.raises(
+        UserError, match=r"a diagnosis needs a C\+\+ compiler: .*pip install 'greybox_torch\[compiler\]'"
+    ):
+        build.check_compiler("a diagnosis")
+    monkeypatch.setattr(build.importlib.util, "find_spec", lambda name: name)
+    assert build.compiler() == (sys.executable, "-m", "ziglang", "c++")
+    build.check_compiler("a diagnosis")
+    for name in ("clang++", "g++", "own"):  # each goes before those that were found so far
+        program = tmp_path / name
+        program.write_text("#!/bin/sh\n")
+        program.chmod(0o755)
+        if name == "own":
+            monkeypatch.setenv("CXX", name)
+        assert build.compiler() == (str(program),)
+    monkeypatch.setenv("GREYBOX_COMPILER", "off")
+    with pytest.raises(UserError, match="GREYBOX_COMPILER is off"):
+        build.check_compiler("a diagnosis")
+
+
+@pytest.mark.skipif(importlib.util.find_spec("ziglang") is None, reason="the package ziglang is not installed")
+def test_the_compiler_of_a_package(records: Records, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    compiled = make_stepper(lag(plain), ("k",))
+    monkeypatch.setenv("GREYBOX_CACHE", str(tmp_path))
+    monkeypatch.setattr(build, "compiler", lambda: build.ZIG)
+    build.library.cache_clear()
+    other = make_stepper(lag(plain), ("k",))
+    build.library.cache_clear()
+    assert isinstance(other, NativeStepper)
+    for one, two in zip(simulated(compiled, records), simulated(other, records), strict=True):
+        np.testing.assert_allclose(one, two, rtol=1e-12, atol=1e-12)

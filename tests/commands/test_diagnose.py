@@ -16,10 +16,11 @@ from typer.testing import CliRunner, Result
 from greybox_torch.checkpoint import load_checkpoint
 from greybox_torch.cli import app
 from greybox_torch.data import DataSet
+from greybox_torch.deadline import Deadline
 from greybox_torch.diagnosis import pipeline
 from greybox_torch.diagnosis.effect import Curve, Effect
 from greybox_torch.diagnosis.one_of import Alternative
-from greybox_torch.diagnosis.stopping import Deadline
+from greybox_torch.diagnosis.progress import Progress
 from greybox_torch.diagnosis.verdict import Trace, Verdict
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.comparison import Score
@@ -72,9 +73,17 @@ def finding(monkeypatch: pytest.MonkeyPatch) -> Callable[..., dict[str, Any]]:
     def find(*effects: Effect) -> dict[str, Any]:
         called: dict[str, Any] = {}
 
-        def diagnose(data: DataSet, model: GreyBoxModel, *, progress: Callable[[str], None], **options: Any) -> Any:
-            called.update({name: value for name, value in options.items() if name not in ("settings", "budget")})
-            progress("screening [every] port")
+        def diagnose(
+            data: DataSet, model: GreyBoxModel, *, on_progress: Callable[[Progress], None], **options: Any
+        ) -> Any:
+            aside = ("settings", "budget", "progress")
+            called.update({name: value for name, value in options.items() if name not in aside})
+            for seconds, leading in (
+                (1.0, "perhaps [drag] at rotor"),
+                (2.0, "perhaps [drag] at rotor"),
+                (3.0, "drag at rotor"),
+            ):
+                on_progress(Progress(seconds, "screening every port", leading))
             return made_up(data, model, options["seed"], effects)
 
         monkeypatch.setattr(pipeline, "diagnose", diagnose)
@@ -108,7 +117,8 @@ def test_what_is_printed(motor_folder: Make, finding: Callable[..., dict[str, An
         f"Written to {folder / 'out'}: report.html, verdict.json, model.safetensors, model.json, hypotheses.json"
         in lines
     )
-    assert "s  screening [every] port" in result.stderr
+    told = [" ".join(line.split()) for line in result.stderr.splitlines()]
+    assert told == ["0.0 s diagnosing Motor on the bench", "1.0 s perhaps [drag] at rotor", "3.0 s drag at rotor"]
 
 
 def test_nothing_missing(motor_folder: Make, finding: Callable[..., dict[str, Any]]) -> None:
@@ -251,3 +261,13 @@ def test_strict_json(motor_folder: Make, finding: Callable[..., dict[str, Any]])
     folder = motor_folder()
     text = diagnose(folder, "--json").stdout
     assert json_text(json.loads(text)) == text
+
+
+def test_without_a_compiler_it_says_so_at_once(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("GREYBOX_COMPILER", "off")
+    folder = motor_folder()
+    result = diagnose(folder)
+    assert result.exit_code == 2 and written(folder) == []
+    assert (
+        "a diagnosis needs a C++ compiler" in result.stderr and "pip install 'greybox_torch[compiler]'" in result.stderr
+    )

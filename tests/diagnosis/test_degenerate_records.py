@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.data import DataSet, Recording
-from greybox_torch.diagnosis.confirm.free_runs import _share_left
+from greybox_torch.diagnosis.confirm.judgement import _share_left
 from greybox_torch.diagnosis.contradictions import contradictions
 from greybox_torch.diagnosis.pipeline import diagnose
 from greybox_torch.files import json_text

@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
+from greybox_torch.deadline import Deadline, TimeIsUp
 from greybox_torch.diagnosis import findings
 from greybox_torch.diagnosis.findings import Findings, find_with_more
 from greybox_torch.diagnosis.select.state import SearchState
-from greybox_torch.diagnosis.stopping import TimeIsUp
 
 
 @pytest.fixture
@@ -73,7 +73,7 @@ def test_confirmation_that_is_cut_short_leaves_what_it_had_reached(monkeypatch, 
         raise KeyboardInterrupt
 
     monkeypatch.setattr(findings, "confirm", confirming)
-    assert findings._confirmed(stub(), before, stub()) == (reached, {}, False)
+    assert findings._confirmed(stub(), before, stub(), Deadline()) == (reached, {}, False)
 
 
 def test_final_fits_that_are_cut_short_leave_the_values_of_the_windows(monkeypatch, stub) -> None:
@@ -82,4 +82,4 @@ def test_final_fits_that_are_cut_short_leave_the_values_of_the_windows(monkeypat
 
     monkeypatch.setattr(findings, "from_longest_windows", lambda hypothesis: hypothesis)
     state = SearchState(stub(effects=()), stub(effects=(stub(),)))
-    assert findings._finished(stub(working_on=working_on), state) == ((state.plain, state.current), False)
+    assert findings._finished(stub(working_on=working_on), state, Deadline()) == ((state.plain, state.current), False)

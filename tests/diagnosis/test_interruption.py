@@ -11,7 +11,7 @@ import pytest
 
 from greybox_torch.diagnosis import findings
 from greybox_torch.diagnosis.confirm import held_out
-from greybox_torch.diagnosis.confirm.free_runs import Judgement
+from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
 from greybox_torch.diagnosis.pipeline import Diagnosis, diagnose
 from greybox_torch.diagnosis.refit import rank, refitted
 from greybox_torch.diagnosis.screen.score_test import Screen
@@ -65,7 +65,7 @@ def remembered() -> Any:
     once(Screen, "scores", lambda screen, fit, *rest: (id(screen), id(fit)))
     once(held_out, "held_out_fits", lambda hypothesis, *rest: (id(hypothesis), fingerprint(rest)))
     once(findings, "finish", lambda hypothesis, *rest, **how: id(hypothesis))
-    once(Judgement, "_compared", lambda self, like, values, final: (like.names, values.tobytes(), final is None))
+    once(FreeRuns, "_compared", lambda self, like, values, final: (like.names, values.tobytes(), final is None))
     yield
     patch.undo()
 
@@ -82,7 +82,7 @@ def run(motor_data, motor, remembered) -> Callable[..., tuple[Diagnosis, list[st
         patch.setattr(
             findings,
             "_confirmed",
-            lambda study, state, others: (answers.append(state), confirmed(study, state, others))[1],
+            lambda study, state, *rest: (answers.append(state), confirmed(study, state, *rest))[1],
         )
 
         def progress(text: str) -> None:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from greybox_torch.diagnosis.confirm.free_runs import Judgement
 from greybox_torch.diagnosis.confirm.held_out import Gain
+from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 

@@ -1,102 +1,38 @@
-"""The free runs that the verdict reports, of the card's values, the refitted model and the model with effects."""
+"""Free runs of whole experiments: all of the card, whatever their role, each from start states that suit it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import time
 from dataclasses import replace
 
 import numpy as np
 
-from greybox_torch.data import DataSet, Recording
-from greybox_torch.diagnosis.contradictions import worse_than_refit
+from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.hypothesis.final import Final
-from greybox_torch.diagnosis.hypothesis.noise import output_floors
-from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
-from greybox_torch.diagnosis.verdict import Trace
-from greybox_torch.estimate.comparison import Comparison, Score, compare, fit_rows
+from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.simulation.simulator import Simulator
 
 
-class Judgement:
-    """The models on every experiment: the card's values, the plain refit, and the model with effects."""
+class FreeRuns:
+    """The experiments of a data set, and the model at the card's values on them (``start``).
 
-    def __init__(
-        self,
-        study: Study,
-        dataset: DataSet,
-        problem: Problem,
-        state: SearchState,
-        plain: Final,
-        augmented: Final,
-    ) -> None:
-        self.settings = study.settings
-        self.recordings = dataset.recordings
-        self.problem = all_starts_free(dataset, make_problem(dataset, problem.model, dataset.recordings))
-        self.plain, self.augmented, self.options = plain, augmented, study.options
-        self.start = self._compared(problem, problem.values, None)
-        self.refit = self._compared(plain.problem, plain.problem.values, plain)
-        self.with_effects = (
-            self._compared(augmented.problem, augmented.problem.values, augmented) if state.effects else self.refit
-        )
-        self.sums = tuple(self._energy(c) for c in (self.refit, self.with_effects))
+    ``problem`` is the model as it stands on all of them; ``seconds`` is how long the first comparison took, by which one can tell how long
+    the next ones will take.
+    """
 
-    @property
-    def holds(self) -> bool:
-        """Whether the model with effects simulates the validation experiments no worse than the one without.
+    def __init__(self, study: Study, dataset: DataSet) -> None:
+        began, card = time.perf_counter(), study.problem
+        self.settings, self.options, self.recordings = study.settings, study.options, dataset.recordings
+        self.problem = all_starts_free(dataset, make_problem(dataset, card.model, dataset.recordings))
+        self.start = self._compared(card, card.values, None)
+        self.seconds = time.perf_counter() - began
 
-        By the mean squared error, outputs in units of their spread, by the mean fit in %, what a user sees, and by the errors in units of
-        those without effects, by which no verdict may contradict itself.
-        """
-        if worse_than_refit(fit_rows({m: c.scores for m, c in self.comparisons(True).items()})):
-            return False
-        before, after = (_mean_fit(c.scores) for c in (self._judged(self.refit), self._judged(self.with_effects)))
-        return (
-            self.sums[1] <= (1 + self.settings.unexercised) * self.sums[0]
-            and after >= before - 100 * self.settings.unexercised
-        )
-
-    @property
-    def times_noise(self) -> np.ndarray:
-        """How many times the sensors' noise the free runs' errors of the refitted model are, root mean square, by experiment (E,)."""
-        return self._times_noise(self.refit)
-
-    @property
-    def mismatch_share(self) -> float:
-        """Root mean square error of the refitted model's free runs beyond the noise, in units of the spread: of the worst experiment."""
-        return float(np.sqrt(np.max(np.mean(self._beyond(self.refit, self._floors()), axis=1))))
-
-    def left(self, effects: bool) -> tuple[float, float, str]:
-        """What the recommended model leaves of the validation experiments: the share of the refitted model's mean squared error beyond the
-        noise, the largest root mean square error in units of the noise, and in which experiment; NaN where no output shows the noise.
-        """
-        final = self.with_effects if effects else self.refit
-        beyond = [self._energy(c, self._floors()) for c in (self.refit, final)]
-        times = np.where(self._judging(), self._times_noise(final), np.nan)
-        if not np.isfinite(times).any():
-            return _share_left(*beyond), np.nan, ""
-        worst = int(np.nanargmax(times))
-        return _share_left(*beyond), float(times[worst]), self.recordings[worst].name
-
-    def comparisons(self, effects: bool) -> dict[str, Comparison]:
-        return {"start": self.start, "refit": self.refit, "augmented": self.with_effects if effects else self.refit}
-
-    def traces(self, effects: bool) -> tuple[Trace, ...]:
-        last = self.with_effects if effects else self.refit
-        result = []
-        for e, recording in enumerate(self.recordings):
-            for k, output in enumerate(self.problem.model.outputs):
-                simulated = [c.simulated[e][:, k] for c in (self.start, self.refit, last)]
-                measured, time_axis = (
-                    self.problem.records.y[k, self.problem.records.span(e)],
-                    self.problem.records.time(e),
-                )
-                result.append(
-                    Trace(recording.name, recording.role, output.name, output.unit, time_axis, measured, *simulated)
-                )
-        return tuple(result)
+    def of(self, final: Final) -> Comparison:
+        """A model fitted to whole estimation records."""
+        return self._compared(final.problem, final.problem.values, final)
 
     def _compared(self, like: Problem, values: np.ndarray, final: Final | None) -> Comparison:
         """Free runs of all experiments; start states fitted on whole estimation records where there are any, else on the first tenth."""
@@ -113,66 +49,4 @@ class Judgement:
             for row, name in zip(final.problem.initial, final.problem.records.names, strict=True):
                 initial[started.records.names.index(name)] = row
             started = replace(started, initial=initial)
-        return _scored(started, self.recordings, simulator)
-
-    def _times_noise(self, comparison: Comparison) -> np.ndarray:
-        """Root mean square errors in units of the noise, by experiment (E,), over the outputs whose noise is known; NaN where none is."""
-        errors, floors = self._errors(comparison), output_floors(self.problem, self.settings)
-        known = np.isfinite(floors) & (floors > 0)
-        ratios = np.where(known, errors**2 / np.where(known, np.maximum(floors, 1e-300), 1.0), 0.0)
-        count = known.sum(axis=1)
-        return np.sqrt(np.where(count > 0, ratios.sum(axis=1) / np.maximum(count, 1), np.nan))
-
-    def _judged(self, comparison: Comparison) -> Comparison:
-        """The validation experiments alone, where there are any."""
-        names = {r.name for r, judging in zip(self.recordings, self._judging(), strict=True) if judging}
-        return replace(comparison, scores=tuple(s for s in comparison.scores if s.experiment in names))
-
-    def _judging(self) -> np.ndarray:
-        """Which experiments (E,) judge: those of validation, all where there is none."""
-        validation = np.array([r.role == "validation" for r in self.recordings])
-        return validation | ~validation.any()
-
-    def _energy(self, comparison: Comparison, floors: np.ndarray | float = 0.0) -> float:
-        """Sum of the mean squared errors of the experiments that judge, outputs in units of their spread, beyond ``floors`` (E, n_y)."""
-        return float(sum(self._beyond(comparison, floors)[self._judging()].ravel()))
-
-    @np.errstate(over="ignore")
-    def _beyond(self, comparison: Comparison, floors: np.ndarray | float) -> np.ndarray:
-        """Mean squared errors (E, n_y) beyond ``floors``, outputs in units of their spread."""
-        unit = self._units()
-        spread = np.array([unit[o.name] for o in self.problem.model.outputs])
-        return np.maximum(self._errors(comparison) ** 2 - floors, 0.0) / np.maximum(spread**2, 1e-300)
-
-    def _errors(self, comparison: Comparison) -> np.ndarray:
-        """Root mean square errors (E, n_y)."""
-        return np.array([s.rmse for s in comparison.scores]).reshape(len(self.recordings), -1)
-
-    def _floors(self) -> np.ndarray:
-        """Mean squares of the noise (E, n_y), zero where it is not known."""
-        return np.nan_to_num(output_floors(self.problem, self.settings))
-
-    def _units(self) -> dict[str, float]:
-        """The spread of every output; of one that never moves, the largest error of the re-estimated model."""
-        units = {}
-        for output, row in zip(self.problem.model.outputs, self.problem.records.y, strict=True):
-            errors = [s.rmse for s in self.refit.scores if s.output == output.name and np.isfinite(s.rmse)]
-            units[output.name] = float(np.nanstd(row)) or max(errors, default=0.0)
-        return units
-
-
-def _share_left(before: float, after: float) -> float:
-    """What is left of an error: nothing where there was none beyond noise, all where free runs still overflow."""
-    if not np.isfinite(before):
-        return 0.0 if np.isfinite(after) else 1.0
-    return after / before if before > 0 else 0.0
-
-
-def _mean_fit(scores: Sequence[Score]) -> float:
-    """Mean fit in %, of the outputs that move."""
-    moving = [s.fit for s in scores if s.fit > -np.inf or not np.isfinite(s.rmse)]
-    return float(np.mean(moving)) if moving else 0.0
-
-
-def _scored(problem: Problem, recordings: tuple[Recording, ...], simulator: Simulator) -> Comparison:
-    return compare(problem, recordings, simulator, estimate_starts=False)
+        return compare(started, self.recordings, simulator, estimate_starts=False)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from greybox_torch.diagnosis.confirm.free_runs import Judgement
+from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.describe.residual_tests import Detection
 from greybox_torch.diagnosis.verdict import Left
 

@@ -63,6 +63,7 @@ def in_order(ranked: Sequence[RankedCandidate], settings: DiagnosisSettings) -> 
 def rank(study: Study, current: Hypothesis, found: Sequence[Candidate]) -> list[RankedCandidate]:
     """Refit every candidate on top of ``current`` and rank them, best first."""
     budget = study.budget
+    study.journal.offer(_named(candidate) for candidate in found)
     frozen = frozenset(
         p.name for p in current.model.declared_parameters if p.shrunk
     )  # heights of a curve: many, and good already
@@ -73,6 +74,7 @@ def rank(study: Study, current: Hypothesis, found: Sequence[Candidate]) -> list[
 
     def tried(candidate: Candidate, simulator: Simulator) -> Hypothesis | None:
         study.working_on(f"refitting {candidate.attachment.prefix}")
+        study.journal.begin(_named(candidate))
         effects = (*current.effects, candidate.attachment)
         starts = candidate.first_starts(budget.trial_starts)
         return refit(effects, starts, at=middle, limits=budget.trial_iterations, simulator=simulator)
@@ -100,6 +102,10 @@ def rank(study: Study, current: Hypothesis, found: Sequence[Candidate]) -> list[
         longest_first = sorted(some, key=lambda entry: not entry[1].unknown)
         final += [r for r in side_by_side(partial(in_full, *entry[1:]) for entry in longest_first) if r is not None]
     return in_order([*final, *_laws_behind_curve(study, current, final, frozen)], study.settings)
+
+
+def _named(candidate: Candidate) -> tuple[str, str]:
+    return candidate.attachment.port, candidate.attachment.mechanism.name
 
 
 def judged(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from greybox_torch.diagnosis.settings.fields import check, count, counts, iteration, ratio, share
+from greybox_torch.diagnosis.settings.fields import check, count, counts, iteration, number, ratio, share
 from greybox_torch.estimate.levenberg_marquardt import Settings
 
 TIME = "time and results of the development cases"
@@ -141,6 +141,23 @@ class SearchBudget:
     knots: int = count(14, "Knots of a free curve to begin with.", chosen_by=TIME, least=4)
     fine_knots: int = count(40, "Knots of the curves that are tried when nothing else pays.", chosen_by=TIME, least=4)
     most_parameters: int = count(70, "Free parameters beyond which a curve is not drawn any finer.", chosen_by=TIME)
+
+    share_for_confirming: float = share(
+        0.15,
+        "Under a time limit, what is kept of it for confirming on held-out experiments.",
+        unit="share of the time",
+        chosen_by=TIME,
+    )
+    share_for_final_fits: float = share(
+        0.1, "The same for the final fits on whole records.", unit="share of the time", chosen_by=TIME
+    )
+    comparisons_to_come: float = number(
+        4.0,
+        "Time kept for free runs and for describing what was found, in comparisons of one model with all experiments.",
+        unit="comparisons",
+        chosen_by=TIME,
+    )
+    seconds_for_writing: float = number(0.5, "Time kept for writing results.", unit="s", chosen_by=TIME)
 
     def __post_init__(self) -> None:
         check(self)

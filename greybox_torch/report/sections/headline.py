@@ -31,6 +31,7 @@ class Headline:
     answer: str
     figures: tuple[Figure, ...]
     complete: bool
+    not_tried: tuple[str, ...] = ()
     template: str = "headline.html.j2"
 
     @classmethod
@@ -40,7 +41,8 @@ class Headline:
         figures = [_fit(verdict), *_errors(verdict)]
         if verdict.mismatch or verdict.complete:
             figures.append(_confidence(verdict))
-        return cls(verdict.dataset, verdict.model, verdict.sentence, answer, tuple(figures), verdict.complete)
+        told = (verdict.dataset, verdict.model, verdict.sentence, answer, tuple(figures))
+        return cls(*told, verdict.complete, verdict.not_tried.sentences())
 
 
 def held_out(verdict: Verdict, model: str, output: str | None = None) -> list[Score]:

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greybox_torch.deadline import TimeIsUp
 from greybox_torch.diagnosis.select import explore as exploring
 from greybox_torch.diagnosis.select import forward as advancing
 from greybox_torch.diagnosis.select import search as searching
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
-from greybox_torch.diagnosis.stopping import Deadline, TimeIsUp, best_so_far, only_if, or_else, result_of
+from greybox_torch.diagnosis.stopping import best_so_far, only_if, or_else, result_of
 
 SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
 
@@ -49,13 +50,6 @@ def test_what_was_yielded_last_is_the_answer(stub, stop) -> None:
 def test_other_errors_are_not_swallowed(stub) -> None:
     with pytest.raises(ZeroDivisionError):
         best_so_far(yielding(state(stub, 0.0), then=ZeroDivisionError)(), state(stub, 0.0))
-
-
-def test_a_deadline_stops_and_none_does_not() -> None:
-    Deadline.after(None).check()
-    assert not Deadline.after(1000.0).passed
-    with pytest.raises(TimeIsUp):
-        Deadline.after(-1.0).check()
 
 
 def test_only_what_is_accepted_is_yielded(stub) -> None:

@@ -1,0 +1,178 @@
+"""What the free runs say of a model: whether its effects hold on the validation experiments, and what it leaves there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from greybox_torch.data import Recording
+from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
+from greybox_torch.diagnosis.contradictions import worse_than_refit
+from greybox_torch.diagnosis.hypothesis.final import Final
+from greybox_torch.diagnosis.hypothesis.noise import output_floors
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.diagnosis.verdict import Trace
+from greybox_torch.estimate.comparison import Comparison, Score, fit_rows
+from greybox_torch.estimate.problem import Problem
+
+
+@dataclass(frozen=True, eq=False)
+class Judgement:
+    """The models on every experiment: the card's values, the plain refit, and the model with effects (the refit where there are none)."""
+
+    free_runs: FreeRuns
+    plain: Final
+    augmented: Final
+    refit: Comparison
+    with_effects: Comparison
+
+    @staticmethod
+    def of(free_runs: FreeRuns, plain: Final) -> Judgement:
+        """Of the model as it stands."""
+        refit = free_runs.of(plain)
+        return Judgement(free_runs, plain, plain, refit, refit)
+
+    def having(self, augmented: Final) -> Judgement:
+        """Beside the same plain refit, another model with effects."""
+        return replace(self, augmented=augmented, with_effects=self.free_runs.of(augmented))
+
+    def without_effects(self) -> Judgement:
+        return replace(self, augmented=self.plain, with_effects=self.refit)
+
+    @property
+    def start(self) -> Comparison:
+        return self.free_runs.start
+
+    @property
+    def sums(self) -> tuple[float, float]:
+        """Sums of the mean squared validation errors of the refit and of the model with effects, outputs in units of their spread."""
+        return self._energy(self.refit), self._energy(self.with_effects)
+
+    @property
+    def problem(self) -> Problem:
+        """The plain model on all experiments."""
+        return self.free_runs.problem
+
+    @property
+    def recordings(self) -> tuple[Recording, ...]:
+        return self.free_runs.recordings
+
+    @property
+    def settings(self) -> DiagnosisSettings:
+        return self.free_runs.settings
+
+    @property
+    def holds(self) -> bool:
+        """Whether the model with effects simulates the validation experiments no worse than the one without.
+
+        By the mean squared error, outputs in units of their spread, by the mean fit in %, what a user sees, and by the errors in units of
+        those without effects, by which no verdict may contradict itself.
+        """
+        if worse_than_refit(fit_rows({m: c.scores for m, c in self.comparisons(True).items()})):
+            return False
+        before, after = (_mean_fit(c.scores) for c in (self._judged(self.refit), self._judged(self.with_effects)))
+        refit, with_effects = self.sums
+        return (
+            with_effects <= (1 + self.settings.unexercised) * refit
+            and after >= before - 100 * self.settings.unexercised
+        )
+
+    @property
+    def times_noise(self) -> np.ndarray:
+        """How many times the sensors' noise the free runs' errors of the refitted model are, root mean square, by experiment (E,)."""
+        return self._times_noise(self.refit)
+
+    @property
+    def mismatch_share(self) -> float:
+        """Root mean square error of the refitted model's free runs beyond the noise, in units of the spread: of the worst experiment."""
+        return float(np.sqrt(np.max(np.mean(self._beyond(self.refit, self._floors()), axis=1))))
+
+    def left(self, effects: bool) -> tuple[float, float, str]:
+        """What the recommended model leaves of the validation experiments: the share of the refitted model's mean squared error beyond the
+        noise, the largest root mean square error in units of the noise, and in which experiment; NaN where no output shows the noise.
+        """
+        final = self.with_effects if effects else self.refit
+        beyond = [self._energy(c, self._floors()) for c in (self.refit, final)]
+        times = np.where(self._judging(), self._times_noise(final), np.nan)
+        if not np.isfinite(times).any():
+            return _share_left(*beyond), np.nan, ""
+        worst = int(np.nanargmax(times))
+        return _share_left(*beyond), float(times[worst]), self.recordings[worst].name
+
+    def comparisons(self, effects: bool) -> dict[str, Comparison]:
+        return {"start": self.start, "refit": self.refit, "augmented": self.with_effects if effects else self.refit}
+
+    def traces(self, effects: bool) -> tuple[Trace, ...]:
+        last = self.with_effects if effects else self.refit
+        result = []
+        for e, recording in enumerate(self.recordings):
+            for k, output in enumerate(self.problem.model.outputs):
+                simulated = [c.simulated[e][:, k] for c in (self.start, self.refit, last)]
+                measured, time_axis = (
+                    self.problem.records.y[k, self.problem.records.span(e)],
+                    self.problem.records.time(e),
+                )
+                result.append(
+                    Trace(recording.name, recording.role, output.name, output.unit, time_axis, measured, *simulated)
+                )
+        return tuple(result)
+
+    def _times_noise(self, comparison: Comparison) -> np.ndarray:
+        """Root mean square errors in units of the noise, by experiment (E,), over the outputs whose noise is known; NaN where none is."""
+        errors, floors = self._errors(comparison), output_floors(self.problem, self.settings)
+        known = np.isfinite(floors) & (floors > 0)
+        ratios = np.where(known, errors**2 / np.where(known, np.maximum(floors, 1e-300), 1.0), 0.0)
+        count = known.sum(axis=1)
+        return np.sqrt(np.where(count > 0, ratios.sum(axis=1) / np.maximum(count, 1), np.nan))
+
+    def _judged(self, comparison: Comparison) -> Comparison:
+        """The validation experiments alone, where there are any."""
+        names = {r.name for r, judging in zip(self.recordings, self._judging(), strict=True) if judging}
+        return replace(comparison, scores=tuple(s for s in comparison.scores if s.experiment in names))
+
+    def _judging(self) -> np.ndarray:
+        """Which experiments (E,) judge: those of validation, all where there is none."""
+        validation = np.array([r.role == "validation" for r in self.recordings])
+        return validation | ~validation.any()
+
+    def _energy(self, comparison: Comparison, floors: np.ndarray | float = 0.0) -> float:
+        """Sum of the mean squared errors of the experiments that judge, outputs in units of their spread, beyond ``floors`` (E, n_y)."""
+        return float(sum(self._beyond(comparison, floors)[self._judging()].ravel()))
+
+    @np.errstate(over="ignore")
+    def _beyond(self, comparison: Comparison, floors: np.ndarray | float) -> np.ndarray:
+        """Mean squared errors (E, n_y) beyond ``floors``, outputs in units of their spread."""
+        unit = self._units()
+        spread = np.array([unit[o.name] for o in self.problem.model.outputs])
+        return np.maximum(self._errors(comparison) ** 2 - floors, 0.0) / np.maximum(spread**2, 1e-300)
+
+    def _errors(self, comparison: Comparison) -> np.ndarray:
+        """Root mean square errors (E, n_y)."""
+        return np.array([s.rmse for s in comparison.scores]).reshape(len(self.recordings), -1)
+
+    def _floors(self) -> np.ndarray:
+        """Mean squares of the noise (E, n_y), zero where it is not known."""
+        return np.nan_to_num(output_floors(self.problem, self.settings))
+
+    def _units(self) -> dict[str, float]:
+        """The spread of every output; of one that never moves, the largest error of the re-estimated model."""
+        units = {}
+        for output, row in zip(self.problem.model.outputs, self.problem.records.y, strict=True):
+            errors = [s.rmse for s in self.refit.scores if s.output == output.name and np.isfinite(s.rmse)]
+            units[output.name] = float(np.nanstd(row)) or max(errors, default=0.0)
+        return units
+
+
+def _share_left(before: float, after: float) -> float:
+    """What is left of an error: nothing where there was none beyond noise, all where free runs still overflow."""
+    if not np.isfinite(before):
+        return 0.0 if np.isfinite(after) else 1.0
+    return after / before if before > 0 else 0.0
+
+
+def _mean_fit(scores: Sequence[Score]) -> float:
+    """Mean fit in %, of the outputs that move."""
+    moving = [s.fit for s in scores if s.fit > -np.inf or not np.isfinite(s.rmse)]
+    return float(np.mean(moving)) if moving else 0.0
