@@ -79,13 +79,16 @@ def numbers(told: Any) -> Any:
     return [numbers(value) for value in told] if isinstance(told, list) else told
 
 
-def check_shown(result: Any, folder: Path, files: set[str]) -> None:
+def check_shown(result: Any, folder: Path, files: set[str], folders: dict[str, set[str]] | None = None) -> None:
     """Prints, shows itself, draws and saves; JSON is strict, and what it names is there."""
+    below = folders or {}
     assert "Motor" in str(result) and len(repr(result)) < 300
     html = result._repr_html_()
     assert "<table>" in html and "data:image/png;base64," in html and "http" not in html
     assert isinstance(result.plot(), Figure)
-    assert {path.name for path in result.save(folder)} == files == {path.name for path in folder.iterdir()}
+    assert {path.name for path in result.save(folder)} == files.union(*below.values())
+    assert {path.name for path in folder.iterdir()} == files | set(below)
+    assert all({path.name for path in (folder / name).iterdir()} == inside for name, inside in below.items())
     text = result.to_json(folder)
     assert json.loads(text) == result.to_dict(folder) and text.endswith("}\n")
 
@@ -145,7 +148,9 @@ def test_the_contract(folder: Path, data: gt.DataSet) -> None:
     assert half_width.value == pytest.approx(0.4, rel=0.02) and 0 < (half_width.std or 0) < 0.01
     assert found.model.values() == {name: entry.value for name, entry in found.parameters.items()}
     assert (model.held_values(), fit.model.values()["J"]) == ({}, fit.parameters["J"].value)
-    check_shown(found, folder / "saved", {"model.json", "model.safetensors", "report.html", "verdict.json"})
+    kept = {f"1-actuator-actuator_deadzone.{kind}" for kind in ("json", "safetensors")}
+    files = {"hypotheses.json", "model.json", "model.safetensors", "report.html", "verdict.json"}
+    check_shown(found, folder / "saved", files, {"hypotheses": kept})
     assert (folder / "saved" / "verdict.json").read_text() == found.to_json()
 
     compared = gt.compare(data, {"start": Motor(), "fit": fit, "diagnosed": found, "saved": folder / "saved" / "model"})

@@ -25,7 +25,7 @@ Precision = Annotated[
 Settings = Annotated[
     Path | None,
     typer.Option(
-        metavar="FILE.toml", help="Thresholds and budgets of the search, by name; win over [diagnosis] in the card."
+        metavar="FILE.toml", help="Thresholds and budgets of the search, by name; win over those on the card."
     ),
 ]
 Json = Annotated[

@@ -14,7 +14,7 @@ from contextvars import copy_context
 from functools import lru_cache
 from typing import TypeVar
 
-from greybox_torch.deadline import until
+from greybox_torch.deadline import check_time, until
 
 Result = TypeVar("Result")
 
@@ -44,9 +44,18 @@ def side_by_side(tasks: Iterable[Callable[[], Result]]) -> list[Result]:
     if workers < 2:
         return [task() for task in tasks]
     pool, given_up = ThreadPoolExecutor(workers, initializer=_begin), threading.Event()
+
+    def begun(task: Callable[[], Result]) -> Result:
+        check_time()  # before it says that it has begun
+        try:
+            return task()
+        except BaseException:
+            given_up.set()  # here: the thread that waits for results may be slower than the next task
+            raise
+
     try:
         with until(given_up.is_set):  # a context of its own for each, with the deadlines of the present one
-            waiting = [pool.submit(copy_context().run, task) for task in tasks]
+            waiting = [pool.submit(copy_context().run, begun, task) for task in tasks]
         return [each.result() for each in waiting]
     except BaseException:
         given_up.set()

@@ -127,7 +127,7 @@ def test_interruption_leaves_a_verdict(motor_data, motor) -> None:
 def test_time_limit_stops_the_search_and_leaves_a_verdict(motor_data, motor, monkeypatch, stub) -> None:
     monkeypatch.setenv("OMP_NUM_THREADS", "1")
     late, real = [0.0], time.perf_counter
-    monkeypatch.setattr("greybox_torch.diagnosis.stopping.time", stub(perf_counter=lambda: real() + late[0]))
+    monkeypatch.setattr("greybox_torch.deadline.time", stub(perf_counter=lambda: real() + late[0]))
     said = []
 
     def progress(text: str) -> None:

@@ -42,14 +42,14 @@ def test_gain(law, gain, signal) -> None:
 def test_lag_settles_to_its_signal_with_its_time_constant(law, rates, lag, signal) -> None:
     lagged, after = 0.0, {}
     for k in range(20_000):
-        now = {signal: np.array(3.0)}
+        now = {signal: np.array(3.0), "sample_time": np.array(1e-4)}
         after[k] = 3.0 + float(law(lag, {"T": 0.1}, {"lagged": np.array(lagged)}, **now))
         lagged += 1e-4 * float(rates(lag, {"T": 0.1}, {"lagged": np.array(lagged)}, **now)[0])
         if k > 1000:
             break
     assert after[0] == 0.0
     assert after[1000] == pytest.approx(3.0 * (1 - np.exp(-1.0)), rel=1e-3)
-    settled = law(lag, {"T": 0.1}, {"lagged": np.array(3.0)}, **{signal: np.array(3.0)})
+    settled = law(lag, {"T": 0.1}, {"lagged": np.array(3.0)}, **now)
     assert settled == 0.0
 
 
