@@ -38,7 +38,13 @@ def screen_scores(study: Study, state: SearchState, *, curves: bool, fine: bool)
 
 
 def from_motion(study: Study, state: SearchState) -> list[Candidate]:
-    """What the measured motion itself suggests to join the hypothesis so far."""
+    """What the measured motion itself suggests to join the hypothesis so far.
+
+    Nothing beside a free curve: with it the model is near the machine, where the screen is right, and its heights are too many to be
+    estimated anew from the equations.
+    """
+    if state.has_curve:
+        return []
     study.working_on("comparing the equations with the measured motion")
     return candidates_from_motion(
         study, state.current.problem, state.effects, lambda a: not _is_there(a, state.effects)
