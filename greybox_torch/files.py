@@ -94,3 +94,13 @@ def _finite(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_finite(entry) for entry in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def toml_text(value: str) -> str:
+    """A string of TOML, which is one of JSON but for the character DEL."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def toml_key(name: str) -> str:
+    """A key of TOML, quoted where it has to be."""
+    return name if name.replace("_", "").isascii() and name.replace("_", "").isalnum() else toml_text(name)

@@ -13,9 +13,11 @@ from rich.text import Text
 
 from greybox_torch.api.result import Result
 from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.experiment_design.excitation import Excitation
 from greybox_torch.experiment_design.limits import Limits
 from greybox_torch.experiment_design.separation import expected_probability, seconds_for
+from greybox_torch.files import toml_key, toml_text
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
@@ -26,8 +28,8 @@ if TYPE_CHECKING:
 SCHEMA = "greybox-design/1"
 INPUT, FIGURE, CARD, RECORDED = "design.csv", "design.png", "next.toml", "recorded.csv"
 WANTED = 0.95
-VISIBLE = 3.0
-"""Nats below which two hypotheses cannot be told apart: odds of 20 to 1."""
+VISIBLE = DiagnosisSettings().visible_divergence
+"""Nats below which two hypotheses cannot be told apart, as in a diagnosis."""
 
 
 @dataclass(frozen=True)
@@ -213,19 +215,15 @@ class DesignResult(Result):
 
     def _card(self) -> str:
         channels = "\n".join(
-            f'{name} = {{ column = "{name}", unit = "{channel.unit}" }}' for name, channel in self.data.channels.items()
+            f"{toml_key(name)} = {{ column = {toml_text(name)}, unit = {toml_text(channel.unit)} }}"
+            for name, channel in self.data.channels.items()
         )
         return (
             f"# A card for the recording that {INPUT} asks for. Save what you record as {RECORDED}, with these columns.\n"
             f"# To diagnose old and new recordings together, copy the [[experiment]] below to the card of the old ones.\n"
-            f'name = "{self.data.name}: designed recording"\n'
+            f"name = {toml_text(f'{self.data.name}: designed recording')}\n"
             f"sample_time = {float(self.time[1] - self.time[0])!r}\n"
             f'hold = "{self.data.hold}"\n\n[channels]\n{channels}\n\n'
             f'[[experiment]]\nname = "Designed"\nfile = "{RECORDED}"\nrole = "estimation"\n\n'
-            f"[model]\nname = {_text(self.reference)}\n"
+            f"[model]\nname = {toml_text(self.reference)}\n"
         )
-
-
-def _text(value: str) -> str:
-    """A TOML string that takes every character as it is."""
-    return "'" + value + "'" if "'" not in value else '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'

@@ -88,12 +88,6 @@ def left_out(method: Method, names: Sequence[str], unit_of: Mapping[str, str]) -
                 )
 
 
-def used_names(method: Method, kind: str) -> set[str]:
-    """The names of one kind that the method uses."""
-    found = (_used(node, method.arguments) for node in ast.walk(method.tree))
-    return {used[1] for used in found if used and method.arguments[used[0]] == kind}
-
-
 def _used(node: ast.AST, arguments: Mapping[str, str]) -> tuple[str, str] | None:
     """The argument and the name in `x.name` or `x["name"]`."""
     if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in arguments:

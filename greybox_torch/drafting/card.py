@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ from pathlib import Path
 from greybox_torch.drafting.channels import Draft, Drafted, drafted
 from greybox_torch.drafting.clock import Clock, clock_of
 from greybox_torch.drafting.recorded import Recorded, recorded
+from greybox_torch.files import toml_key, toml_text
 from greybox_torch.model import GreyBoxModel
 
 FEW = 80
@@ -49,7 +49,7 @@ def draft_card(
     clocks = [given or clock_of(file) for file in files]
     tables = [drafted(file, clock, model) for file, clock in zip(files, clocks, strict=True)]
     lines = [
-        f"name = {_text(folder.resolve().name or 'Recordings')}",
+        f"name = {toml_text(folder.resolve().name or 'Recordings')}",
         *_clock(clocks[0]),
         'hold = "zoh"                       # the input between samples: "zoh" constant, "foh" straight lines',
         "",
@@ -68,9 +68,9 @@ def draft_card(
 def _clock(clock: Clock) -> list[str]:
     if clock.column is not None:
         time = (
-            _text(clock.column)
+            toml_text(clock.column)
             if clock.unit == "s"
-            else f"{{ column = {_text(clock.column)}, unit = {_text(clock.unit)} }}"
+            else f"{{ column = {toml_text(clock.column)}, unit = {toml_text(clock.unit)} }}"
         )
         uneven = [
             "# resample = 0.001                 # s: the time stamps are uneven; this makes them even"
@@ -91,9 +91,12 @@ def _channels(table: Drafted, model: GreyBoxModel | None) -> list[str]:
 
 
 def _channel(draft: Draft) -> str:
-    entry = [f"column = {_text(draft.column if draft.column is not None else '…')}", f"unit = {_text(draft.unit)}"]
-    entry += [f"file_unit = {_text(draft.file_unit)}"] if draft.file_unit else []
-    line = f"{_key(draft.name)} = {{ {', '.join(entry)} }}" + (f"    # {draft.remark}" if draft.remark else "")
+    entry = [
+        f"column = {toml_text(draft.column if draft.column is not None else '…')}",
+        f"unit = {toml_text(draft.unit)}",
+    ]
+    entry += [f"file_unit = {toml_text(draft.file_unit)}"] if draft.file_unit else []
+    line = f"{toml_key(draft.name)} = {{ {', '.join(entry)} }}" + (f"    # {draft.remark}" if draft.remark else "")
     return line if draft.column is not None else f"# {line}"
 
 
@@ -132,12 +135,12 @@ def _experiment(
     name: str, file: Recorded, role: str, folder: Path, columns: dict[str, str], rows: tuple[int, int] | None
 ) -> list[str]:
     seen = "parameters are estimated from it" if role == "estimation" else "results are judged on it"
-    own = ", ".join(f"{_key(channel)} = {_text(column)}" for channel, column in columns.items())
+    own = ", ".join(f"{toml_key(channel)} = {toml_text(column)}" for channel, column in columns.items())
     return [
         "[[experiment]]",
-        f"name = {_text(name)}",
-        f"file = {_text(Path(os.path.relpath(file.path.resolve(), folder.resolve())).as_posix())}",
-        f"role = {_text(role)}              # {seen}",
+        f"name = {toml_text(name)}",
+        f"file = {toml_text(Path(os.path.relpath(file.path.resolve(), folder.resolve())).as_posix())}",
+        f"role = {toml_text(role)}              # {seen}",
         *([f"rows = [{rows[0]}, {rows[1]}]"] if rows else []),
         *([f"columns = {{ {own} }}"] if own else []),
         "",
@@ -148,14 +151,14 @@ def _model(model: GreyBoxModel | None, name: str | None) -> list[str]:
     if model is None:
         return ["[model]", '# name = "my_model.py:MyModel"      # relative to this card']
     parameters = [
-        f"# {_key(p.name)} = {{ value = {p.value!r}{', fixed = true' if p.fixed else ''} }}"
+        f"# {toml_key(p.name)} = {{ value = {p.value!r}{', fixed = true' if p.fixed else ''} }}"
         + (f"    # {p.unit}" if p.unit else "")
         for p in model.declared_parameters
     ]
     told = "# start values; with fixed = true what you know" if parameters else ""
     return [
         "[model]",
-        f"name = {_text(name or model.title)}",
+        f"name = {toml_text(name or model.title)}",
         *(["", "[model.parameters]", told, *parameters] if told else []),
     ]
 
@@ -164,12 +167,3 @@ def _names(paths: Sequence[Path]) -> list[str]:
     """The files' names without their endings; whole, where two would be alike."""
     stems = [path.stem for path in paths]
     return [stem if stems.count(stem) == 1 else path.as_posix() for stem, path in zip(stems, paths, strict=True)]
-
-
-def _text(value: str) -> str:
-    """A string of TOML, which is one of JSON but for the character DEL."""
-    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-
-
-def _key(name: str) -> str:
-    return name if name.replace("_", "").isascii() and name.replace("_", "").isalnum() else _text(name)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.drafting.matching import Wanted
+from greybox_torch.linear_algebra import least_squares
 
 _SLIPS = {
     math.degrees(1.0): ("position", "deg"),
@@ -53,7 +54,7 @@ def _ratio(position: NDArray[np.float64], speed: NDArray[np.float64], time: NDAr
         return None
     passed = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
     trend = np.vander((time - time[0]) / max(time[-1] - time[0], 1e-12), 2)  # an offset of the speed is no matter
-    left, right = (v - trend @ np.linalg.lstsq(trend, v, rcond=None)[0] for v in (position, passed))
+    left, right = (v - trend @ least_squares(trend, v) for v in (position, passed))
     power = float(right @ right)
     if power <= 0.0 or abs(float(left @ right)) < _CORRELATED * math.sqrt(power * float(left @ left)):
         return None

@@ -12,6 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.special import ndtri
 
+from greybox_torch.linear_algebra import pseudo_inverse
+
 RELATIVE = 1e-10
 """Share of the largest eigenvalue, of a matrix scaled to unit diagonal, below which a direction counts as undetermined."""
 
@@ -24,7 +26,7 @@ def scaled_inverse(matrix: np.ndarray) -> np.ndarray:
     size = np.sqrt(np.maximum(np.diag(matrix), 0.0))
     known = size > 0
     scale = np.where(known, 1.0 / np.where(known, size, 1.0), 0.0)
-    return np.linalg.pinv(matrix * np.outer(scale, scale), rcond=RELATIVE, hermitian=True) * np.outer(scale, scale)
+    return pseudo_inverse(matrix * np.outer(scale, scale), RELATIVE, hermitian=True) * np.outer(scale, scale)
 
 
 def evidence(difference: np.ndarray, slopes: np.ndarray, known: np.ndarray) -> float:

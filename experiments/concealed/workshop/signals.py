@@ -32,10 +32,3 @@ def steps(rng: Generator, samples: int, low: float, high: float, *, corner: floa
         levels[at : at + length] = rng.uniform(low, high)
         at += length
     return smooth(levels - levels[0], corner) + levels[0] if corner else levels
-
-
-def rest_first(signal: Array, share: float) -> Array:
-    """Zero for the first share of the record."""
-    quiet = signal.copy()
-    quiet[: int(share * len(signal))] = 0.0
-    return quiet
