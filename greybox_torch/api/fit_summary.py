@@ -9,7 +9,7 @@ from rich.text import Text
 
 from greybox_torch.api.estimated import EstimatedStart, estimated_parameters, estimated_starts
 from greybox_torch.api.scores import print_substeps
-from greybox_torch.estimate.brief_lists import brief_pairs
+from greybox_torch.estimate.brief_lists import brief_pairs, brief_sentences
 from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.profile import LEVEL, Profile
 from greybox_torch.estimate.termination import Termination, brief
@@ -88,7 +88,7 @@ def warnings(found: Estimation) -> list[str]:
         lines.append(
             f"The data do not determine {brief(lost)}, alone or together: fix one of them, or excite the machine more."
         )
-    lines += [f"{one.sentence}." for one in found.identifiability]
+    lines += [f"{told}." for told in brief_sentences(found.identifiability)]
     for note in found.notes:
         if note.kind is Termination.at_bound:
             lines.append(f"At a bound: {note.detail}; the standard deviations there mean little.")
