@@ -17,8 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from greybox_torch import load_dataset, load_model
-from greybox_torch.estimate import Problem, make_problem, simulate
-from greybox_torch.estimate.fit import fit
+from greybox_torch.estimate import Problem, fit_records, make_problem, simulate
 from greybox_torch.simulation import Simulator
 
 ALLOWED = 0.2
@@ -31,7 +30,7 @@ def main() -> int:
     problem = make_problem(data, load_model(data.model or "robot_arm"), data.estimation())
     simulator = Simulator.of(problem.model, problem.free_names)
     began = time.perf_counter()
-    found = fit(problem, simulator=simulator)
+    found = fit_records(problem, simulator=simulator)
     optimum, sigma = found.problem, np.sqrt(found.mse * found.samples / (found.samples - _unknowns(found.problem)))
     print(f"optimum: mean squared error {found.mse:.5f}, noise of the repeats {sigma:.4f}, {found.samples} samples")
 
@@ -40,7 +39,7 @@ def main() -> int:
     estimates, reported = [], []
     for repeat in range(arguments.repeats):
         noisy = np.where(np.isnan(problem.records.y), np.nan, exact + rng.normal(0.0, sigma, exact.shape))
-        again = fit(replace(optimum, records=replace(optimum.records, y=noisy)), simulator=simulator)
+        again = fit_records(replace(optimum, records=replace(optimum.records, y=noisy)), simulator=simulator)
         assert again.uncertainty is not None
         estimates.append(_vector(again.problem))
         reported.append(again.uncertainty.deviations())

@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-import ast
-import importlib
 import subprocess
 import sys
 from pathlib import Path
@@ -9,8 +7,6 @@ from pathlib import Path
 import pytest
 
 import greybox_torch
-
-EXPERIMENTS = Path(__file__).parents[1] / "experiments"
 
 
 def test_load_dataset_is_public() -> None:
@@ -38,25 +34,7 @@ def test_import_is_light(module: str) -> None:
     assert result.stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize("part", ["simulation", "estimate"])
-def test_experiments_take_the_engine_from_where_it_is_public(part: str) -> None:
-    """What a package exports is imported from it, not from the file where it happens to stand."""
-    package = importlib.import_module(f"greybox_torch.{part}")
-    deep = [
-        f"{file.relative_to(EXPERIMENTS)}: {node.module}.{alias.name}"
-        for file in sorted(EXPERIMENTS.rglob("*.py"))
-        for node in ast.walk(ast.parse(file.read_text()))
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(f"greybox_torch.{part}.")
-        for alias in node.names
-        if alias.name in package.__all__
-    ]
-    assert not deep
-    assert all(hasattr(package, name) for name in package.__all__)
-
-
 def test_no_public_name_is_hidden_by_a_package() -> None:
     """A package `greybox_torch.NAME` would replace the public NAME as soon as anything imports it."""
-    from pathlib import Path
-
     home = Path(greybox_torch.__file__).parent
     assert not [n for n in greybox_torch.__all__ if (home / n).is_dir() or (home / f"{n}.py").is_file()]

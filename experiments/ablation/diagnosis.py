@@ -9,8 +9,7 @@ from typing import Any
 
 from experiments.verdicts.running import diagnose
 from greybox_torch import Checkpoint, DataSet, GreyBoxModel, NumericalError, UserError, load_checkpoint
-from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.stored import restored_model
+from greybox_torch.mechanisms import AugmentedModel, restored_model
 
 
 @dataclass(frozen=True)

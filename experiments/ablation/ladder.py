@@ -15,7 +15,7 @@ from experiments.ablation.results import Case, Entry
 from experiments.ablation.series import Scaling
 from greybox_torch import DataSet, GreyBoxModel, TrainingSettings, fit_physics
 from greybox_torch.estimate import Score, fit_percent, make_problem, root_mean_square
-from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms import AugmentedModel
 from greybox_torch.training import Physics, Trained
 
 MODELS = {

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from greybox_torch import Coupling, DataSet, GreyBoxModel, TrainingSettings, UserError, train_hybrid
-from greybox_torch.model.ports import driving_body
+from greybox_torch.model import driving_body
 from greybox_torch.training import Physics, Trained
 
 

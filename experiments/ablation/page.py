@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from experiments.ablation.ladder import MODELS
 from experiments.ablation.results import Case, Entry
 from greybox_torch.files import replacing, write_text
-from greybox_torch.report.style import STYLE
+from greybox_torch.report import STYLE
 
 FACTS = ("date", "commit", "processor", "cores", "torch")
 BELOW_NAMED, ABOVE_PHYSICS = 0.1, 0.3

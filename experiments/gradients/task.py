@@ -9,15 +9,16 @@ import numpy as np
 from experiments.speed.network import network_task
 from greybox_torch import GreyBoxModel, ResidualNet, Surroundings
 from greybox_torch.estimate import Problem, problem_for
-from greybox_torch.mechanisms.attachment import attach
-from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.mechanism import Range
+from greybox_torch.mechanisms import AugmentedModel, Range, attach
 from greybox_torch.simulation import Records, Simulator
 from greybox_torch.systems import RobotArm
-from greybox_torch.training.gradients import Batch, SequenceGradient
-from greybox_torch.training.gradients.adjoint import AdjointGradient
-from greybox_torch.training.gradients.recomputation import RecomputationGradient
-from greybox_torch.training.gradients.tangents import TangentsGradient
+from greybox_torch.training.gradients import (
+    AdjointGradient,
+    Batch,
+    RecomputationGradient,
+    SequenceGradient,
+    TangentsGradient,
+)
 
 KEPT = "backpropagation"
 WAYS = ("tangents", "recomputation", KEPT, "odeint_adjoint")

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from experiments.verdicts.running import RUN, VERDICT, has_verdict, sentence
-from greybox_torch.diagnosis.contradictions import contradictions, worse_than_refit
+from greybox_torch.diagnosis import contradictions, worse_than_refit
 
 KINDS = ("without effect", "one effect", "two effects or more")
 OUTSIDE = "outside the library"

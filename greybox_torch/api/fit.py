@@ -19,8 +19,7 @@ from greybox_torch.api.arguments import (
 from greybox_torch.api.fit_result import FitResult
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Comparison, compare
-from greybox_torch.estimate.fit import Estimation
-from greybox_torch.estimate.fit import fit as estimate
+from greybox_torch.estimate.fit import Estimation, fit_records
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.identifiability import Unidentifiable, identifiability
 from greybox_torch.estimate.levenberg_marquardt import DEFAULT
@@ -75,7 +74,7 @@ def fit(
     unidentifiable = _at_start(problem, simulator)
     for one in unidentifiable:
         progress(f"At the start values: {one.sentence}.")
-    found = estimate(
+    found = fit_records(
         problem,
         simulator=simulator,
         settings=settings_for(precision, DEFAULT),

@@ -8,3 +8,5 @@ from __future__ import annotations
 from pathlib import Path
 
 DATASET = Path(__file__).with_name("dataset.toml")
+
+__all__ = ["DATASET"]

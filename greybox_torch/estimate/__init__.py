@@ -4,6 +4,7 @@ For work on the engine itself, as the experiments do it; :func:`greybox_torch.fi
 """
 
 from greybox_torch.estimate.comparison import Score, compare
+from greybox_torch.estimate.fit import Estimation, fit_records
 from greybox_torch.estimate.free_run import simulate, visited_states
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.metrics import fit_percent, root_mean_square
@@ -14,6 +15,7 @@ from greybox_torch.estimate.surroundings import survey
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 
 __all__ = [
+    "Estimation",
     "Problem",
     "Score",
     "Settings",
@@ -21,6 +23,7 @@ __all__ = [
     "all_starts_free",
     "compare",
     "fit_percent",
+    "fit_records",
     "fit_windows",
     "make_problem",
     "problem_for",

@@ -64,7 +64,7 @@ class Estimation:
         return result
 
 
-def fit(
+def fit_records(
     problem: Problem,
     *,
     simulator: Simulator | None = None,

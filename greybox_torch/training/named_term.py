@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from greybox_torch.errors import NumericalError
-from greybox_torch.estimate.fit import Estimation, fit
+from greybox_torch.estimate.fit import Estimation, fit_records
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
@@ -78,4 +78,4 @@ def on_all_samples(term: NamedTerm, found: Trained) -> Estimation:
         NumericalError: the simulation overflows.
     """
     problem = replace(term.problem, records=found.physics.problem.records)
-    return fit(problem, simulator=term.simulator, seed=found.settings.seed, starts=1)
+    return fit_records(problem, simulator=term.simulator, seed=found.settings.seed, starts=1)

@@ -9,7 +9,7 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError, UserError
-from greybox_torch.estimate.fit import Estimation, fit
+from greybox_torch.estimate.fit import Estimation, fit_records
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.estimate.simulators import fine_enough
@@ -119,7 +119,7 @@ def on_whole_records(windows: WindowFit, problem: Problem) -> Problem:
 
 
 def _fitted(problem: Problem, simulator: Simulator, seed: int) -> Estimation:
-    return fit(problem, simulator=simulator, seed=seed, starts=1)
+    return fit_records(problem, simulator=simulator, seed=seed, starts=1)
 
 
 def with_physics(problem: Problem, physics: np.ndarray) -> Problem:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.estimate.descent import Way, descend
-from greybox_torch.estimate.fit import fit
+from greybox_torch.estimate.fit import fit_records
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import DEFAULT, Quadratic, Settings, minimise
 from greybox_torch.estimate.logarithmic import minimise_on_logarithms
@@ -50,7 +50,7 @@ def oscillation(data_set: Any) -> Any:
 
 
 def test_one_descent_ends_in_the_valley_it_begins_in(oscillation: Any) -> None:
-    found = fit(oscillation, starts=1)
+    found = fit_records(oscillation, starts=1)
     assert found.mse > 0.3
     assert abs(found.problem.values[0] - 2.3) > 0.1
 
@@ -58,20 +58,20 @@ def test_one_descent_ends_in_the_valley_it_begins_in(oscillation: Any) -> None:
 @pytest.mark.parametrize("seed", [0, 1])
 def test_many_starts_find_the_deepest_valley(oscillation: Any, seed: int) -> None:
     """Also by default, since the start values turn out poor."""
-    found = fit(oscillation, seed=seed)
+    found = fit_records(oscillation, seed=seed)
     assert found.problem.values == pytest.approx(list(TRUTH.values()), rel=1e-6)
     assert found.mse < 1e-12
 
 
 def test_the_same_seed_gives_the_same_result(oscillation: Any) -> None:
-    first, second = (fit(oscillation, starts=24, seed=5) for _ in range(2))
+    first, second = (fit_records(oscillation, starts=24, seed=5) for _ in range(2))
     assert first.problem.values.tolist() == second.problem.values.tolist()
 
 
 def test_a_good_start_is_not_left(oscillation: Any) -> None:
     stages: list[str] = []
     near = oscillation.with_values(np.array([2.3004, 0.81]))
-    found = fit(near, progress=lambda stage, *_: stages.append(stage))
+    found = fit_records(near, progress=lambda stage, *_: stages.append(stage))
     assert set(stages) == {"whole records"}
     assert found.problem.values == pytest.approx(list(TRUTH.values()), rel=1e-6)
 
@@ -158,7 +158,7 @@ def test_the_result_is_the_optimum_of_the_sequential_free_run(data_set: Any) -> 
         return Quadratic(0.5 * float(matrix[-1, -1]), -matrix[:-1, -1], matrix[:-1, :-1], None)
 
     alone = minimise(sequential, problem.values, problem.lower, problem.upper, settings=Settings(tolerance=1e-14))
-    found = fit(problem, starts=1)
+    found = fit_records(problem, starts=1)
     assert alone is not None
     assert found.mse == pytest.approx(2 * alone.model.cost / 3000, rel=1e-6)
     assert found.problem.values == pytest.approx(alone.point, rel=1e-6)

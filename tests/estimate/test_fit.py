@@ -12,7 +12,7 @@ import pytest
 from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.comparison import compare
-from greybox_torch.estimate.fit import Estimation, fit
+from greybox_torch.estimate.fit import Estimation, fit_records
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.termination import Termination
@@ -53,7 +53,7 @@ def values(found: Estimation) -> dict[str, float]:
 
 def test_recovers_the_parameters(motor: GreyBoxModel, experiments: list[Any], data_set: Any) -> None:
     lines: list[tuple[str, int, float]] = []
-    found = fit(problem_of(data_set(UNITS, experiments), motor), progress=lambda *line: lines.append(line))
+    found = fit_records(problem_of(data_set(UNITS, experiments), motor), progress=lambda *line: lines.append(line))
     assert found.termination.succeeded
     assert values(found) == pytest.approx(TRUTH, rel=1e-5)
     np.testing.assert_allclose(found.problem.initial[:, 0], [2.0, -1.0], atol=1e-4)
@@ -66,11 +66,13 @@ def test_recovers_the_parameters(motor: GreyBoxModel, experiments: list[Any], da
 
 def test_recovers_the_parameters_from_far_off(motor: GreyBoxModel, experiments: list[Any], data_set: Any) -> None:
     data = data_set(UNITS, experiments, parameters={"J": {"value": 1.0}, "b": {"value": 2.0}})
-    assert values(fit(problem_of(data, motor))) == pytest.approx(TRUTH, rel=1e-4)
+    assert values(fit_records(problem_of(data, motor))) == pytest.approx(TRUTH, rel=1e-4)
 
 
 def test_fixed_parameters_stay(motor: GreyBoxModel, experiments: list[Any], data_set: Any) -> None:
-    found = fit(problem_of(data_set(UNITS, experiments, parameters={"b": {"value": 0.06, "fixed": True}}), motor))
+    found = fit_records(
+        problem_of(data_set(UNITS, experiments, parameters={"b": {"value": 0.06, "fixed": True}}), motor)
+    )
     assert values(found)["b"] == 0.06
     assert values(found)["k"] == 0.1
     assert list(found.parameter_deviations()) == ["J"]
@@ -78,15 +80,17 @@ def test_fixed_parameters_stay(motor: GreyBoxModel, experiments: list[Any], data
 
 def test_bounds_are_kept(motor: GreyBoxModel, experiments: list[Any], data_set: Any) -> None:
     data = data_set(UNITS, experiments, parameters={"J": {"value": 0.04, "lower": 0.03, "upper": 0.05}})
-    found = fit(problem_of(data, motor))
+    found = fit_records(problem_of(data, motor))
     assert found.termination.succeeded
     assert values(found)["J"] == 0.03
     free_J = data_set(UNITS, experiments, parameters={"J": {"value": 0.03, "fixed": True}})
-    assert values(found)["b"] == pytest.approx(values(fit(problem_of(free_J, motor)))["b"], rel=1e-6)
+    assert values(found)["b"] == pytest.approx(values(fit_records(problem_of(free_J, motor)))["b"], rel=1e-6)
 
 
 def test_fixed_start_states_stay(motor: GreyBoxModel, experiments: list[Any], data_set: Any) -> None:
-    found = fit(problem_of(data_set(UNITS, experiments, initial={"speed": {"value": 0.5, "fixed": True}}), motor))
+    found = fit_records(
+        problem_of(data_set(UNITS, experiments, initial={"speed": {"value": 0.5, "fixed": True}}), motor)
+    )
     assert found.problem.initial.tolist() == [[0.5], [0.5]]
     assert found.initial_deviations().tolist() == [[0.0], [0.0]]
 
@@ -94,13 +98,13 @@ def test_fixed_start_states_stay(motor: GreyBoxModel, experiments: list[Any], da
 def test_start_states_of_the_card(motor: GreyBoxModel, experiments: list[Any], data_set: Any) -> None:
     data = data_set(UNITS, experiments, initial={"speed": {"value": 0.5}})
     assert problem_of(data, motor).initial.tolist() == [[0.5], [0.5]]
-    assert fit(problem_of(data, motor)).problem.initial[:, 0] == pytest.approx([2.0, -1.0], abs=1e-4)
+    assert fit_records(problem_of(data, motor)).problem.initial[:, 0] == pytest.approx([2.0, -1.0], abs=1e-4)
 
 
 def test_nothing_free(motor: GreyBoxModel, experiments: list[Any], data_set: Any) -> None:
     fixed = {"fixed": True}
     data = data_set(UNITS, experiments, parameters={"J": fixed, "b": fixed}, initial={"speed": {"value": 0.0, **fixed}})
-    found = fit(problem_of(data, motor))
+    found = fit_records(problem_of(data, motor))
     assert found.termination is Termination.nothing_free
     assert found.mse == found.fpe > 0
     assert (found.parameter_deviations(), found.uncertainty) == ({}, None)
@@ -111,13 +115,13 @@ def test_missing_samples_carry_no_weight(motor: GreyBoxModel, experiments: list[
     holes = np.random.default_rng(5).random(400) < 0.4
     holes[:3] = True
     first = {**experiments[0], "speed": np.where(holes, NAN, experiments[0]["speed"])}
-    found = fit(problem_of(data_set(UNITS, [first, experiments[1]]), motor))
+    found = fit_records(problem_of(data_set(UNITS, [first, experiments[1]]), motor))
     assert found.samples == 640 - holes.sum()
     assert values(found) == pytest.approx(TRUTH, rel=1e-5)
 
 
 def test_final_prediction_error(motor: GreyBoxModel, experiments: list[Any], data_set: Any) -> None:
-    found = fit(problem_of(data_set(UNITS, noisy(experiments)), motor))
+    found = fit_records(problem_of(data_set(UNITS, noisy(experiments)), motor))
     d, n = 2 + 2, 640  # J and b, and a start speed for each experiment
     assert found.mse == pytest.approx(0.01, rel=0.15)
     assert found.fpe == pytest.approx(found.mse * (1 + d / n) / (1 - d / n), rel=1e-12)
@@ -126,7 +130,7 @@ def test_final_prediction_error(motor: GreyBoxModel, experiments: list[Any], dat
 def test_parameters_that_only_matter_together(machines: Path, experiments: list[Any], data_set: Any) -> None:
     """With k free too, only J / k and b / k are determined: the deviations say so, and the fit is as good."""
     model = load_model(f"{machines / 'motor.py'}:Motor")
-    found = fit(problem_of(data_set(UNITS, noisy(experiments), parameters={"k": {"fixed": False}}), model))
+    found = fit_records(problem_of(data_set(UNITS, noisy(experiments), parameters={"k": {"fixed": False}}), model))
     assert set(found.parameter_deviations().values()) == {np.inf}
     assert values(found)["J"] / values(found)["k"] == pytest.approx(0.2, rel=0.05)
     assert np.isfinite(found.initial_deviations()).all()
@@ -149,14 +153,14 @@ class Runaway(GreyBoxModel):
 
 def test_start_values_that_overflow(experiments: list[Any], data_set: Any) -> None:
     with pytest.raises(NumericalError, match=r"estimating Runaway: failed: the simulation overflows.*try"):
-        fit(problem_of(data_set(UNITS, experiments), Runaway()))
+        fit_records(problem_of(data_set(UNITS, experiments), Runaway()))
 
 
 def test_start_values_whose_long_simulation_overflows(data_set: Any) -> None:
     """Whole records overflow at the start value, short windows do not: the estimate is reached all the same."""
     decay = {"voltage": np.zeros(500), "speed": np.exp(-1.0 * 0.01 * np.arange(500))}
     problem = problem_of(data_set(UNITS, [decay], parameters={"a": {"value": 50.0}}), Runaway())
-    assert float(fit(problem).problem.values[0]) == pytest.approx(-1.0, rel=1e-4)
+    assert float(fit_records(problem).problem.values[0]) == pytest.approx(-1.0, rel=1e-4)
 
 
 def test_start_states_from_the_first_tenth(motor: GreyBoxModel, motor_speed: Any, data_set: Any) -> None:
@@ -211,7 +215,7 @@ def test_outputs_in_different_units_count_alike(motor_speed: Any, data_set: Any)
     data = data_set(units, [{"voltage": voltage, "speed": speed, "angle": angle}])
     problem = problem_of(data, Double())
     np.testing.assert_allclose(problem.weights, [1 / speed.std(), 1 / angle.std()])
-    found = fit(problem)
+    found = fit_records(problem)
     assert values(found) == pytest.approx({"T": 0.4, "turn": 2 * np.pi}, rel=1e-3)
     assert found.samples == 1200
 
@@ -247,7 +251,7 @@ def test_standard_deviations_by_monte_carlo(motor: GreyBoxModel, experiments: li
     estimates, claims = [], {"plain": [], "sandwich": []}
     for _ in range(150):
         y = exact.records.y + rng.normal(0, 0.2, exact.records.y.shape)
-        found = fit(replace(exact, records=replace(exact.records, y=y)), simulator=simulator)
+        found = fit_records(replace(exact, records=replace(exact.records, y=y)), simulator=simulator)
         estimates.append([*found.problem.values[[0, 2]], *found.problem.initial[:, 0]])
         for kind, rows in claims.items():
             rows.append([*found.parameter_deviations(kind).values(), *found.initial_deviations(kind)[:, 0]])
@@ -268,7 +272,9 @@ def test_the_sandwich_allows_for_coloured_noise(motor: GreyBoxModel, experiments
     estimates, plain, sandwich = [], [], []
     for _ in range(60):
         slow = np.convolve(rng.normal(0, 0.2, 400 + 5), np.ones(6) / np.sqrt(6), mode="valid")
-        found = fit(replace(exact, records=replace(exact.records, y=exact.records.y + slow)), simulator=simulator)
+        found = fit_records(
+            replace(exact, records=replace(exact.records, y=exact.records.y + slow)), simulator=simulator
+        )
         estimates.append(found.problem.values[2])
         plain.append(found.parameter_deviations()["b"])
         sandwich.append(found.parameter_deviations("sandwich")["b"])

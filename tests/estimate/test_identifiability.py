@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from greybox_torch.data import DataSet
-from greybox_torch.estimate.fit import fit
+from greybox_torch.estimate.fit import fit_records
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.identifiability import Unidentifiable, identifiability
 from greybox_torch.estimate.information import echelon
@@ -177,7 +177,7 @@ def test_what_no_recording_shows(experiments: list[Any], data_set: Any, model: G
     (found,) = found_in(problem)
     assert (found.kind, found.parameters) == ("unmoved", ("b",))
     assert "nothing in these recordings depends on it" in found.sentence
-    fitted = fit(problem)
+    fitted = fit_records(problem)
     assert fitted.parameter_deviations()["b"] == np.inf
     assert np.isfinite(fitted.parameter_deviations()["a"])
     assert [note.kind for note in fitted.notes] == [Termination.rank_deficient]
@@ -203,7 +203,7 @@ def test_what_is_weak_is_not_said_to_be_lost(experiments: list[Any], data_set: A
     (found,) = found_in(problem)
     assert (found.kind, found.parameters, found.undetermined) == ("weak", ("b",), False)
     assert "weakly determined, its standard deviation is about" in found.sentence
-    assert np.isfinite(fit(problem).parameter_deviations()["b"])
+    assert np.isfinite(fit_records(problem).parameter_deviations()["b"])
 
 
 def test_parameters_and_start_states(experiments: list[Any], data_set: Any) -> None:

@@ -11,7 +11,7 @@ import pytest
 import greybox_torch as gt
 from greybox_torch.estimate import nested
 from greybox_torch.estimate.descent import descend
-from greybox_torch.estimate.fit import fit
+from greybox_torch.estimate.fit import fit_records
 from greybox_torch.estimate.problem import Problem, make_problem
 
 
@@ -49,7 +49,7 @@ def held(problem: Problem) -> Problem:
 
 def test_a_descent_that_ends_in_a_worse_valley_is_replaced(problem: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
     """The descent of the richer model is led astray, as it is on machines with many valleys."""
-    simpler = fit(held(problem), starts=1)
+    simpler = fit_records(held(problem), starts=1)
 
     def astray(begin: Problem, way: Any, starts: int | None) -> Any:
         if begin.free.all():
@@ -58,7 +58,7 @@ def test_a_descent_that_ends_in_a_worse_valley_is_replaced(problem: Problem, mon
         return descend(begin, way, starts)
 
     monkeypatch.setattr(nested, "descend", astray)
-    found = fit(problem, starts=1)
+    found = fit_records(problem, starts=1)
     assert found.problem.free.all()
     assert found.mse <= simpler.mse * (1 + 1e-9)
     assert found.problem.values[0] == pytest.approx(0.02, rel=0.05)
@@ -66,8 +66,8 @@ def test_a_descent_that_ends_in_a_worse_valley_is_replaced(problem: Problem, mon
 
 
 def test_what_is_better_already_stays(problem: Problem) -> None:
-    found = fit(problem, starts=1)
-    assert found.mse <= fit(held(problem), starts=1).mse
+    found = fit_records(problem, starts=1)
+    assert found.mse <= fit_records(held(problem), starts=1).mse
     assert abs(found.problem.values[2]) < 0.01
 
 
@@ -79,9 +79,9 @@ def test_nothing_is_held_where_nothing_begins_at_zero(problem: Problem, monkeypa
         return descend(begin, way, starts)
 
     monkeypatch.setattr(nested, "descend", counted)
-    fit(held(problem), starts=1)
+    fit_records(held(problem), starts=1)
     assert len(seen) == 1
     told: list[str] = []
-    fit(problem, starts=1, progress=lambda stage, k, error: told.append(stage))
+    fit_records(problem, starts=1, progress=lambda stage, k, error: told.append(stage))
     assert [int(p.free.sum()) for p in seen] == [2, 3, 2]
     assert "with r held at zero: whole records" in told

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.errors import NumericalError
-from greybox_torch.estimate.fit import fit
+from greybox_torch.estimate.fit import fit_records
 from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.overflow import avoidance, first_overflow, overflow_error, suggestions
 from greybox_torch.estimate.problem import Problem, make_problem
@@ -84,4 +84,4 @@ def test_the_error_says_all_of_it(problem: Problem) -> None:
 
 def test_fit_of_what_cannot_be_simulated(problem: Problem) -> None:
     with pytest.raises(NumericalError, match=r"estimating Growth: failed: .* in 'run 1'"):
-        fit(make_narrow(problem.with_values(np.array([4e6, 1.0]))))
+        fit_records(make_narrow(problem.with_values(np.array([4e6, 1.0]))))

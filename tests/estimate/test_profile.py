@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.errors import UserError
-from greybox_torch.estimate.fit import Estimation, fit
+from greybox_torch.estimate.fit import Estimation, fit_records
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.profile import THRESHOLD, Profile, check_profiled, profile
@@ -43,7 +43,7 @@ def line(data_set: Any) -> Any:
         volts = rng.uniform(0.0, 1.0, 500)
         speed = slope * volts + 0.5 + rng.normal(0, 0.3, 500)
         data = data_set(UNITS, [{"voltage": volts, "speed": speed}])
-        return fit(make_problem(data, Line(), data.recordings))
+        return fit_records(make_problem(data, Line(), data.recordings))
 
     return fitted
 
@@ -86,7 +86,7 @@ def test_what_only_ratios_determine_is_open(machines: Path, motor_speed: Any, da
     speed = motor_speed(voltage) + rng.normal(0, 0.1, 300)
     free = {"k": {"fixed": False}, "b": {"upper": 0.1, "value": 0.06}}
     data = data_set(UNITS, [{"voltage": voltage, "speed": speed}], parameters=free)
-    result = fit(make_problem(data, load_model(f"{machines / 'motor.py'}:Motor"), data.recordings))
+    result = fit_records(make_problem(data, load_model(f"{machines / 'motor.py'}:Motor"), data.recordings))
     simulator = Simulator.of(result.problem.model, result.problem.free_names)
     found = profile(result, simulator, "k", settings=Settings(iterations=5, tolerance=1e-4))
     assert found.upper == pytest.approx(0.1 * 2.0, rel=0.1)

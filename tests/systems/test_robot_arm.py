@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.comparison import compare
-from greybox_torch.estimate.fit import Estimation, fit
+from greybox_torch.estimate.fit import Estimation, fit_records
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import Body, Coupling, Signals
 from greybox_torch.simulation.simulator import Simulator
@@ -108,7 +108,7 @@ def _recordings() -> DataSet:
 @cache
 def _published_fit() -> Estimation:
     data = _recordings()
-    return fit(make_problem(data, RobotArm(), data.estimation()))
+    return fit_records(make_problem(data, RobotArm(), data.estimation()))
 
 
 @recorded

@@ -20,7 +20,7 @@ import numpy as np
 from experiments.concealed.against.judge import Answer
 from experiments.concealed.against.network import NetworkModel, network_model
 from experiments.concealed.against.plain import CHOSEN_ON, Plain
-from greybox_torch.diagnosis.hypothesis.fit import lengths
+from greybox_torch.diagnosis.hypothesis import window_lengths
 from greybox_torch.estimate import Problem, Settings, fit_windows, problem_for
 from greybox_torch.simulation import Simulator
 
@@ -63,9 +63,9 @@ def _trained(plain: Plain, width: int, seed: int) -> Trained:
     problem = problem_for(plain.problem, model, {})
     simulator = plain.simulator.for_model(model, problem.free_names)
     first, last = _parts(problem)
-    longest = lengths(plain.problem)[-1]
+    longest = window_lengths(plain.problem)[-1]
     reached = [problem]
-    for length in lengths(plain.problem):
+    for length in window_lengths(plain.problem):
         reached.append(_at_length(first, last, reached[-1], simulator, length))
     errors = [_left(last.with_values(p.values), simulator, longest) for p in reached]
     best = int(np.argmin(errors))

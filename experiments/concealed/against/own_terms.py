@@ -9,7 +9,7 @@ import torch
 
 from greybox_torch import GreyBoxModel, Signals
 from greybox_torch.estimate import Problem
-from greybox_torch.model.ports import Actuator
+from greybox_torch.model import Actuator
 
 PARALLEL = 1e-6
 """Largest share of a parameter's effect that may lie elsewhere than where a force at the port acts."""

@@ -10,9 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from greybox_torch import DataSet, DiagnosisSettings, NumericalError, Surroundings, UserError, load_dataset, load_model
-from greybox_torch.diagnosis.hypothesis.final import finish
-from greybox_torch.diagnosis.hypothesis.fit import hypothesis, lengths
-from greybox_torch.diagnosis.hypothesis.noise import noise_floor
+from greybox_torch.diagnosis.hypothesis import finish, hypothesis, noise_floor, window_lengths
 from greybox_torch.estimate import (
     Problem,
     Score,
@@ -62,7 +60,7 @@ class Plain:
     @property
     def length(self) -> int:
         """Samples of the windows on which variants are compared: a sixteenth of the longest record."""
-        return lengths(self.problem)[:2][-1]
+        return window_lengths(self.problem)[:2][-1]
 
     @cached_property
     def windows(self) -> WindowFit:

@@ -24,9 +24,8 @@ from scipy.linalg import solveh_banded
 
 from experiments.concealed.against.plain import Plain
 from greybox_torch import Mechanism, Parameter, Probe, Signals, Surroundings
-from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.estimate import problem_for
-from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms import AugmentedModel, attach
 from greybox_torch.simulation import Pass, Windows
 
 SLACK = 1e-3

@@ -30,11 +30,9 @@ from experiments.concealed.against.sparse_fit import Sparse, named, regress
 from experiments.concealed.against.sparse_terms import SparseTerms, columns, extended
 from experiments.concealed.against.terms import terms
 from greybox_torch import NumericalError
-from greybox_torch.diagnosis.hypothesis.final import finish
-from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, hypothesis, lengths
-from greybox_torch.diagnosis.screen.candidates import attach
+from greybox_torch.diagnosis.hypothesis import Hypothesis, finish, hypothesis, window_lengths
 from greybox_torch.estimate import Problem, problem_for
-from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms import Attachment, attach
 
 WANDER = (30.0, 1000.0)
 """Samples after which the missing force may have become as large as the forces that are there."""
@@ -147,7 +145,7 @@ def _estimated(plain: Plain, effects: Sequence[Attachment]) -> Hypothesis | None
         records=records.part(spans, records.names[: len(spans)]),
         initial=plain.problem.initial[: len(spans)],
     )
-    at = lengths(plain.problem)[:2]
+    at = window_lengths(plain.problem)[:2]
     return hypothesis(part, effects, plain.surroundings, [{}], options=plain.simulator.options, at=at)
 
 
@@ -159,7 +157,7 @@ def _left(plain: Plain, fitted: Hypothesis) -> float:
         plain.surroundings,
         [fitted.values()],
         options=plain.simulator.options,
-        at=lengths(plain.problem)[:2],
+        at=window_lengths(plain.problem)[:2],
         frozen=frozenset(fitted.problem.names),
     )
     if again is None:

@@ -10,10 +10,8 @@ import torch
 
 from experiments.concealed.against.terms import Term
 from greybox_torch import GreyBoxModel, Mechanism, Parameter, Probe, Signals, Surroundings
-from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.estimate import Problem, problem_for
-from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms import Attachment, AugmentedModel, attach
 
 
 class SparseTerms(Mechanism):

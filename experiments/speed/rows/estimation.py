@@ -10,8 +10,7 @@ from experiments.speed.row import Entry, Row, Target
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import PUBLISHED_CARD, Settings
 from experiments.speed.timing import interleaved, once
-from greybox_torch.estimate import Problem
-from greybox_torch.estimate.fit import fit
+from greybox_torch.estimate import Problem, fit_records
 
 TITLE = "Published estimation: 7 parameters, 3 start speeds, 19 838 samples"
 NEEDS = Needs(peers=("jax", "optimistix", "numba"), recordings=True)
@@ -74,7 +73,7 @@ def _rivals(problem: Problem, task: Published) -> dict[str, Estimate]:
     documented = jax_fit.with_optimistix(task.scale, documented=True)
     tuned, written = jax_fit.with_optimistix(task.scale), jax_fit.written_out(task.scale)
     return {
-        OURS: lambda: fit(problem, with_uncertainty=False).mse,
+        OURS: lambda: fit_records(problem, with_uncertainty=False).mse,
         DOCUMENTED: lambda: float(documented(*data)[1]),
         TUNED: lambda: float(tuned(*data)[1]),
         "JAX, LM written out": lambda: float(written(*data)[1]),

@@ -15,10 +15,9 @@ from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import Settings
 from experiments.speed.timing import interleaved, once
 from greybox_torch import Surroundings
-from greybox_torch.diagnosis.screen.candidates import candidates
-from greybox_torch.diagnosis.screen.score_test import Screen
+from greybox_torch.diagnosis.screen import Screen, candidates
 from greybox_torch.estimate import Problem, WindowFit, shifted_states, survey
-from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms import Attachment
 from greybox_torch.simulation import DEFAULT, Pass, Simulator, cut, whole_records
 
 TITLE = "100 hypothesis columns over windows of 310 samples, 4 experiments"

@@ -12,8 +12,7 @@ from experiments.speed.records import load_problem
 from experiments.speed.row import Entry, Row, Target
 from experiments.speed.rows import Needs, Progress
 from experiments.speed.settings import ALL_FREE_CARD, Settings
-from greybox_torch.estimate import Problem, fit_percent, simulate
-from greybox_torch.estimate.fit import fit
+from greybox_torch.estimate import Problem, fit_percent, fit_records, simulate
 from greybox_torch.simulation import Simulator
 
 TITLE = "Start values within a factor of 2 of the card's, 12 free parameters, real arm"
@@ -75,7 +74,7 @@ def _arrival(problem: Problem, simulator: Simulator) -> Arrival:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # overflow of a trial step is part of the work
-            found = fit(problem, simulator=simulator, with_uncertainty=False)
+            found = fit_records(problem, simulator=simulator, with_uncertainty=False)
             simulated = simulate(found.problem, simulator.with_substeps(found.substeps))[0][:, 0]
         share = fit_percent(problem.records.y[0], simulated)
     except Exception as error:  # a crash of any kind is what is counted here

@@ -12,7 +12,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.along_free_runs import along_free_runs, free_run_states
 from greybox_torch.diagnosis.confirm.start_positions import placed
 from greybox_torch.diagnosis.effect import Timeline
-from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, lengths
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, window_lengths
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.study import Study
@@ -105,7 +105,7 @@ def held_out_fits(
     )
     fixed = replace(restated, free=np.zeros_like(restated.free))
     started = estimate_initial(fixed, simulator)
-    shortest, *longer = lengths(problem, budget)
+    shortest, *longer = window_lengths(problem, budget)
     short = placed(started, simulator, shortest, budget) or along_free_runs(started, simulator, shortest, budget)
     if short is None or not longer:
         return () if short is None else (short,)

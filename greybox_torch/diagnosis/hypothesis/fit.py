@@ -59,7 +59,7 @@ def score_of(fits: Sequence[WindowFit], floor: float) -> float:
     return float(np.mean([np.log(f.mean_square + floor) for f in fits]))
 
 
-def lengths(problem: Problem, budget: SearchBudget = SearchBudget()) -> list[int]:
+def window_lengths(problem: Problem, budget: SearchBudget = SearchBudget()) -> list[int]:
     """Window lengths for a problem's records, in samples."""
     longest = int(problem.records.lengths.max())
     shortest = max(budget.shortest_window, round(longest / budget.windows_of_longest))
@@ -87,7 +87,7 @@ def hypothesis(
 
     Args:
         starts: parameter values by name, of the base and of the effects.
-        at: window lengths; by default :func:`lengths`.
+        at: window lengths; by default :func:`window_lengths`.
         limits: how far the best of the starts is followed; by default ``budget.window_iterations``.
         shorter: a fit on shorter windows that the start states are taken from.
         options: of the simulator, where none is given.
@@ -98,7 +98,7 @@ def hypothesis(
     problems = [without_free(problem_for(base, model, start), frozen) for start in starts]
     simulator = simulator or Simulator.of(model, problems[0].free_names, options)
     limits, fits = limits or budget.window_iterations, []
-    at = at or lengths(base, budget)
+    at = at or window_lengths(base, budget)
     for length in at:
         trials = _distinct([*([fits[-1].problem] if fits else []), *problems])
         fit = _best_fit(

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
-from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, augmented, lengths, score_of, without_free
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, augmented, score_of, window_lengths, without_free
 from greybox_torch.diagnosis.hypothesis.significance import white_samples, window_significance
 from greybox_torch.diagnosis.refit.curve import laws_on_curve
 from greybox_torch.diagnosis.refit.refitted import fit
@@ -68,7 +68,7 @@ def rank(study: Study, current: Hypothesis, found: Sequence[Candidate]) -> list[
         p.name for p in current.model.declared_parameters if p.shrunk
     )  # heights of a curve: many, and good already
     simulators = _compiled(study, current, found, frozen)
-    at = lengths(study.problem, budget)
+    at = window_lengths(study.problem, budget)
     middle = at[min(1, len(at) - 1) :][:1]
     refit = partial(fit, study, shorter=current.fits[0], frozen=frozen)
 

@@ -37,4 +37,14 @@ def check_gradient(name: str) -> None:
         raise ArgumentError("gradient", name, problem)
 
 
-__all__ = ["GRADIENTS", "Batch", "Loss", "SequenceGradient", "check_gradient", "make_gradient"]
+__all__ = [
+    "GRADIENTS",
+    "AdjointGradient",
+    "Batch",
+    "Loss",
+    "RecomputationGradient",
+    "SequenceGradient",
+    "TangentsGradient",
+    "check_gradient",
+    "make_gradient",
+]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.hypothesis.above_noise import only_noise
-from greybox_torch.diagnosis.hypothesis.fit import _states_first, hypothesis, lengths
+from greybox_torch.diagnosis.hypothesis.fit import _states_first, hypothesis, window_lengths
 from greybox_torch.diagnosis.hypothesis.noise import reaches_noise
 from greybox_torch.diagnosis.refit.curve import absorbed, finer
 from greybox_torch.diagnosis.refit.rank import judged
@@ -272,7 +272,9 @@ def test_long_windows_that_lost_the_way_begin_from_what_shorter_ones_found(motor
         longest, mean_square=9 * longest.mean_square, problem=longest.problem.with_values(3 * longest.problem.values)
     )
     assert not reaches_noise(search.problem, lost, SETTINGS)
-    again = partial(_states_first, fits=shorter, simulator=search.plain.simulator, length=lengths(search.problem)[-1])
+    again = partial(
+        _states_first, fits=shorter, simulator=search.plain.simulator, length=window_lengths(search.problem)[-1]
+    )
     found = again(lost, limits=BUDGET.window_iterations, budget=BUDGET)
     assert found.windows.steps == longest.windows.steps and reaches_noise(search.problem, found, SETTINGS)
     assert found.mean_square == pytest.approx(longest.mean_square, rel=1e-2)
