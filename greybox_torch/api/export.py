@@ -120,7 +120,7 @@ def export(
         step: largest integration step in seconds; by default what ``data`` need, else the sample time that effects were found with.
 
     Raises:
-        UserError: equations that have no compiled form, effects that need inputs of before (delays), or an argument is at fault.
+        UserError: equations that have no compiled form, a dead time without a longest value, or an argument is at fault.
 
     Example:
         ``export(found, to="c", data=data).save("motor_in_c")``

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import torch
@@ -69,7 +69,7 @@ def lower(model: GreyBoxModel, sensitive: Sequence[str], at_zero: Sequence[str] 
     zeros = {graph.leaf("p", names.index(name)) for name in at_zero}
     if zeros:
         every = [*rates, *outputs, *(node for piece in pieces for row in piece for node in row.values())]
-        place = _with_zeros(graph, every, zeros)
+        place = with_replaced(graph, every, dict.fromkeys(zeros, graph.constant(0.0)))
         rates, outputs = tuple(place[n] for n in rates), tuple(place[n] for n in outputs)
         pieces = [
             [{v: place[n] for v, n in row.items() if graph.value_of(place[n]) != 0.0} for row in piece]
@@ -103,14 +103,14 @@ def _acting_states(rates_by_state: list[Partials], outputs_by_state: list[Partia
     return max(acting) + 1 if acting else len(leaves)
 
 
-def _with_zeros(graph: Graph, roots: Sequence[int], zeros: set[int]) -> dict[int, int]:
-    """What every node that ``roots`` need becomes when some leaves are zero."""
+def with_replaced(graph: Graph, roots: Sequence[int], other: Mapping[int, int]) -> dict[int, int]:
+    """What every node that ``roots`` need becomes when some leaves give way to the nodes ``other`` (by leaf)."""
     place: dict[int, int] = {}
     for index in graph.needed(roots):
         node = graph.nodes[index]
         arguments = tuple(place[a] for a in node.arguments)
-        if index in zeros:
-            place[index] = graph.constant(0.0)
+        if index in other:
+            place[index] = other[index]
         else:
             place[index] = index if arguments == node.arguments else graph.apply(node.operation, *arguments)
     return place

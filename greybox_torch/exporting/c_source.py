@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from greybox_torch.exporting.c_delays import delay_places
 from greybox_torch.exporting.c_language import C
 from greybox_torch.exporting.exported import ExportedModel, Variable
 from greybox_torch.exporting.fill import filled
@@ -41,8 +42,9 @@ def _places(model: ExportedModel) -> dict[str, object]:
     )
     numbers = [f"    x[{i}] = {language.constant(s.value)};" for i, s in enumerate(model.states)]
     numbers += [f"    p[{i}] = {language.constant(q.value)};" for i, q in enumerate(model.parameters)]
-    count = len(model.inputs)
+    count, acting = len(model.inputs), len(model.inputs) + len(model.delays)
     return {
+        **delay_places(model),
         "name": model.identifier,
         "NAME": model.identifier.upper(),
         "TITLE": comment(model.title),
@@ -51,9 +53,10 @@ def _places(model: ExportedModel) -> dict[str, object]:
         "NU": count,
         "NY": len(model.outputs),
         "NP": len(model.parameters),
-        "ROOM_U": max(count, 1),
+        "NA": acting,
+        "ROOM_U": max(acting, 1),
         "ROOM_P": max(len(model.parameters), 1),
-        "ROW": max(count, 1) + 1,
+        "ROW": max(acting, 1) + 1,
         "ROW_NUMBERS": count + 1,
         "STEP": repr(model.step),
         "NEXT_INPUT": "now" if model.hold == "zoh" else "next",

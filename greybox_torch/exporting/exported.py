@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from greybox_torch.codegen.arrays import UnsupportedOperation
 from greybox_torch.codegen.lower import Equations, lower
 from greybox_torch.errors import ArgumentError, UserError
+from greybox_torch.exporting.delays import Delay, delays_of, with_delays
+from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.mechanism import SHARE
-from greybox_torch.mechanisms.stored import restored_model, stored_effects
+from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
 from greybox_torch.model import GreyBoxModel
 
 USUAL_STEP = 1e-3
@@ -37,7 +38,8 @@ class ExportedModel:
 
     ``identifier`` names functions and files, ``step`` is the largest integration step in seconds, ``hold`` how inputs run between samples
     ("zoh" or "foh"); a parameter that ``is_switch`` is 1 where
-    its effect acts and 0 where it does not. Variables stand in the order of the leaves of ``equations``.
+    its effect acts and 0 where it does not. Variables stand in the order of the leaves of ``equations``; after the inputs follow those that
+    ``delays`` say.
     """
 
     identifier: str
@@ -50,6 +52,7 @@ class ExportedModel:
     parameters: tuple[Variable, ...]
     step: float
     hold: str = "zoh"
+    delays: tuple[Delay, ...] = ()
 
 
 def exported(
@@ -63,7 +66,7 @@ def exported(
 
     Raises:
         ArgumentError: no identifier in C and Python, or a step that is none.
-        UserError: equations without a compiled form, or an effect that needs more than the present inputs.
+        UserError: equations without a compiled form, or a dead time without a longest value.
     """
     name = _identifier(model.title) if identifier is None else identifier
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,60}", name) or keyword.iskeyword(name):
@@ -72,8 +75,9 @@ def exported(
         raise ArgumentError("step", step, "expected seconds, above 0")
     values = model.values()
     whole, switches = _switchable(model)
+    delays = delays_of(whole)
     try:
-        equations = lower(whole, ())
+        equations = with_delays(lower(whole, ()), len(whole.plain.inputs), len(delays))
     except UnsupportedOperation as error:
         raise UserError(
             f"model {model.title}: {error} has no form outside of torch; greybox check says what to write"
@@ -87,7 +91,7 @@ def exported(
             Variable(s.name, s.unit, 0.0 if s.initial == "measured" else float(s.initial), s.description)
             for s in whole.states
         ),
-        tuple(Variable(i.name, i.unit, 0.0, i.description) for i in whole.inputs),
+        tuple(Variable(i.name, i.unit, 0.0, i.description) for i in whole.plain.inputs),
         tuple(Variable(o.name, o.unit, 0.0, o.description) for o in whole.outputs),
         tuple(
             Variable(p.name, p.unit, values.get(p.name, 1.0), p.description, *p.bounds, is_switch=p.name in switches)
@@ -95,23 +99,23 @@ def exported(
         ),
         step if step is not None else _sample_time(whole),
         hold,
+        delays,
     )
 
 
 def _switchable(model: GreyBoxModel) -> tuple[GreyBoxModel, set[str]]:
     """The model with a factor on each effect, and the names of these factors."""
-    effects = stored_effects(model)
-    if not effects:
+    attachments: list[Attachment] = []
+    surroundings: dict[str, Surroundings] = {}
+    layer = model
+    while isinstance(layer, AugmentedModel):
+        attachments[:0] = layer.attachments
+        surroundings = {**layer.surroundings, **surroundings}
+        layer = layer.base
+    if not attachments:
         return model, set()
-    flat = restored_model(model.plain, effects)
-    delayed = [a.prefix for a in flat.attachments if "delayed" in a.mechanism.needs]
-    if delayed:
-        raise UserError(
-            f"model {model.title}: {', '.join(delayed)} needs inputs of before, which cannot be exported; expected effects that "
-            "depend on what is there now, such as a lag in the place of the delay"
-        )
-    made = AugmentedModel(flat.base, flat.attachments, flat.surroundings, probed=flat.attachments)
-    return made, {f"{a.prefix}.{SHARE}" for a in flat.attachments}
+    made = AugmentedModel(layer, attachments, surroundings, probed=attachments)
+    return made, {f"{a.prefix}.{SHARE}" for a in attachments}
 
 
 def _sample_time(model: GreyBoxModel) -> float:

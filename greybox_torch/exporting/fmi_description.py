@@ -13,13 +13,15 @@ from greybox_torch.exporting.exported import ExportedModel
 from greybox_torch.exporting.fmi_variables import FmiVariable
 
 _TOOL = f"greybox_torch {__version__}"
-_CAUSALITY = {"input": "input", "output": "output", "state": "local", "parameter": "parameter", "switch": "parameter"}
+_CAUSALITY = {"input": "input", "rate": "input", "output": "output", "state": "local"}
+_STATE_2 = ("canGetAndSetFMUstate", "canSerializeFMUstate")
+_CAUSALITY |= {"parameter": "parameter", "switch": "parameter"}
 
 
 def description_2(model: ExportedModel, variables: Sequence[FmiVariable], token: str, sources: Sequence[str]) -> bytes:
     """modelDescription.xml of FMI 2.0; ``sources`` are the files to be compiled."""
     root = Element("fmiModelDescription", _head(model, "2.0", guid=token))
-    kind = SubElement(root, "CoSimulation", _cosimulation(model, "canGetAndSetFMUstate", "canSerializeFMUstate"))
+    kind = SubElement(root, "CoSimulation", _cosimulation(model, "canInterpolateInputs", *_STATE_2))
     files = SubElement(kind, "SourceFiles")
     for name in sources:
         SubElement(files, "File", name=name)

@@ -15,6 +15,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from greybox_torch.errors import UserError
+from greybox_torch.exporting.c_delays import delay_places
 from greybox_torch.exporting.c_source import c_files, comment
 from greybox_torch.exporting.exported import ExportedModel
 from greybox_torch.exporting.fill import filled
@@ -62,6 +63,7 @@ def _places(model: ExportedModel, variables: list[FmiVariable], token: str) -> d
     reals = [k for k, p in enumerate(model.parameters) if not p.is_switch]
     switches = [k for k, p in enumerate(model.parameters) if p.is_switch]
     return {
+        **delay_places(model),
         "name": model.identifier,
         "NAME": model.identifier.upper(),
         "TITLE": comment(model.title),
@@ -71,7 +73,8 @@ def _places(model: ExportedModel, variables: list[FmiVariable], token: str) -> d
         "NY": len(model.outputs),
         "REALS": len(reals),
         "SWITCHES": len(switches),
-        "ROOM_U": max(len(model.inputs), 1),
+        "RATE_COUNT": sum(v.kind == "rate" for v in variables),
+        "ROOM_U": max(len(model.inputs) + len(model.delays), 1),
         "ROOM_P": max(len(model.parameters), 1),
         "REAL_INDICES": ", ".join(map(str, reals)) or "0",
         "SWITCH_INDICES": ", ".join(map(str, switches)) or "0",

@@ -26,6 +26,7 @@ def torch_files(model: ExportedModel) -> dict[str, str]:
         "OUTPUTS": _table(model.outputs),
         "PARAMETERS": _table([model.parameters[k] for k in own], "value"),
         "EFFECTS": repr([model.parameters[k].name.rpartition(".")[0] for k in switches]),
+        "DELAYS": repr([(delay.input, own.index(delay.parameter)) for delay in model.delays]),
         "ORDER": repr([[*own, *switches].index(k) for k in range(len(model.parameters))]),
         "STEP": repr(model.step),
         "HOLD": model.hold,

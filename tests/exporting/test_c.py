@@ -19,7 +19,7 @@ FLAGS = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O2"]
 
 
 def example(folder: Path, machine: Machine, compiler: str, name: str = "machine") -> Path:
-    gt.export(machine.model, to="c", data=machine.data, name=name).save(folder)
+    gt.export(machine.model, to="c", data=machine.data, step=machine.step, name=name).save(folder)
     sources = [f"{name}.c", "example.c"]
     done = subprocess.run(
         [compiler, *FLAGS, *sources, "-lm", "-o", "example"], cwd=folder, capture_output=True, text=True, check=False
@@ -38,6 +38,11 @@ def outputs_of(program: Path, machine: Machine) -> np.ndarray:
     found = np.array([[float(cell) for cell in line.split(",")] for line in done.stdout.splitlines()])
     np.testing.assert_array_equal(found[:, 0], rows[:, 0])
     return found[:, 1:]
+
+
+@pytest.mark.skipif(not COMPILERS, reason="no C compiler")
+def test_agrees_on_recordings(tmp_path: Path, recorded: Machine) -> None:
+    assert recorded.largest_difference(outputs_of(example(tmp_path, recorded, COMPILERS[0]), recorded)) < 1e-9
 
 
 @pytest.mark.skipif(not COMPILERS, reason="no C compiler")
@@ -89,10 +94,14 @@ def test_what_cannot_be_exported() -> None:
     from greybox_torch.mechanisms.augmented_model import AugmentedModel
     from greybox_torch.mechanisms.mechanism import Range, Surroundings
 
+    class Endless(InputDelay):
+        def parameters(self, around: Surroundings) -> list[gt.Parameter]:
+            return [gt.Parameter("T", 0.01, "s", lower=0.0)]
+
     around = {"actuator": Surroundings({"input": Range(-1, 1, 0.5)}, {"input": "N m"}, "N m", 1e-3)}
     arm = gt.load_model("robot_arm")
-    delayed = AugmentedModel(arm, [Attachment("actuator", InputDelay())], around)
-    with pytest.raises(gt.UserError, match=r"actuator\.input_delay needs inputs of before"):
+    delayed = AugmentedModel(arm, [Attachment("actuator", Endless())], around)
+    with pytest.raises(gt.UserError, match=r"dead time actuator\.input_delay\.T has no upper bound"):
         gt.export(delayed, to="c")
     with pytest.raises(gt.UserError, match=r"to: found 'fortran', expected one of c, torch"):
         gt.export(arm, to="fortran")

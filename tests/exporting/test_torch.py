@@ -18,7 +18,7 @@ Machine = Any  # of conftest.py, which tests cannot import
 
 
 def module_of(folder: Path, machine: Machine) -> Any:
-    (file,) = gt.export(machine.model, to="torch", data=machine.data, name="my_machine").save(folder)
+    (file,) = gt.export(machine.model, to="torch", data=machine.data, step=machine.step, name="my_machine").save(folder)
     spec = importlib.util.spec_from_file_location("my_machine", file)
     assert spec is not None and spec.loader is not None
     made = importlib.util.module_from_spec(spec)
@@ -40,6 +40,13 @@ def test_agrees_with_simulate(tmp_path: Path, machine: Machine) -> None:
         batch = made(time[:30], torch.stack([u, 0.5 * u])[:, :30], x0.expand(2, -1))
     torch.testing.assert_close(batch[0], found[:30], rtol=1e-12, atol=1e-14)
     assert (batch[1] - batch[0]).abs().max() > 1e-6
+
+
+def test_agrees_on_recordings(tmp_path: Path, recorded: Machine) -> None:
+    """On their first part: a step takes a millisecond here."""
+    time, u, x0 = (v[:400] if k < 2 else v for k, v in enumerate(driven(recorded)))
+    with torch.no_grad():
+        assert recorded.largest_difference(module_of(tmp_path, recorded)(time, u, x0).numpy()) < 1e-9
 
 
 def test_odeint_and_gradients(tmp_path: Path, arm_with_effects: Machine) -> None:
