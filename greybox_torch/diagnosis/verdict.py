@@ -69,6 +69,17 @@ class Trace:
 
 
 @dataclass(frozen=True)
+class InputTrace:
+    """One input of one experiment as recorded: time (N,) s, values (N,) in ``unit``."""
+
+    experiment: str
+    input: str
+    unit: str
+    time: np.ndarray
+    values: np.ndarray
+
+
+@dataclass(frozen=True)
 class Verdict:
     """Everything that a diagnosis found.
 
@@ -87,6 +98,7 @@ class Verdict:
     stages: Mapping[str, float]
     ranking: tuple[tuple[str, str, float, float | None], ...]
     traces: tuple[Trace, ...] = field(repr=False, default=())
+    inputs: tuple[InputTrace, ...] = field(repr=False, default=())
     complete: bool = True
     """Whether the search ran to its end, rather than into a time limit or an interruption."""
     unexplained: float | None = None

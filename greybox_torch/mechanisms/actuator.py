@@ -22,6 +22,7 @@ class InputLag(Mechanism):
     kinds = ("actuator",)
     needs = ("input",)
     fades = True
+    linear = True
     nature = "a time shift"
     explanation = "The input acts through a first-order lag (current loop, valve)."
     source = "L. Ljung, System Identification, 2nd ed., 1999"
@@ -56,6 +57,7 @@ class InputDelay(Mechanism):
     name = "input_delay"
     kinds = ("actuator",)
     needs = ("input", "delayed")
+    linear = True
     twins = ("output_delay",)
     nature = "a time shift"
     explanation = "The input acts after a dead time (computation, bus, transport)."
@@ -97,6 +99,7 @@ class InputGain(LinearLaw):
     name = "input_gain"
     kinds = ("actuator",)
     needs = ("input",)
+    linear = True
     nature = "another gain than recorded"
     explanation = "The input acts with another gain than recorded (current sensor, torque constant)."
     source = "M. Gautier, S. Briot, J. Dyn. Sys. Meas. Control 136, 2014"

@@ -130,6 +130,7 @@ class AdditionalMode(Mechanism):
     name = "additional_mode"
     kinds = ("body",)
     needs = ("speed",)
+    linear = True
     natural = ("zeta",)
     nature = "one more mass on a spring"
     explanation = "One more mass hangs on this body by a spring and a damper (an unmodelled resonance)."

@@ -44,6 +44,8 @@ class Mechanism:
     """Whether the law changes a coupling's deflection (:meth:`deflection`) instead of adding a force."""
     fades: ClassVar[bool] = False
     """Whether the memory is gone after a few samples, so that a window may begin with any."""
+    linear: ClassVar[bool] = False
+    """Whether signals pass through it linearly, so that a frequency response shows what it does."""
     generalises: ClassVar[tuple[str, ...]] = ()
     """Mechanisms that this one contains: where it does no better than one of them, that one is meant."""
     includes: ClassVar[tuple[str, ...]] = ()

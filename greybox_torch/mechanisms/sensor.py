@@ -19,6 +19,7 @@ class SensorLag(Mechanism):
     kinds = ("sensor",)
     needs = ("output",)
     fades = True
+    linear = True
     nature = "a time shift"
     explanation = "The output is recorded through a first-order lag (filter, sensor dynamics)."
     source = "L. Ljung, System Identification, 2nd ed., 1999"
@@ -54,6 +55,7 @@ class OutputDelay(Mechanism):
     kinds = ("sensor",)
     needs = ("output",)
     fades = True
+    linear = True
     twins = ("input_delay",)
     natural = ("T.lower",)
     nature = "a time shift"
@@ -106,6 +108,7 @@ class SensorGain(LinearLaw):
     name = "sensor_gain"
     kinds = ("sensor",)
     needs = ("output",)
+    linear = True
     nature = "another gain than recorded"
     explanation = "The output is recorded with another gain (scale factor)."
     source = "J. J. Craig, Introduction to Robotics, 3rd ed., 2005"

@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.contradictions import worse_than_refit
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.hypothesis.noise import output_floors
 from greybox_torch.diagnosis.settings import DiagnosisSettings
-from greybox_torch.diagnosis.verdict import Trace
+from greybox_torch.diagnosis.verdict import InputTrace, Trace
 from greybox_torch.estimate.comparison import Comparison, Score, fit_rows
 from greybox_torch.estimate.problem import Problem
 
@@ -118,6 +118,15 @@ class Judgement:
                     Trace(recording.name, recording.role, output.name, output.unit, time_axis, measured, *simulated)
                 )
         return tuple(result)
+
+    def inputs(self) -> tuple[InputTrace, ...]:
+        """The recorded inputs of all experiments."""
+        records, found = self.problem.records, []
+        for e, recording in enumerate(self.recordings):
+            for k, one in enumerate(self.problem.model.inputs):
+                values = records.u[k, records.span(e)]
+                found.append(InputTrace(recording.name, one.name, one.unit, records.time(e), values))
+        return tuple(found)
 
     def _times_noise(self, comparison: Comparison) -> np.ndarray:
         """Root mean square errors in units of the noise, by experiment (E,), over the outputs whose noise is known; NaN where none is."""

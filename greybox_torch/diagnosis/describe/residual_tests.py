@@ -83,6 +83,12 @@ def detect(problem: Problem, traces: Sequence[Trace], settings: DiagnosisSetting
     return tuple(_detection(t, u, len(looked), first, settings) for t, u in zip(looked, inputs, strict=True))
 
 
+def input_answers(errors: np.ndarray, signal: np.ndarray, chance: float) -> bool:
+    """Whether an input (N,) answers to errors (N,) before it, as one under feedback does, with so much ``chance`` of a false alarm."""
+    found = feedback_correlation(errors, signal)
+    return _largest(found, found.lags > 0, 1, chance).beyond
+
+
 def excited_band(signal: np.ndarray, sample_time: float, share: float) -> float:
     """The frequency (Hz) below which an input (N,) has a ``share`` of its power, its mean left out."""
     power = np.cumsum(np.abs(np.fft.rfft(signal - signal.mean())) ** 2)

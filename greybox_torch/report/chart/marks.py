@@ -17,7 +17,7 @@ BINS = 700
 
 @dataclass(frozen=True)
 class Mark:
-    """``kind`` is "line", "area" or "bars"; ``series`` says whose it is and so its colour; ``path`` is SVG."""
+    """``kind`` is "line", "area", "points" or "bars"; ``series`` says whose it is and so its colour; ``path`` is SVG."""
 
     kind: str
     series: str
@@ -36,13 +36,25 @@ def line(x: Scale, y: Scale, xs: np.ndarray, ys: np.ndarray, series: str) -> Mar
     return Mark("line", series, "".join(pieces))
 
 
+def points(x: Scale, y: Scale, xs: np.ndarray, ys: np.ndarray, series: str) -> Mark:
+    """A dot at every (xs, ys) that is known and within the axes: lines of no length, whose round ends keep their form on any screen."""
+    with np.errstate(invalid="ignore"):
+        inside = np.all([(p >= 0.0) & (p <= 1.0) for p in (x.place(xs), y.place(ys))], axis=0)
+    across, up = _pixels(x, y, xs[inside], ys[inside])
+    return Mark("points", series, "".join(f"M{a:.0f} {b:.0f}h0" for a, b in zip(across, up, strict=True)))
+
+
 def band(x: Scale, y: Scale, xs: np.ndarray, low: np.ndarray, high: np.ndarray, series: str) -> Mark:
-    """The area between two curves; samples where either is not finite are passed over."""
+    """The area between two curves; it breaks where either is not finite."""
     known = np.isfinite(low) & np.isfinite(high)
-    around = np.concatenate([xs[known], xs[known][::-1]])
-    across, up = _pixels(x, y, around, np.concatenate([low[known], high[known][::-1]]))
-    points = "L".join(f"{a:.0f} {b:.0f}" for a, b in zip(across, up, strict=True))
-    return Mark("area", series, f"M{points}Z" if points else "")
+    breaks = np.flatnonzero(np.diff(known.astype(int))) + 1
+    pieces = []
+    for run in np.split(np.arange(len(xs)), breaks):
+        if len(run) and known[run[0]]:
+            around = np.concatenate([xs[run], xs[run][::-1]])
+            across, up = _pixels(x, y, around, np.concatenate([low[run], high[run][::-1]]))
+            pieces.append("M" + "L".join(f"{a:.0f} {b:.0f}" for a, b in zip(across, up, strict=True)) + "Z")
+    return Mark("area", series, "".join(pieces))
 
 
 def span(x: Scale, begin: float, end: float, series: str) -> Mark:

@@ -10,6 +10,10 @@ import numpy as np
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
+_TURNS = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)
+_LEAST_TURN = 45.0  # degrees from which they are told in parts of a turn
+
+
 @dataclass(frozen=True)
 class Tick:
     """A mark at ``place`` (0 at the low end of the axis, 1 at the high end) with its label."""
@@ -25,6 +29,8 @@ class Scale:
     low: float
     high: float
     logarithmic: bool = False
+    of_angles: bool = False
+    """Whether it is in degrees, which are marked at parts of a turn."""
 
     def place(self, values: np.ndarray) -> np.ndarray:
         """Values (n,) as shares of the axis: 0 at the low end, 1 at the high end. NaN stays NaN."""
@@ -43,7 +49,10 @@ class Scale:
 
     def _steps(self, most: int) -> list[float]:
         size = 10.0 ** np.floor(np.log10((self.high - self.low) / most))
-        for step in (factor * size for factor in (1.0, 2.0, 5.0, 10.0)):
+        steps = [factor * size for factor in (1.0, 2.0, 5.0, 10.0)]
+        if self.of_angles and self.high - self.low > _LEAST_TURN:
+            steps = [*(step for step in _TURNS if step >= size), 360.0 * np.ceil((self.high - self.low) / 360.0 / most)]
+        for step in steps:
             first, last = np.ceil(self.low / step - 1e-9), np.floor(self.high / step + 1e-9)
             if last - first <= most:
                 break
@@ -66,6 +75,12 @@ def linear(*pieces: np.ndarray, room: float = 0.06, zero: bool = False) -> Scale
         return Scale(0.0, high * (1.0 + room) if high > 0 else 1.0)
     spare = room * (high - low) if high > low else max(0.1 * abs(high), 1e-12)
     return Scale(low - spare, high + spare)
+
+
+def degrees(*pieces: np.ndarray) -> Scale:
+    """A linear axis over angles in degrees."""
+    found = linear(*pieces)
+    return Scale(found.low, found.high, of_angles=True)
 
 
 def logarithmic(*pieces: np.ndarray, most_decades: float = 9.0) -> Scale:

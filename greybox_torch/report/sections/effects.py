@@ -14,6 +14,7 @@ from greybox_torch.report import text
 from greybox_torch.report.chart.marks import band, bars, line
 from greybox_torch.report.chart.panel import Chart, Panel, side_by_side
 from greybox_torch.report.chart.scale import Scale, linear
+from greybox_torch.report.sections.frequency import Responses, responses
 
 MOST_EXPERIMENTS = 4
 """Experiments of which is drawn where along them an effect acts; with more, those in which it is strongest."""
@@ -60,6 +61,7 @@ class Card:
     source: str
     unknown: bool
     curve: Chart | None
+    responses: Responses | None
     profiles: Chart | None
     timelines: Chart | None
 
@@ -73,10 +75,10 @@ class Effects:
 
     @classmethod
     def of(cls, verdict: Verdict) -> Effects | None:
-        return cls(tuple(_card(e) for e in verdict.effects)) if verdict.effects else None
+        return cls(tuple(_card(e, responses(verdict, e)) for e in verdict.effects)) if verdict.effects else None
 
 
-def _card(effect: Effect) -> Card:
+def _card(effect: Effect, shown: Responses | None) -> Card:
     unknown = effect.mechanism == "unknown"
     return Card(
         title="An unknown effect" if unknown else text.first_capital(text.mechanism(effect.mechanism)),
@@ -94,6 +96,7 @@ def _card(effect: Effect) -> Card:
         source=effect.source,
         unknown=unknown,
         curve=None if effect.curve is None else _curve(effect, effect.curve),
+        responses=shown,
         profiles=_profiles(effect),
         timelines=_timelines(effect),
     )

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from greybox_torch.report.chart.marks import BINS, band, bars, line, span, thinned
+from greybox_torch.report.chart.marks import BINS, band, bars, line, points, span, thinned
 from greybox_torch.report.chart.scale import Scale
 
 X, Y = Scale(0.0, 10.0), Scale(0.0, 1.0)
@@ -48,9 +48,16 @@ def test_short_records_are_left_alone() -> None:
     assert thinned(time, values)[1] is values
 
 
-def test_band() -> None:
-    low, high = np.array([0.0, np.nan, 0.2]), np.array([0.5, 0.5, 0.7])
-    assert band(X, Y, np.array([0.0, 5.0, 10.0]), low, high, "effect").path == "M0 1000L2000 800L2000 300L0 500Z"
+def test_band_breaks_where_values_are_missing() -> None:
+    xs = np.array([0.0, 2.0, 4.0, 6.0, 8.0])
+    low, high = np.array([0.0, 0.1, np.nan, 0.2, 0.2]), np.array([0.5, 0.5, 0.5, 0.7, np.inf])
+    path = "M0 1000L400 900L400 500L0 500Z" + "M1200 800L1200 300Z"
+    assert band(X, Y, xs, low, high, "effect").path == path
+
+
+def test_points_within_the_axes() -> None:
+    found = points(X, Y, np.array([0.0, 5.0, 11.0, 5.0, 5.0]), np.array([0.0, 0.5, 0.5, 2.0, np.nan]), "measured")
+    assert (found.kind, found.path) == ("points", "M0 1000h0M1000 500h0")
 
 
 def test_span_is_cut_at_the_edges() -> None:

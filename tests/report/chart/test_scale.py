@@ -5,7 +5,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from greybox_torch.report.chart.scale import Scale, linear, logarithmic
+from greybox_torch.report.chart.scale import Scale, degrees, linear, logarithmic
 
 
 @pytest.mark.parametrize(
@@ -58,3 +58,9 @@ def test_logarithmic_axis_over_values() -> None:
     assert scale.high == pytest.approx(1300.0)
     assert scale.place(np.array([0.0]))[0] == -np.inf
     assert logarithmic(np.zeros(3)).low > 0
+
+
+def test_angles_are_marked_at_parts_of_a_turn() -> None:
+    assert [t.label for t in degrees(np.array([-170.0, 0.0])).ticks(4)] == ["−180", "−135", "−90", "−45", "0"]
+    assert [t.label for t in degrees(np.array([-1.0, 1.0])).ticks(4)] == ["−1.0", "−0.5", "0.0", "0.5", "1.0"]
+    assert [t.label for t in degrees(np.array([0.0, 5000.0])).ticks(4)] == ["0", "1440", "2880", "4320"]

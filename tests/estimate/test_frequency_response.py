@@ -1,0 +1,88 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from greybox_torch.estimate.frequency_response import frequency_response
+
+STEP = 0.01
+POLE = 0.9
+RNG = np.random.default_rng(5)
+
+
+def lag(u: np.ndarray, start: float = 0.0) -> np.ndarray:
+    """y(t) = 0.9 y(t − 1) + 0.1 u(t − 1)."""
+    return lfilter([0.0, 1.0 - POLE], [1.0, -POLE], u, zi=[start])[0]
+
+
+def of_lag(frequency: np.ndarray) -> np.ndarray:
+    z = np.exp(2j * np.pi * frequency * STEP)
+    return (1.0 - POLE) / (z - POLE)
+
+
+def test_the_region_holds_the_true_response() -> None:
+    """A circle of √−ln 0.05 standard deviations holds 95 % of the estimates; neighbours share their lines, so that fewer count."""
+    inside = []
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        u = rng.normal(size=4000)
+        y = lag(u, start=20.0) + 0.05 * rng.normal(size=4000)  # begins far away: a transient
+        found = frequency_response([u[None]], [y[None]], STEP)
+        assert found is not None
+        away = np.abs(found.gain[0, 0] - of_lag(found.frequency))
+        inside.append(np.mean(away < np.sqrt(-np.log(0.05) * found.variance[0, 0])))
+        assert np.median(away / np.abs(found.gain[0, 0])) < 0.15
+    assert 0.9 < np.mean(inside) < 0.99
+
+
+def test_records_are_taken_together() -> None:
+    """With four records a frequency has four times the lines, and half the standard deviation."""
+    u = RNG.normal(size=(4, 1, 2000))
+    y = np.array([lag(one[0], start=float(k)) + 0.05 * RNG.normal(size=2000) for k, one in enumerate(u)])[:, None]
+    alone, together = frequency_response(list(u[:1]), list(y[:1]), STEP), frequency_response(list(u), list(y), STEP)
+    assert alone is not None and together is not None
+    same = np.interp(together.frequency, alone.frequency, np.sqrt(alone.variance[0, 0]))
+    assert np.median(np.sqrt(together.variance[0, 0]) / same) == pytest.approx(0.5, rel=0.2)
+
+
+def test_two_inputs_and_two_outputs() -> None:
+    u = RNG.normal(size=(2, 6000))
+    y = np.stack([lag(u[0]) + 3.0 * u[1], -2.0 * u[0]])
+    found = frequency_response([u], [y], STEP)
+    assert found is not None
+    assert np.abs(found.gain[0, 0] - of_lag(found.frequency)).max() < 1e-2
+    assert found.gain[0, 1] == pytest.approx(np.full(len(found.frequency), 3.0), abs=1e-2)
+    assert found.gain[1, 0] == pytest.approx(np.full(len(found.frequency), -2.0), abs=1e-9)
+    assert found.outputs[1] == pytest.approx(4.0 * found.inputs[0])
+
+
+def test_what_is_not_excited_is_not_known() -> None:
+    """An input at rest, and two that move alike: the variance says so, and nothing is made up."""
+    u = RNG.normal(size=4000)
+    resting = frequency_response([np.stack([u, np.zeros(4000)])], [lag(u)[None]], STEP)
+    assert resting is not None and np.isinf(resting.variance[0, 1]).all()
+    alike = frequency_response([np.stack([u, u])], [(lag(u) + 0.01 * RNG.normal(size=4000))[None]], STEP)
+    assert alike is not None and (np.sqrt(alike.variance) > 10.0 * np.abs(alike.gain)).all()
+
+
+def test_frequencies_without_input_power() -> None:
+    """A sum of sines leaves most lines without power: there the deviation is as large as the response."""
+    time = STEP * np.arange(4000)
+    u = np.sum([np.sin(2 * np.pi * f * time + f) for f in np.arange(0.5, 5.0, 0.025)], axis=0)
+    found = frequency_response([u[None]], [(lag(u) + 0.001 * RNG.normal(size=4000))[None]], STEP)
+    assert found is not None
+    uncertain = np.sqrt(found.variance[0, 0]) / np.abs(found.gain[0, 0])
+    assert (uncertain[found.frequency > 8.0] > 0.5).all()
+    within = (found.frequency > 1.0) & (found.frequency < 4.0)
+    assert (uncertain[within] < 0.05).all()
+
+
+@pytest.mark.parametrize("samples", [0, 1, 8, 18])
+def test_a_record_too_short(samples: int) -> None:
+    u = RNG.normal(size=(1, samples))
+    assert frequency_response([u], [u], STEP) is None
+
+
+def test_no_records() -> None:
+    assert frequency_response([], [], STEP) is None
