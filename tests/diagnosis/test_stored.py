@@ -7,9 +7,9 @@ import json
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.actuator import InputDelay
+from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis

@@ -9,7 +9,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.promotion import promote_validation, serves
 from greybox_torch.diagnosis.pipeline import diagnose
-from greybox_torch.diagnosis.screen.candidates import attach
+from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.friction import QuadraticDrag
 
 from ..conftest import STEP, turned

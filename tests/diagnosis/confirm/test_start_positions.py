@@ -10,9 +10,9 @@ import pytest
 from greybox_torch.diagnosis.confirm.held_out import _window_by_window
 from greybox_torch.diagnosis.confirm.start_positions import placed
 from greybox_torch.diagnosis.hypothesis.fit import augmented
-from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.problem import problem_for
+from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.simulation.simulator import Simulator
 

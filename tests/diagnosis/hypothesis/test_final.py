@@ -9,8 +9,8 @@ import pytest
 
 from greybox_torch.diagnosis.hypothesis.above_noise import noise_over_windows
 from greybox_torch.diagnosis.hypothesis.final import _from_the_card, finish
-from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
+from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias
 
 SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()

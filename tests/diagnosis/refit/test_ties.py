@@ -11,12 +11,11 @@ import pytest
 from greybox_torch.diagnosis.refit import ties
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
-from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.posterior import shared
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.actuator import InputBias
-from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.gravity import Gravity
 from greybox_torch.mechanisms.unknown import Unknown

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 
-from greybox_torch.diagnosis.screen.candidates import attach, candidates, periodic_candidates
+from greybox_torch.diagnosis.screen.candidates import candidates, periodic_candidates
 from greybox_torch.mechanisms.actuator import InputDelay
+from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.transmission import Backlash

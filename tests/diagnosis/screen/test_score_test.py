@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from greybox_torch.diagnosis.screen.candidates import attach, candidates
+from greybox_torch.diagnosis.screen.candidates import candidates
 from greybox_torch.diagnosis.screen.score_test import Screen, ScreenScore
+from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.library import LIBRARY
 

@@ -1,21 +1,14 @@
-"""Several effects: chosen once more beside the others; rivals refitted while a curve rests; positions brought along short windows."""
+"""Several effects: chosen once more beside the others; rivals refitted while a curve rests."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
-import pytest
 
-from greybox_torch.diagnosis.hypothesis.above_noise import only_noise
-from greybox_torch.diagnosis.hypothesis.fit import _states_first, hypothesis, window_lengths
-from greybox_torch.diagnosis.hypothesis.noise import reaches_noise
-from greybox_torch.diagnosis.refit.curve import absorbed, finer
+from greybox_torch.diagnosis.hypothesis.fit import hypothesis
 from greybox_torch.diagnosis.refit.rank import judged
 from greybox_torch.diagnosis.refit.refitted import polished
-from greybox_torch.diagnosis.refit.restarts import restarts
-from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, _with_ties, at_other_ports
 from greybox_torch.diagnosis.select.backward import drop_superfluous
@@ -27,12 +20,12 @@ from greybox_torch.diagnosis.select.search import beyond_doubt, revise
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import result_of
-from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.friction import QuadraticDrag, StribeckFriction, ViscousFriction
 from greybox_torch.mechanisms.mechanism import Probe
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.unknown import Unknown
-from greybox_torch.mechanisms.varying_friction import FrictionWarmup
 
 SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
 
@@ -153,19 +146,6 @@ def test_frozen_parameters_keep_their_values_and_are_free_again_when_polished(de
     assert free.score < frozen.score
 
 
-@pytest.mark.parametrize(("torque", "expected"), [(None, True), (lambda q, v: -0.004 * v * abs(v), False)])
-def test_nothing_is_looked_for_below_the_noise(motor_data, motor, begun, torque, expected) -> None:
-    search = begun(motor_data(torque=torque, noise=0.1), motor)
-    assert only_noise(search.problem, search.plain, SETTINGS) == expected
-
-
-def test_noise_is_not_known_where_the_motion_is_rough(motor_data, motor, begun) -> None:
-    """Differences of several orders do not agree: nothing says that this little error is only noise."""
-    search = begun(motor_data(noise=1e-6), motor)
-    tiny = tuple(replace(f, mean_square=1e-12) for f in search.plain.fits)
-    assert not only_noise(search.problem, replace(search.plain, fits=tiny), SETTINGS)
-
-
 def test_what_no_rival_came_near_is_not_chosen_once_more(motor_data, motor, begun, monkeypatch) -> None:
     search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v) + 0.05), motor)
     state = result_of(forward_step(search.study, search.state))
@@ -180,26 +160,6 @@ def test_what_no_rival_came_near_is_not_chosen_once_more(motor_data, motor, begu
     assert not beyond_doubt(search.study, state, first)
 
 
-def test_shapes_that_explain_alike_are_tried_from_end_to_end(motor_data, motor, begun) -> None:
-    """Seen: a mode whose own frequency lay between two probes; all above it explained as much, as mere inertia."""
-    search = begun(motor_data(noise=0.1), motor)
-    mode = attach(motor, "rotor", AdditionalMode())
-    shares = {1.0: 0.1, 2.0: 0.2, 4.0: 0.44, 8.0: 0.443, 16.0: 0.442, 32.0: 0.442, 64.0: 0.442}
-    looks = [[ScreenScore(mode, Probe(("mass",), {"omega": w}), 31, share, np.ones(1)) for w, share in shares.items()]]
-    ranked = judged(Candidate(mode, (), 0.443), search.plain, search.plain, SETTINGS)
-    tried = [start[f"{mode.prefix}.omega"] for start in restarts(search.study, looks, ranked)]
-    assert tried == [4.0, 16.0, 64.0]
-    looks[0][3] = ScreenScore(mode, Probe(("mass",), {"omega": 8.0}), 31, 0.9, np.ones(1))
-    assert restarts(search.study, looks, ranked)[0][f"{mode.prefix}.omega"] == 8.0
-
-
-def test_what_was_not_screened_has_no_further_shapes(motor, motor_data, begun) -> None:
-    """A law that a learned curve suggested."""
-    search = begun(motor_data(noise=0.1), motor)
-    ranked = judged(Candidate(attach(motor, "rotor", AdditionalMode()), (), 0.4), search.plain, search.plain, SETTINGS)
-    assert restarts(search.study, [[]], ranked) == []
-
-
 def test_a_law_that_contains_what_is_there_is_chosen_in_its_place_not_beside_it(motor_data, motor, begun) -> None:
     """Seen: a bias, then an asymmetry of friction beside it, then the bias taken back, and the fit worse than with either."""
     search = begun(motor_data(torque=lambda q, v: 0.05), motor)
@@ -208,74 +168,3 @@ def test_a_law_that_contains_what_is_there_is_chosen_in_its_place_not_beside_it(
     offered = {(k.attachment.port, k.attachment.mechanism.name) for at in screened for k in at}
     assert not offered & {("rotor", "constant_bias"), ("rotor", "coulomb_asymmetry")}
     assert ("rotor", "stribeck_friction") in offered
-
-
-def test_a_law_hands_its_force_to_the_curve_beside_it(motor_data, motor, begun) -> None:
-    """Without this, a law that only began what the curve completed could not be taken back: the curve alone begins too far away."""
-    search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v)), motor)
-    drag, curve = attach(motor, "rotor", QuadraticDrag()), attach(motor, "rotor", Unknown("speed", 12))
-    start = {
-        **search.plain.values(),
-        "rotor.quadratic_drag.c": 0.004,
-        **{f"{curve.prefix}.w_{k}": 0.0 for k in range(12)},
-    }
-    both = hypothesis(search.problem, (drag, curve), search.surroundings, [start], options=search.study.options)
-    assert both is not None
-    alone = absorbed(both, drag, search.surroundings)
-    assert alone is not None and not any(n.startswith(drag.prefix) for n in alone)
-    handed = hypothesis(
-        search.problem,
-        (curve,),
-        search.surroundings,
-        [alone],
-        options=search.study.options,
-        frozen=frozenset(n for n in alone if "w_" in n),
-    )
-    assert handed is not None and handed.score < both.score + 0.05 < search.plain.score - 0.5
-    assert absorbed(both, curve, search.surroundings) is None
-    bias = attach(motor, "rotor", ConstantBias())
-    beside = hypothesis(search.problem, (bias, curve), search.surroundings, [start], options=search.study.options)
-    assert beside is not None
-    assert absorbed(beside, bias, search.surroundings) is not None  # a constant is a curve of any signal
-    warm = attach(motor, "rotor", FrictionWarmup())
-    later = hypothesis(search.problem, (warm, curve), search.surroundings, [start], options=search.study.options)
-    assert later is not None and absorbed(later, warm, search.surroundings) is None  # of time as well
-    at_position = attach(motor, "rotor", Unknown("position", 12))
-    elsewhere = hypothesis(
-        search.problem, (drag, at_position), search.surroundings, [start], options=search.study.options
-    )
-    assert elsewhere is not None and absorbed(elsewhere, drag, search.surroundings) is None
-
-
-@pytest.mark.parametrize("factor", ["", "position"])
-def test_a_finer_curve_begins_as_the_one_it_refines(motor_data, motor, begun, factor) -> None:
-    search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v)), motor)
-    curve = attach(motor, "rotor", Unknown("speed", 8, factor))
-    start = search.plain.values() | {f"{curve.prefix}.w_{k}": 0.01 * (k - 4) for k in range(8)}
-    drawn = hypothesis(search.problem, (curve,), search.surroundings, [start], options=search.study.options)
-    assert drawn is not None
-    attachment, values = finer(drawn, curve, search.surroundings)
-    assert sum(n.startswith(f"{curve.prefix}.w_") for n in values) == 16
-    frozen = frozenset(n for n in values if "w_" in n)
-    same = hypothesis(
-        search.problem, (attachment,), search.surroundings, [values], options=search.study.options, frozen=frozen
-    )
-    assert same is not None and same.score < drawn.score + 0.02
-
-
-def test_long_windows_that_lost_the_way_begin_from_what_shorter_ones_found(motor_data, motor, begun) -> None:
-    """Seen: a transmission error found at the noise over 1240 samples, lost over 4960, and so taken back on other experiments."""
-    search = begun(motor_data(noise=0.1), motor)
-    *shorter, longest = search.plain.fits
-    assert all(reaches_noise(search.problem, fit, SETTINGS) for fit in search.plain.fits)
-    lost = replace(
-        longest, mean_square=9 * longest.mean_square, problem=longest.problem.with_values(3 * longest.problem.values)
-    )
-    assert not reaches_noise(search.problem, lost, SETTINGS)
-    again = partial(
-        _states_first, fits=shorter, simulator=search.plain.simulator, length=window_lengths(search.problem)[-1]
-    )
-    found = again(lost, limits=BUDGET.window_iterations, budget=BUDGET)
-    assert found.windows.steps == longest.windows.steps and reaches_noise(search.problem, found, SETTINGS)
-    assert found.mean_square == pytest.approx(longest.mean_square, rel=1e-2)
-    assert again(longest, limits=BUDGET.window_iterations, budget=BUDGET).mean_square <= longest.mean_square

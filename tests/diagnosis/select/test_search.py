@@ -9,7 +9,7 @@ import pytest
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
-from greybox_torch.diagnosis.screen.candidates import attach, candidates
+from greybox_torch.diagnosis.screen.candidates import candidates
 from greybox_torch.diagnosis.screen.score_test import ScreenScore, _sound
 from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
 from greybox_torch.diagnosis.select.choice import chosen, simplest
@@ -17,6 +17,7 @@ from greybox_torch.diagnosis.select.forward_step import substantial
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.window_fit import WindowFit
+from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction, ViscousFriction
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Body

@@ -1,0 +1,51 @@
+"""Arguments at fault, named as Python names them, and results that cannot be saved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import greybox_torch as gt
+from tests.api.motor import Motor
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda m, d: gt.train(m, d, net="fiction"), "net: found 'fiction', unknown (did you mean \"friction\"?); expected"),
+        (lambda m, d: gt.train(m, d, port="rotary"), "port: found 'rotary', model Motor has no such port"),
+        (lambda m, d: gt.train(m, d, signals="speed"), "signals: found 'speed', expected a list of names, such as [\"speed\"]"),
+        (lambda m, d: gt.train(m, d, ensemble=0), "ensemble: found 0, expected a whole number from 1 to 1000"),
+        (lambda m, d: gt.train(m, d, resume=True), "resume: found True, expected a snapshot to take the training up from"),
+        (lambda m, d: gt.train(m, d, settings=None), "settings: found None, expected TrainingSettings(…)"),
+        (lambda m, d: gt.diagnose(m, d, time_limit=-1), "time_limit: found -1, expected a number above 0"),
+        (lambda m, d: gt.diagnose(m, d, settings={}), "settings: found an object of type dict, expected DiagnosisSettings(…)"),
+        (lambda m, d: gt.fit(m, d, starts=0), "starts: found 0, expected a whole number from 1 to 4096"),
+        (lambda m, d: gt.fit(m, d, seed=-1), "seed: found -1, expected a whole number from 0 to 4294967295"),
+        (lambda m, d: gt.fit(m, d, profiles="J"), "profiles: found 'J', expected a list of names, such as [\"J\"]"),
+        (lambda m, d: gt.fit(m, d, profiles=["k"]), "profiles: found 'k', this parameter is fixed; expected one of"),
+        (lambda m, d: gt.simulate(Motor, d), "model: found the class Motor, expected an object of it: Motor()"),
+        (lambda m, d: gt.simulate("robot_arm", d), "model: found an object of type str, expected a model, or the result"),
+        (lambda m, d: gt.simulate(m, "card.toml"), "data: found an object of type str, expected a DataSet"),
+        (lambda m, d: gt.simulate(m, d, device="tpu"), "device: found 'tpu', expected \"cpu\", \"cuda\" or \"cuda:N\""),
+        (lambda m, d: gt.simulate(m, d, precision="half"), "precision: found 'half', expected \"double\" or \"single\""),
+        (lambda m, d: gt.compare(d, [m]), "models: found an object of type list, expected models by name"),
+        (lambda m, d: gt.compare(d, {}), "models: found none, expected models by name"),
+        (lambda m, d: gt.residuals(m, d).plot("sweep"), "experiment: found 'sweep', expected one of Steps, More steps, Sweep"),
+        (lambda m, d: gt.simulate(m, d).plot("sweep"), "experiment: found 'sweep', expected one of Steps, More steps, Sweep"),
+    ],
+)  # fmt: skip
+def test_arguments_at_fault(data: gt.DataSet, call: Callable[[Any, Any], Any], message: str) -> None:
+    with pytest.raises(gt.UserError) as caught:
+        call(Motor(), data)
+    assert str(caught.value).startswith(message)
+
+
+def test_nothing_is_half_saved(folder: Path, data: gt.DataSet) -> None:
+    (folder / "saved" / "residuals.png").mkdir(parents=True)
+    with pytest.raises(gt.UserError, match=r"residuals.png: cannot be written: it is a folder"):
+        gt.residuals(Motor(), data).save(folder / "saved")
+    assert [path.name for path in (folder / "saved").iterdir()] == ["residuals.png"]

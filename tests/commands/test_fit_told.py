@@ -1,0 +1,100 @@
+"""What `fit` tells beside the numbers: what the data do not determine, bounds, correlations, profiles."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tests.commands.fitting import Edit, Make, fit
+
+
+def test_says_what_the_data_do_not_determine(motor_folder: Make, edit: Edit) -> None:
+    folder = motor_folder()
+    edit(folder / "dataset.toml", "[model.parameters]", "[model.parameters]\nk = { fixed = false }")
+    result = fit(folder)
+    assert "The data do not determine J, k and b, alone or together" in result.stdout
+    assert "undetermined" in result.stdout
+    assert json.loads(fit(folder, "--json").stdout)["parameters"]["J"]["std"] is None
+
+
+def test_says_what_is_at_a_bound(motor_folder: Make, edit: Edit) -> None:
+    folder = motor_folder()
+    edit(folder / "dataset.toml", "upper = 1.0", "lower = 0.07")
+    result = fit(folder)
+    assert "At a bound: b" in result.stdout
+
+
+def test_identifiability_is_told_before_estimating(motor_folder: Make, edit: Edit) -> None:
+    folder = motor_folder()
+    edit(folder / "dataset.toml", "[model.parameters]", "[model.parameters]\nk = { fixed = false }")
+    result = fit(folder, "--json")
+    assert result.exit_code == 0
+    lines = result.stderr.splitlines()
+    assert lines[0].startswith("At the start values: J, k and b: only their ratios are determined")
+    assert "iteration 1" in lines[1]
+    found = json.loads(result.stdout)
+    (row,) = found["identifiability"]
+    assert (row["kind"], row["parameters"], row["at"]) == ("together", ["J", "k", "b"], ["start", "optimum"])
+    assert row["direction"] == pytest.approx([1.0, 1.0, 1.0])
+    assert "raising all by the same factor changes nothing" in row["sentence"]
+    (note,) = found["statistics"]["notes"]
+    assert note["kind"] == "rank_deficient"
+    assert "(J, k and b)" in note["sentence"]
+    assert found["correlation"] == {"names": ["J", "k", "b"], "matrix": [[None] * 3] * 3}
+
+
+def test_nothing_to_tell_of_a_sound_problem(motor_folder: Make) -> None:
+    found = json.loads(fit(motor_folder(), "--json").stdout)
+    assert (found["identifiability"], found["statistics"]["notes"], found["profiles"]) == ([], [], {})
+    assert (found["substeps"], found["precision"]) == (1, "double")
+    names, matrix = found["correlation"].values()
+    assert names == ["J", "b"]
+    assert [matrix[0][0], matrix[1][1]] == pytest.approx([1.0, 1.0])
+    assert matrix[0][1] == pytest.approx(matrix[1][0])
+    assert -1 < matrix[0][1] < 1
+
+
+def test_strong_correlations_are_told(motor_folder: Make, edit: Edit) -> None:
+    """Two frictions that act alike but for a little."""
+    folder = motor_folder()
+    edit(folder / "my_motor.py", "- p.b * x.speed", "- p.b * x.speed - p.c * x.speed * (1 + 0.02 * x.speed)")
+    edit(folder / "my_motor.py", "    ports =", '    parameters += [Parameter("c", 0.01)]\n    ports =')
+    result = fit(folder)
+    assert "Estimates that move together (correlation): b and c -0." in result.stdout
+
+
+def test_bounds_in_the_result(motor_folder: Make, edit: Edit) -> None:
+    folder = motor_folder()
+    edit(folder / "dataset.toml", "upper = 1.0", "lower = 0.07")
+    (note,) = json.loads(fit(folder, "--json").stdout)["statistics"]["notes"]
+    assert note["kind"] == "at_bound"
+    assert note["sentence"].startswith("ended at a bound") and "(b)" in note["sentence"]
+
+
+def test_profiles(motor_folder: Make) -> None:
+    folder = motor_folder()
+    result = fit(folder, "--json", "--profile", "J", "--profile", "b", "--profile", "J")
+    found = json.loads(result.stdout)
+    assert list(found["profiles"]) == ["J", "b"]
+    for name, row in found["profiles"].items():
+        estimate, deviation = found["parameters"][name]["value"], found["parameters"][name]["std_sandwich"]
+        assert row["estimate"] == estimate
+        assert [row["lower"], row["upper"]] == pytest.approx(
+            [estimate - 1.96 * deviation, estimate + 1.96 * deviation], rel=1e-3
+        )
+        assert row["colour"] == pytest.approx((deviation / found["parameters"][name]["std"]) ** 2)
+        assert len(row["values"]) == len(row["rise"]) > 6
+        assert (folder / "out" / f"profile_{name}.png").read_bytes().startswith(b"\x89PNG")
+        assert f"{name}: {row['lower']:.5g}" in result.stderr
+    assert json.loads((folder / "out" / "fit.json").read_text()) == found
+
+
+def test_substeps_are_told(motor_folder: Make, edit: Edit) -> None:
+    """A motor whose lag is a fraction of the sample time takes several steps a sample."""
+    folder = motor_folder()
+    edit(folder / "dataset.toml", "J = { value = 0.03 }", "J = { value = 0.0004, fixed = true }")
+    result = fit(folder, "--json")
+    steps = json.loads(result.stdout)["substeps"]
+    assert steps > 1
+    assert f"Each sample is simulated in {steps} Runge-Kutta steps" in result.stderr

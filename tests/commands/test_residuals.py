@@ -1,0 +1,50 @@
+"""`residuals`: prediction errors and their tests."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.commands.free_running import PNG, Edit, Make, greybox, of, saved
+
+
+def test_residuals(motor_folder: Make) -> None:
+    """The right parameters leave white noise; the start values leave what the input explains."""
+    folder = motor_folder()
+    right = of("residuals", folder, "--checkpoint", saved(folder, "good"))
+    assert (right["schema"], right["model"]["name"]) == ("greybox-residuals/1", "good")
+    wrong = of("residuals", folder)
+    assert wrong["model"]["name"] == "start"
+    for good, poor in zip(right["residuals"], wrong["residuals"], strict=True):
+        assert (good["experiment"], good["role"], good["output"]) == (poor["experiment"], poor["role"], poor["output"])
+        assert good["rmse"] == pytest.approx(0.02, rel=0.15)
+        assert good["whiteness"]["bound"] == pytest.approx(
+            2.58 / np.sqrt(400 if good["experiment"] == "More steps" else 600)
+        )
+        assert (good["whiteness"]["lags"], good["input_correlation"]["lags"]) == (25, 26)
+        assert good["whiteness"]["value"] < 1.5 * good["whiteness"]["bound"] < 0.5 < poor["whiteness"]["value"]
+        crossed = good["input_correlation"]
+        assert crossed["input"] == "voltage"
+        assert crossed["inputs"] == {"voltage": {k: crossed[k] for k in ("value", "bound", "lags_outside", "lags")}}
+        assert crossed["value"] < 1.5 * crossed["bound"]
+    assert sum(row["whiteness"]["lags_outside"] for row in right["residuals"]) <= 3
+    assert any(row["input_correlation"]["value"] > row["input_correlation"]["bound"] for row in wrong["residuals"])
+    assert Path(right["figure"]).read_bytes().startswith(PNG)
+    assert [p.name for p in (folder / "out").iterdir()] == ["residuals.png"]
+
+
+def test_residuals_for_people(motor_folder: Make) -> None:
+    result = greybox("residuals", motor_folder())
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert "residuals of Motor, start" in result.stdout
+    assert any(line.split()[:3] == ["Sweep", "validation", "speed"] for line in result.stdout.splitlines())
+
+
+def test_residuals_of_a_model_without_inputs(motor_folder: Make, edit: Edit) -> None:
+    folder = motor_folder()
+    edit(folder / "my_motor.py", '    inputs = [Input("voltage", "V")]\n', "")
+    edit(folder / "my_motor.py", "p.k * u.voltage - p.b", "-p.b")
+    edit(folder / "dataset.toml", 'voltage = { column = "v", unit = "V" }\n', "")
+    assert [row["input_correlation"] for row in of("residuals", folder)["residuals"]] == [None] * 3

@@ -1,0 +1,102 @@
+"""`simulate`, and what all free runs tell: overflow, precision, sub-steps."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.commands.free_running import PNG, Edit, Make, greybox, of
+
+
+def test_simulate(motor_folder: Make) -> None:
+    folder = motor_folder()
+    found = of("simulate", folder)
+    assert (found["schema"], found["dataset"]) == ("greybox-compare/1", "Motor on the bench")
+    (model,) = found["models"]
+    assert model["name"] == "start"
+    assert [(r["experiment"], r["role"], r["output"]) for r in model["fit"]] == [
+        ("Steps", "estimation", "speed"),
+        ("More steps", "estimation", "speed"),
+        ("Sweep", "validation", "speed"),
+    ]
+    assert [Path(p).name for p in found["tables"]] == [
+        "simulated_1_steps.csv",
+        "simulated_2_more_steps.csv",
+        "simulated_3_sweep.csv",
+    ]
+    for row, table, figure in zip(model["fit"], found["tables"], found["figures"], strict=True):
+        columns = np.genfromtxt(table, delimiter=",", names=True)
+        assert columns.dtype.names == ("time", "speed_measured", "speed_simulated")
+        errors = columns["speed_measured"] - columns["speed_simulated"]
+        assert np.sqrt(np.mean(errors**2)) == pytest.approx(row["rmse"], rel=1e-6)
+        spread = np.linalg.norm(columns["speed_measured"] - columns["speed_measured"].mean())
+        assert 100 * (1 - np.linalg.norm(errors) / spread) == pytest.approx(row["fit"], rel=1e-6)
+        assert columns["time"][:3].tolist() == [0.0, 0.01, 0.02]
+        assert Path(figure).read_bytes().startswith(PNG)
+    assert sorted(str(p) for p in (folder / "out").iterdir()) == sorted(found["tables"] + found["figures"])
+
+
+def test_simulate_of_data_with_gaps(motor_folder: Make) -> None:
+    folder = motor_folder()
+    lines = (folder / "steps.csv").read_text().splitlines()
+    lines[5:9] = [line.split(",")[0] + "," for line in lines[5:9]]
+    (folder / "steps.csv").write_text("\n".join(lines) + "\n")
+    columns = np.genfromtxt(of("simulate", folder)["tables"][0], delimiter=",", names=True)
+    assert np.flatnonzero(np.isnan(columns["speed_measured"])).tolist() == [4, 5, 6, 7]
+    assert np.isfinite(columns["speed_simulated"]).all()
+
+
+def test_simulate_for_people(motor_folder: Make) -> None:
+    result = greybox("simulate", motor_folder())
+    assert (result.exit_code, result.stderr) == (0, "")
+    lines = [line.split() for line in result.stdout.splitlines()]
+    assert ["experiment", "role", "output", "fit", "[%]", "rmse", "unit"] in lines
+    assert any(line[:3] == ["Sweep", "validation", "speed"] and line[-1] == "rad/s" for line in lines)
+    assert "simulated_3_sweep.csv" in result.stdout
+
+
+@pytest.mark.parametrize("command", ["simulate", "residuals"])
+def test_simulation_that_overflows(motor_folder: Make, edit: Edit, command: str) -> None:
+    folder = motor_folder()
+    edit(folder / "my_motor.py", "- p.b * x.speed", "+ 9.0 * x.speed")
+    result = greybox(command, folder)
+    assert result.exit_code == 3
+    assert result.stderr.startswith("the numbers failed: simulating Motor: the simulation of 'Steps' overflows at ")
+    assert "try parameters" in result.stderr
+    assert not (folder / "out").exists()
+
+
+def test_overflow_comes_with_start_values_that_avoid_it(motor_folder: Make, edit: Edit) -> None:
+    folder = motor_folder()
+    edit(folder / "my_motor.py", "- p.b * x.speed", "+ 9.0 * x.speed")
+    said = greybox("simulate", folder).stderr
+    value = said.split("it does not with J = ")[1].split(" ")[0]
+    edit(folder / "dataset.toml", "J = { value = 0.03 }", f"J = {{ value = {value} }}")
+    assert greybox("simulate", folder).exit_code == 0
+
+
+@pytest.mark.parametrize("command", ["simulate", "compare", "residuals"])
+def test_single_precision(motor_folder: Make, command: str) -> None:
+    folder = motor_folder()
+    double, single = (of(command, folder, "--precision", precision) for precision in ("double", "single"))
+    rows = [found["residuals"] if command == "residuals" else found["models"][0]["fit"] for found in (double, single)]
+    assert [r["rmse"] for r in rows[1]] == pytest.approx([r["rmse"] for r in rows[0]], rel=1e-3)
+    assert [r["rmse"] for r in rows[1]] != [r["rmse"] for r in rows[0]]
+    result = greybox(command, folder, "--precision", "half")
+    assert result.exit_code == 2
+    assert result.stderr == 'error: --precision half: expected "double" or "single"\n'
+
+
+@pytest.mark.parametrize("command", ["simulate", "compare"])
+def test_substeps_are_told(motor_folder: Make, edit: Edit, command: str) -> None:
+    folder = motor_folder()
+    assert of(command, folder)["models"][0]["substeps"] == 1
+    assert "Runge-Kutta" not in greybox(command, folder).stdout
+    edit(folder / "dataset.toml", "J = { value = 0.03 }", "J = { value = 0.0004 }")
+    steps = of(command, folder)["models"][0]["substeps"]
+    assert steps > 1
+    assert f"is simulated in {steps} Runge-Kutta steps: the motion is fast" in greybox(command, folder).stdout.replace(
+        "Each sample of start", "Each sample"
+    )

@@ -1,0 +1,66 @@
+"""Curves beside laws: a law hands its force to one, and a finer one begins as the one it refines."""
+
+from __future__ import annotations
+
+import pytest
+
+from greybox_torch.diagnosis.hypothesis.fit import hypothesis
+from greybox_torch.diagnosis.refit.curve import absorbed, finer
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.forces import ConstantBias
+from greybox_torch.mechanisms.friction import QuadraticDrag
+from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.mechanisms.varying_friction import FrictionWarmup
+
+
+def test_a_law_hands_its_force_to_the_curve_beside_it(motor_data, motor, begun) -> None:
+    """Without this, a law that only began what the curve completed could not be taken back: the curve alone begins too far away."""
+    search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v)), motor)
+    drag, curve = attach(motor, "rotor", QuadraticDrag()), attach(motor, "rotor", Unknown("speed", 12))
+    start = {
+        **search.plain.values(),
+        "rotor.quadratic_drag.c": 0.004,
+        **{f"{curve.prefix}.w_{k}": 0.0 for k in range(12)},
+    }
+    both = hypothesis(search.problem, (drag, curve), search.surroundings, [start], options=search.study.options)
+    assert both is not None
+    alone = absorbed(both, drag, search.surroundings)
+    assert alone is not None and not any(n.startswith(drag.prefix) for n in alone)
+    handed = hypothesis(
+        search.problem,
+        (curve,),
+        search.surroundings,
+        [alone],
+        options=search.study.options,
+        frozen=frozenset(n for n in alone if "w_" in n),
+    )
+    assert handed is not None and handed.score < both.score + 0.05 < search.plain.score - 0.5
+    assert absorbed(both, curve, search.surroundings) is None
+    bias = attach(motor, "rotor", ConstantBias())
+    beside = hypothesis(search.problem, (bias, curve), search.surroundings, [start], options=search.study.options)
+    assert beside is not None
+    assert absorbed(beside, bias, search.surroundings) is not None  # a constant is a curve of any signal
+    warm = attach(motor, "rotor", FrictionWarmup())
+    later = hypothesis(search.problem, (warm, curve), search.surroundings, [start], options=search.study.options)
+    assert later is not None and absorbed(later, warm, search.surroundings) is None  # of time as well
+    at_position = attach(motor, "rotor", Unknown("position", 12))
+    elsewhere = hypothesis(
+        search.problem, (drag, at_position), search.surroundings, [start], options=search.study.options
+    )
+    assert elsewhere is not None and absorbed(elsewhere, drag, search.surroundings) is None
+
+
+@pytest.mark.parametrize("factor", ["", "position"])
+def test_a_finer_curve_begins_as_the_one_it_refines(motor_data, motor, begun, factor) -> None:
+    search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v)), motor)
+    curve = attach(motor, "rotor", Unknown("speed", 8, factor))
+    start = search.plain.values() | {f"{curve.prefix}.w_{k}": 0.01 * (k - 4) for k in range(8)}
+    drawn = hypothesis(search.problem, (curve,), search.surroundings, [start], options=search.study.options)
+    assert drawn is not None
+    attachment, values = finer(drawn, curve, search.surroundings)
+    assert sum(n.startswith(f"{curve.prefix}.w_") for n in values) == 16
+    frozen = frozenset(n for n in values if "w_" in n)
+    same = hypothesis(
+        search.problem, (attachment,), search.surroundings, [values], options=search.study.options, frozen=frozen
+    )
+    assert same is not None and same.score < drawn.score + 0.02
