@@ -31,7 +31,7 @@ class ArgumentError(UserError):
         problem: what is expected, or why that cannot be.
         option: the name of the option, where it is not the argument's.
 
-    Example:
+    Examples:
         >>> str(ArgumentError("time_limit", -1, "expected a number above 0"))
         'time_limit: found -1, expected a number above 0'
         >>> ArgumentError("time_limit", -1, "expected a number above 0").for_option()

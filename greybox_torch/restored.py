@@ -46,7 +46,7 @@ def load(path: str | PathLike[str], model: GreyBoxModel | str | None = None) -> 
     Raises:
         UserError: the checkpoint is damaged, is of a model that is not at hand, or is not one of ``model``.
 
-    Example:
+    Examples:
         ``greybox_torch.simulate(greybox_torch.load("results/model"), data)``
     """
     return load_saved_model(path, model).model

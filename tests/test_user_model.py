@@ -67,25 +67,6 @@ def test_model_named_by_the_card_from_another_folder(motor_folder: Make, monkeyp
     assert of("compare", "motor/dataset.toml", "results/motor/model.json")["models"][1]["name"] == "model"
 
 
-def test_the_readme(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The model that the README shows is the one that its commands fit."""
-    readme = (Path(__file__).parents[1] / "README.md").read_text()
-    folder = motor_folder()
-    code = readme.split("```python\n")[1].split("```")[0]
-    section = next(block for block in readme.split("```toml\n")[1:] if block.startswith("[model]")).split("```")[0]
-    card = (folder / "dataset.toml").read_text()
-    (folder / "my_motor.py").write_text(code)
-    (folder / "dataset.toml").write_text(card.split("[model]")[0] + section)
-    monkeypatch.chdir(folder)
-    wanted = ("inspect", "diagnose", "simulate", "fit", "compare", "residuals", "train")
-    commands = [line.split("#")[0].split() for line in readme.splitlines() if line.startswith("greybox ")]
-    commands = [command for command in commands if command[1] in wanted]
-    assert {command[1] for command in commands} == set(wanted)
-    for command in commands:
-        result = CliRunner().invoke(app, command[1:])
-        assert result.exit_code == 0, (command, result.stderr)
-
-
 @pytest.mark.skipif(
     not RECORDINGS.is_dir(),
     reason="the recordings of the real pendulum (../shared/recordings/simple_pendulum) are not here",

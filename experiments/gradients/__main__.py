@@ -1,4 +1,4 @@
-"""Measure the three gradients: `python -m experiments.gradients --out docs [--quick]`.
+"""Measure the three gradients: `python -m experiments.gradients --out docs/validation [--quick]`.
 
 Writes gradients.md, gradients.png and gradients.json to the folder. Every measurement is a process of its own; none runs beside another.
 """

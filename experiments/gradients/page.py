@@ -30,7 +30,8 @@ def markdown(result: Mapping[str, Any]) -> str:
         "# Three gradients, and when each pays",
         "",
         f"`greybox train --gradient NAME`. Measured: the loss of {result['windows']} windows of the robot arm and its gradient by the "
-        f"{result['weights']} weights of a network at its motor, in float64, on one core, by `python -m experiments.gradients --out docs`.",
+        f"{result['weights']} weights of a network at its motor, in float64, on one core, by "
+        "`python -m experiments.gradients --out docs/validation`.",
         "",
     ]
     if result["quick"]:

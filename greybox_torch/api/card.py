@@ -134,7 +134,7 @@ def card(
     Raises:
         UserError: a file that cannot be read, or no such model.
 
-    Example:
+    Examples:
         ``card(["steps.csv", "sweep.csv"], Motor()).save()``
     """
     paths = _paths(files)

@@ -29,7 +29,7 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
     Raises:
         UserError: no such model, or a file that raises when it is run. What is wrong with the model itself is among the findings.
 
-    Example:
+    Examples:
         >>> import torch
         >>> from greybox_torch import GreyBoxModel, Input, Output, Parameter, State
         >>> class Lag(GreyBoxModel):

@@ -111,7 +111,7 @@ def compare(
     Raises:
         UserError: a model does not fit the data, a checkpoint is damaged, or an argument is at fault.
 
-    Example:
+    Examples:
         ``compare(data, {"start": Motor(), "fit": fitted, "earlier": "results/model"}).plot()``
     """
     device, precision = check_device(device), check_precision(precision)

@@ -56,7 +56,7 @@ def design(
         UserError: there are no rivals to tell apart, limits cannot be met, or an argument is at fault.
         NumericalError: a hypothesis cannot be simulated on its own recordings.
 
-    Example:
+    Examples:
         ``design(found, seconds=10, limits={"voltage": {"lower": -6, "upper": 6}}).save("next")``
     """
     held = _hypotheses(found, model)

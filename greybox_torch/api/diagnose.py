@@ -59,7 +59,7 @@ def diagnose(
             experiment to choose with, or an argument is at fault.
         NumericalError: even short stretches of the simulation overflow.
 
-    Example:
+    Examples:
         ``print(diagnose(Motor(), data, time_limit=60, on_progress=lambda now: print(now.leading)).sentence)``
     """
     given, device = check_model(model), check_device(device)

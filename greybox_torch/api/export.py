@@ -122,7 +122,7 @@ def export(
     Raises:
         UserError: equations that have no compiled form, a dead time without a longest value, or an argument is at fault.
 
-    Example:
+    Examples:
         ``export(found, to="c", data=data).save("motor_in_c")``
     """
     if to not in WRITERS:

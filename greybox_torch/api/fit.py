@@ -60,7 +60,7 @@ def fit(
         UserError: model and data do not fit, there is no experiment to estimate from, or an argument is at fault.
         NumericalError: even short stretches of the simulation overflow.
 
-    Example:
+    Examples:
         ``fit(Motor(), data).parameters["J"].value``
     """
     began = time.perf_counter()

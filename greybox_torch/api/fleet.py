@@ -68,7 +68,7 @@ def fleet(
     Raises:
         UserError: nothing was found, an argument is at fault, the extra `fleet` is not installed, or results cannot be written.
 
-    Example:
+    Examples:
         ``gt.fleet("machines", "results/fleet", time_limit=60).rows``
     """
     began = time.perf_counter()

@@ -83,7 +83,7 @@ def new(name: str, *, like: str = "motor", path: str | PathLike[str] | None = No
     Raises:
         UserError: a name that Python cannot use, or an unknown pattern.
 
-    Example:
+    Examples:
         >>> new("my_tank", like="tank").name
         'MyTank'
     """

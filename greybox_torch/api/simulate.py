@@ -133,7 +133,7 @@ def simulate(
         UserError: model and data do not fit, or an argument is at fault.
         NumericalError: the simulation overflows.
 
-    Example:
+    Examples:
         ``simulate(Motor(), data)["sweep"]["speed"]``
     """
     given = check_model(model)

@@ -69,7 +69,7 @@ def train(
             short, the snapshot is not of this training, or an argument is at fault.
         NumericalError: even short stretches of the simulation overflow.
 
-    Example:
+    Examples:
         ``gt.train(Motor(), data, net="residual", port="actuator").explanation.sentence``
     """
     given, device = check_model(model), check_device(device)

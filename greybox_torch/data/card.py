@@ -1,6 +1,6 @@
 """The card `dataset.toml`: what it may say, and messages for what it may not.
 
-The format is fixed by the project's contract; see the README for an example.
+`docs/howto/data.md` has examples.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ TIME = "time"  # in an experiment's `columns`, the key that renames the column o
 
 
 class ParameterEntry(Entry):
-    """What is known about a parameter of the model; None where the card is silent. Values in the parameter's unit."""
+    """What is known about a parameter of the model, in the parameter's unit. What is left out is as the model declares it."""
 
     value: Finite | None = None
     lower: float | None = None
@@ -47,7 +47,7 @@ class ParameterEntry(Entry):
 
 
 class InitialEntry(Entry):
-    """What is known about a start state; None where the card is silent. Value in the state's unit."""
+    """What is known about a start state, in the state's unit. What is left out is as the model declares it."""
 
     value: Finite | None = None
     fixed: bool | None = None

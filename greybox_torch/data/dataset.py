@@ -86,7 +86,7 @@ class DataSet:
             UserError: no recordings, two of one name, channels or units that differ between them, a channel without any sample in one
                 of them, or entries that cannot be right.
 
-        Example:
+        Examples:
             >>> sweep = Recording.from_arrays("sweep", {"voltage": [1.0] * 40, "speed": [0.0] * 40}, sample_time=0.01)
             >>> DataSet([sweep], name="Motor on the bench").recordings[1]
             Recording('sweep (held out)', validation: 10 samples of voltage, speed, 0.01 s apart)

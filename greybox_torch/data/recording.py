@@ -78,7 +78,7 @@ class Recording:
             UserError: not one of ``sample_time`` and ``time``, arrays of different length, fewer than ten samples, a channel with no
                 sample at all, time stamps that do not increase, infinite values, or values that are no real numbers.
 
-        Example:
+        Examples:
             >>> import numpy as np
             >>> Recording.from_arrays("sweep", {"voltage": np.ones(50), "speed": np.zeros(50)}, sample_time=1e-3, units={"voltage": "V"})
             Recording('sweep', estimation: 50 samples of voltage [V], speed, 0.001 s apart)
@@ -114,7 +114,7 @@ class Recording:
         Raises:
             UserError: ``frame`` has no such column, and as :meth:`from_arrays` does.
 
-        Example:
+        Examples:
             >>> frame = {"t": [0.01 * k for k in range(20)], "u": [1.0] * 20, "y": [0.0] * 20}
             >>> Recording.from_dataframe("steps", frame, time="t", columns={"voltage": "u", "speed": "y"})
             Recording('steps', estimation: 20 samples of voltage, speed, 0.01 s apart)

@@ -1,4 +1,4 @@
-"""The examples of docs/extending.md are the ones that the tests try."""
+"""The examples of docs/howto/extending.md are the ones that the tests try."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from greybox_torch.data.readers import READERS
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.report.sections.order import SECTIONS
 
-PAGE = Path(__file__).parents[2] / "docs" / "extending.md"
+PAGE = Path(__file__).parents[2] / "docs" / "howto" / "extending.md"
 EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.S)
 
 

@@ -1,7 +1,7 @@
 """Forward sensitivities: the stepper propagates one tangent a parameter beside the states, in compiled code.
 
 Time grows with the number of parameters, memory not with the length of a window. For the tens of weights of a network at a port this
-is the fastest way by far, see `docs/gradients.md`.
+is the fastest way by far, see `docs/validation/gradients.md`.
 """
 
 from __future__ import annotations
