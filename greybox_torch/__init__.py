@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from greybox_torch.api.design_result import DesignResult
     from greybox_torch.api.diagnose import diagnose
     from greybox_torch.api.diagnosis_result import DiagnosisResult
-    from greybox_torch.api.export import ExportResult, export
+    from greybox_torch.api.export import export
+    from greybox_torch.api.export_result import ExportResult, SnippetResult
     from greybox_torch.api.fit import fit
     from greybox_torch.api.fit_result import FitResult
     from greybox_torch.api.fleet import fleet
@@ -93,6 +94,7 @@ __all__ = [
     "SearchBudget",
     "Signals",
     "SimulationResult",
+    "SnippetResult",
     "State",
     "Surroundings",
     "Table",
@@ -144,7 +146,7 @@ _HOME_OF = {
     "DiagnosisResult": "greybox_torch.api.diagnosis_result",
     "DiagnosisSettings": "greybox_torch.diagnosis.settings",
     "Evaluation": "greybox_torch.evaluation",
-    "ExportResult": "greybox_torch.api.export",
+    "ExportResult": "greybox_torch.api.export_result",
     "FitResult": "greybox_torch.api.fit_result",
     "FleetResult": "greybox_torch.api.fleet_result",
     "FrictionNet": "greybox_torch.mechanisms.friction_net",
@@ -166,6 +168,7 @@ _HOME_OF = {
     "SearchBudget": "greybox_torch.diagnosis.settings",
     "Signals": "greybox_torch.model",
     "SimulationResult": "greybox_torch.api.simulate",
+    "SnippetResult": "greybox_torch.api.export_result",
     "State": "greybox_torch.model",
     "Surroundings": "greybox_torch.mechanisms.mechanism",
     "Table": "greybox_torch.data.readers.table",

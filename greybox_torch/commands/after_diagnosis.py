@@ -42,7 +42,7 @@ def export(
     results: Annotated[
         Path, typer.Argument(metavar="RESULTS", help="Folder of fit, train or diagnose, or a checkpoint.")
     ],
-    to: Annotated[str, typer.Option(metavar="c|torch|fmu", help="What to export to.")],
+    to: Annotated[str, typer.Option(metavar="c|torch|fmu|mjcf|urdf", help="What to export to.")],
     dataset: Annotated[
         Path | None,
         typer.Option(metavar="DATASET.toml", help="Names the model; integration steps are what its recordings need."),
@@ -59,7 +59,7 @@ def export(
     ] = None,
     json: Json = False,
 ) -> None:
-    """Take the model with its effects home: C, a module of torch, an FMU."""
+    """Take the model with its effects home: C, a module of torch, an FMU; or the effects alone, in MJCF or URDF."""
     from greybox_torch.commands import export
 
     export.run(results, to, dataset, name, step, Options(model, out, json=json))

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from greybox_torch.codegen.arrays import UnsupportedOperation
 from greybox_torch.codegen.lower import Equations, lower
 from greybox_torch.errors import ArgumentError, UserError
+from greybox_torch.exporting.attached import attached
 from greybox_torch.exporting.delays import Delay, delays_of, with_delays
-from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
+from greybox_torch.mechanisms.mechanism import SHARE
 from greybox_torch.model import GreyBoxModel
 
 USUAL_STEP = 1e-3
@@ -68,9 +68,7 @@ def exported(
         ArgumentError: no identifier in C and Python, or a step that is none.
         UserError: equations without a compiled form, or a dead time without a longest value.
     """
-    name = _identifier(model.title) if identifier is None else identifier
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,60}", name) or keyword.iskeyword(name):
-        raise ArgumentError("name", name, "expected letters, digits and underscores, beginning with a letter")
+    name = identifier_of(model, identifier)
     if step is not None and not 0.0 < step < float("inf"):
         raise ArgumentError("step", step, "expected seconds, above 0")
     values = model.values()
@@ -105,16 +103,10 @@ def exported(
 
 def _switchable(model: GreyBoxModel) -> tuple[GreyBoxModel, set[str]]:
     """The model with a factor on each effect, and the names of these factors."""
-    attachments: list[Attachment] = []
-    surroundings: dict[str, Surroundings] = {}
-    layer = model
-    while isinstance(layer, AugmentedModel):
-        attachments[:0] = layer.attachments
-        surroundings = {**layer.surroundings, **surroundings}
-        layer = layer.base
+    plain, attachments, surroundings = attached(model)
     if not attachments:
         return model, set()
-    made = AugmentedModel(layer, attachments, surroundings, probed=attachments)
+    made = AugmentedModel(plain, attachments, surroundings, probed=attachments)
     return made, {f"{a.prefix}.{SHARE}" for a in attachments}
 
 
@@ -123,6 +115,15 @@ def _sample_time(model: GreyBoxModel) -> float:
     return min((s.sample_time for s in around if s.sample_time > 0.0), default=USUAL_STEP)
 
 
-def _identifier(title: str) -> str:
-    made = re.sub(r"\W+", "_", title, flags=re.ASCII).strip("_") or "model"
-    return made if made[0].isalpha() else f"model_{made}"
+def identifier_of(model: GreyBoxModel, asked: str | None = None) -> str:
+    """The name of functions and files: the one asked for, by default made from the model's title.
+
+    Raises:
+        ArgumentError: it is no identifier in C and Python.
+    """
+    if asked is None:
+        made = re.sub(r"\W+", "_", model.title, flags=re.ASCII).strip("_") or "model"
+        asked = made if made[0].isalpha() else f"model_{made}"
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,60}", asked) or keyword.iskeyword(asked):
+        raise ArgumentError("name", asked, "expected letters, digits and underscores, beginning with a letter")
+    return asked

@@ -73,3 +73,15 @@ def test_wrong_use(bench: Path) -> None:
         done = CliRunner().invoke(app, ["export", *arguments])
         assert done.exit_code == 2
         assert message in done.stderr
+
+
+def test_a_snippet(bench: Path) -> None:
+    """The dead zone has no element in MJCF: the file says so, and so does the terminal."""
+    arguments = ["export", str(bench / "results"), "--to", "mjcf", "--dataset", str(bench / "dataset.toml")]
+    done = CliRunner().invoke(app, arguments)
+    assert done.exit_code == 0, done.output
+    file = bench / "results" / "mjcf" / "Motor_mjcf.xml"
+    assert "actuator.actuator_deadzone: Small inputs do nothing" in file.read_text()
+    assert "actuator.actuator_deadzone: Small inputs do nothing" in done.stderr + done.stdout
+    told = json.loads(CliRunner().invoke(app, [*arguments, "--json"]).stdout)
+    assert [row["effect"] for row in told["not_said"]] == ["actuator.actuator_deadzone"]

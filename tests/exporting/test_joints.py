@@ -1,0 +1,159 @@
+"""Effects as MJCF and URDF: MuJoCo with the snippet beside the model with the effects."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+import greybox_torch as gt
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.library import LIBRARY
+from greybox_torch.mechanisms.mechanism import Range, Surroundings
+from greybox_torch.model import GreyBoxModel
+
+SIGNALS = ("speed", "position", "deflection", "rate", "input", "output")
+STEP = 0.01
+
+
+def with_effects(model: GreyBoxModel, effects: Mapping[tuple[str, str], Mapping[str, float]]) -> AugmentedModel:
+    """Effects by port and mechanism, with their values."""
+    around = Surroundings(dict.fromkeys(SIGNALS, Range(-20.0, 20.0, 5.0)), dict.fromkeys(SIGNALS, ""), "N", STEP)
+    attached = [
+        attach(model, port, law := LIBRARY[name](), "+position" if law.kinematic else "") for port, name in effects
+    ]
+    made = AugmentedModel(model, attached, {port: around for port, _ in effects})
+    made.set_values({f"{port}.{name}.{p}": v for (port, name), own in effects.items() for p, v in own.items()})
+    return made
+
+
+def rotor(machines: Path, effects: Mapping[tuple[str, str], Mapping[str, float]]) -> AugmentedModel:
+    made = with_effects(gt.load_model(f"{machines / 'small.py'}:Rotor"), effects)
+    made.set_values({"b": 0.0})
+    return made
+
+
+def slide(machines: Path, effects: Mapping[tuple[str, str], Mapping[str, float]]) -> AugmentedModel:
+    return with_effects(gt.load_model(f"{machines / 'small.py'}:Slide"), effects)
+
+
+ROTOR = '<joint name="rotor" {own} axis="0 0 1"/><inertial pos="0 0 0" mass="1" diaginertia="0.02 0.02 0.02"/>'
+SLIDE = '<joint name="slide" type="slide" axis="1 0 0" {own}/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
+FORCE = '<actuator><motor name="force" joint="slide"/></actuator>'
+VOLTAGE = '<actuator><motor name="voltage" joint="rotor" gear="0.1"/></actuator>'
+
+
+def error_of(model: AugmentedModel, body: str, inputs: np.ndarray, folder: Path, rest: str = "") -> float:
+    """The largest difference of our simulation from MuJoCo's, relative to the largest output."""
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed (extra [proof])")
+    if int(mujoco.__version__.split(".")[0]) < 4 and "needs MuJoCo 4" in str(gt.export(model, to="mjcf")):
+        pytest.skip(f"MuJoCo {mujoco.__version__} does not have what this needs")
+    (file,) = gt.export(model, to="mjcf", name="effects").save(folder)
+    whole = f"""<mujoco><option timestep="0.0005" gravity="0 0 0" integrator="RK4"/><include file="{file}"/>
+    <worldbody><body>{body}</body></worldbody>{rest}</mujoco>"""
+    (folder / "machine.xml").write_text(whole)
+    machine = mujoco.MjModel.from_xml_path(str(folder / "machine.xml"))
+    state, outputs = mujoco.MjData(machine), np.zeros(len(inputs))
+    drive = mujoco.mj_name2id(machine, mujoco.mjtObj.mjOBJ_ACTUATOR, model.plain.inputs[0].name)
+    measured = state.qvel if model.outputs[0].name == "speed" else state.qpos
+    for k, u in enumerate(inputs):
+        outputs[k] = measured[0]
+        state.ctrl[drive] = u
+        mujoco.mj_step(machine, state, round(STEP / 0.0005))
+    signals = {model.plain.inputs[0].name: inputs, model.outputs[0].name: outputs}
+    data = gt.DataSet([gt.Recording.from_arrays("run", signals, sample_time=STEP)], held_out_by_default=False)
+    ours = gt.simulate(model, data)["run"][model.outputs[0].name]
+    return float(np.abs(ours - outputs).max() / np.abs(outputs).max())
+
+
+def steps(size: float, seed: int = 3) -> np.ndarray:
+    """Of 0.25 s, the first of them zero: before its start MuJoCo's delayed inputs are zero."""
+    levels = np.random.default_rng(seed).uniform(-1.0, 1.0, 12)
+    levels[0] = 0.0
+    return np.repeat(levels, 25) * size
+
+
+ROTORS = {
+    "friction": {
+        ("rotor", "viscous_friction"): {"c": 0.02},
+        ("rotor", "coulomb_friction"): {"F_c": 0.1, "v_0": 0.05},
+    },
+    "drag and bias": {("rotor", "quadratic_drag"): {"c": 2e-3}, ("rotor", "constant_bias"): {"bias": 0.1}},
+    "lag and offset": {
+        ("rotor", "viscous_friction"): {"c": 0.05},
+        ("actuator", "input_lag"): {"T": 0.08},
+        ("actuator", "input_bias"): {"bias": 1.5},
+    },
+    "saturation": {("rotor", "viscous_friction"): {"c": 0.05}, ("actuator", "torque_saturation"): {"limit": 4.0}},
+    "gain": {("rotor", "viscous_friction"): {"c": 0.05}, ("actuator", "input_gain"): {"gain_error": 0.2}},
+    "delay": {("rotor", "viscous_friction"): {"c": 0.05}, ("actuator", "input_delay"): {"T": 0.05}},
+}
+SLIDES = {
+    "play": ({("spring", "backlash"): {"half_gap": 0.1}}, 'damping="2"'),
+    "stiffening spring": ({("spring", "nonlinear_stiffness"): {"k_3": 30.0}}, 'damping="2" stiffness="25"'),
+    "stop": ({("slide", "end_stop"): {"k": 200.0, "where": 0.2, "side": 1.0}}, 'damping="2" stiffness="25"'),
+}
+
+
+@pytest.mark.parametrize("name", list(ROTORS))
+def test_rotor_beside_mujoco(name: str, machines: Path, tmp_path: Path) -> None:
+    drives = any(port == "actuator" for port, _ in ROTORS[name])
+    body = ROTOR.format(own='class="rotor"')
+    allowed = 0.02 if name == "friction" else 0.01  # MuJoCo's friction sticks, ours changes its sign within v_0
+    found = error_of(rotor(machines, ROTORS[name]), body, steps(8.0), tmp_path, "" if drives else VOLTAGE)
+    assert found < allowed
+
+
+@pytest.mark.parametrize("name", list(SLIDES))
+def test_slide_beside_mujoco(name: str, machines: Path, tmp_path: Path) -> None:
+    effects, own = SLIDES[name]
+    assert error_of(slide(machines, effects), SLIDE.format(own=own), steps(15.0), tmp_path, FORCE) < 0.01
+
+
+def test_what_cannot_be_said_is_told(machines: Path, tmp_path: Path) -> None:
+    model = rotor(
+        machines,
+        {("rotor", "torque_ripple"): {"a": 0.1}, ("rotor", "stribeck_friction"): {"F_c": 0.1, "F_s": 0.3, "c": 0.02}},
+    )
+    for to, attributes in (
+        ("mjcf", {"frictionloss": "0.1", "damping": "0.02"}),
+        ("urdf", {"friction": "0.1", "damping": "0.02"}),
+    ):
+        made: Any = gt.export(model, to=to, name="effects")
+        assert [row["effect"] for row in made.rows] == ["rotor.torque_ripple", "rotor.stribeck_friction"]
+        assert "F_s = 0.3" in made.rows[1]["why"]
+        assert "rotor.torque_ripple: " in str(made)
+        (file,) = made.save(tmp_path)
+        root = ElementTree.parse(file).getroot()
+        element = root.find(".//joint" if to == "mjcf" else ".//dynamics")
+        assert element is not None
+        assert element.attrib == attributes
+        told = json.loads(made.to_json(tmp_path))
+        assert told["files"] == [str(file)]
+        assert told["not_said"] == made.rows
+        assert "rotor.torque_ripple" in made._repr_html_()
+
+
+def test_a_tank_has_no_joints(machines: Path) -> None:
+    around = Surroundings({"level": Range(0.0, 1.0, 0.5)}, {"level": "m"}, "m^3/s", 1.0)
+    plain = gt.load_model(f"{machines / 'small.py'}:Tank")
+    laws = ("constant_bias", "linear_leak")
+    model = AugmentedModel(plain, [attach(plain, "tank", LIBRARY[name]()) for name in laws], {"tank": around})
+    made = gt.export(model, to="mjcf")
+    assert made.snippet.said == ()
+    assert len(made.rows) == 2
+
+
+def test_limits_in_urdf(machines: Path) -> None:
+    """The rotor's voltage is a torque of 0.1 N m/V, which the joint's effort is limited to."""
+    model = rotor(machines, {("actuator", "torque_saturation"): {"limit": 4.0}})
+    root = ElementTree.fromstring(gt.export(model, to="urdf").snippet.text)
+    limit = root.find("joint[@name='rotor']/limit")
+    assert limit is not None
+    assert float(limit.attrib["effort"]) == pytest.approx(0.4)
