@@ -36,6 +36,20 @@ class Timeline:
 
 
 @dataclass(frozen=True)
+class FreeCurve:
+    """What the data say in the place of a law: ``force`` (n,) over the values of its :class:`Curve`, with one standard deviation ``spread``
+    (n,), NaN where the records hardly come; and the force ``asked`` (m,) by single stretches of so many ``samples``, at their mean signal
+    ``at`` (m,).
+    """
+
+    force: np.ndarray
+    spread: np.ndarray
+    at: np.ndarray
+    asked: np.ndarray
+    samples: int
+
+
+@dataclass(frozen=True)
 class Curve:
     """The effect's own law: ``force`` (n,) over ``signal`` (n,); ``force_unit`` as at the port. ``spread`` (n,) one standard deviation."""
 
@@ -45,6 +59,7 @@ class Curve:
     force: np.ndarray
     force_unit: str
     spread: np.ndarray | None = None
+    free: FreeCurve | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Its entry `curve` of an effect that has no name."""

@@ -10,7 +10,8 @@ import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.indistinguishable import one_of
-from greybox_torch.diagnosis.describe.profiles import explained_energy, law_curve, local_signals, most_of, profile
+from greybox_torch.diagnosis.describe.law_over_data import over_data
+from greybox_torch.diagnosis.describe.profiles import explained_energy, local_signals, most_of, profile
 from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.select.posterior import by_comparison, for_all_that_is_left, shared
@@ -72,7 +73,6 @@ def _effect(
     explained: float,
     gain: Gain | None,
 ) -> Effect:
-    around = study.surroundings[attachment.port]
     taken = state.step_of(attachment.prefix)
     if taken is None or taken.taken is None:
         without = state.without.get(attachment.prefix, state.plain)
@@ -96,7 +96,7 @@ def _effect(
         parameters=_parameters(model, attachment, final),
         explained=round(explained, 4),
         alternatives=alternatives,
-        curve=law_curve(model, attachment, around, final.problem),
+        curve=over_data(study, state.current, attachment, final.problem),
         profiles=profiles,
         explanation=mechanism.explanation,
         source=mechanism.source,

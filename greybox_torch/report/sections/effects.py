@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup
 
-from greybox_torch.diagnosis.effect import Curve, Effect, Profile, Timeline
+from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report import text
-from greybox_torch.report.chart.marks import band, bars, line
+from greybox_torch.report.chart.marks import bars
 from greybox_torch.report.chart.panel import Chart, Panel, side_by_side
 from greybox_torch.report.chart.scale import Scale, linear
 from greybox_torch.report.sections.frequency import Responses, responses
+from greybox_torch.report.sections.law import law_chart
 
 MOST_EXPERIMENTS = 4
 """Experiments of which is drawn where along them an effect acts; with more, those in which it is strongest."""
@@ -95,7 +96,7 @@ def _card(effect: Effect, shown: Responses | None) -> Card:
         experiment=effect.separating_experiment,
         source=effect.source,
         unknown=unknown,
-        curve=None if effect.curve is None else _curve(effect, effect.curve),
+        curve=None if effect.curve is None else law_chart(effect, effect.curve),
         responses=shown,
         profiles=_profiles(effect),
         timelines=_timelines(effect),
@@ -130,45 +131,6 @@ def _shares(effect: Effect) -> tuple[Share, ...]:
     ]
     left = 1.0 - sum(share.probability for share in listed)
     return (*listed, Share("anything else", "", left, rest=True)) if left > 0.005 else tuple(listed)
-
-
-def _curve(effect: Effect, curve: Curve) -> Chart:
-    spread = np.zeros_like(curve.force) if curve.spread is None else 2.0 * np.nan_to_num(curve.spread)
-    x = linear(curve.values, room=0.0)
-    y = linear(
-        curve.force,
-        np.zeros(1),
-        np.clip(curve.force - spread, *_around(curve.force)),
-        np.clip(curve.force + spread, *_around(curve.force)),
-    )
-    marks = [line(x, y, curve.values, curve.force, "effect")]
-    if curve.spread is not None:
-        marks.insert(0, band(x, y, curve.values, curve.force - spread, curve.force + spread, "effect"))
-    low, high = float(np.nanmin(curve.force)), float(np.nanmax(curve.force))
-    alt = (
-        f"Curve of the effect over {text.words(curve.signal)}: between {text.with_unit(text.number(low), curve.force_unit)} and "
-        f"{text.with_unit(text.number(high), curve.force_unit)}."
-    )
-    panel = Panel(
-        x,
-        y,
-        text.axis(curve.signal, curve.unit),
-        text.axis("effect", curve.force_unit),
-        tuple(marks),
-        alt,
-        "tall",
-        zero=True,
-    )
-    what = "The effect's own curve" + (
-        ", with two standard deviations on either side" if curve.spread is not None else ""
-    )
-    return side_by_side([panel], f"{what}: what it adds at {effect.port} over {text.words(curve.signal)}.")
-
-
-def _around(force: np.ndarray) -> tuple[float, float]:
-    """The reach of a curve and as much again on both sides: where its spread is wider, the axis does not follow."""
-    low, high = float(np.nanmin(force)), float(np.nanmax(force))
-    return low - (high - low), high + (high - low)
 
 
 def _profiles(effect: Effect) -> Chart | None:

@@ -1,0 +1,92 @@
+"""The effect's own law over its signal, and over it what the data say in its place."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from greybox_torch.diagnosis.effect import Curve, Effect
+from greybox_torch.report import text
+from greybox_torch.report.chart.marks import Mark, band, line, points
+from greybox_torch.report.chart.panel import Chart, Key, Panel, side_by_side
+from greybox_torch.report.chart.scale import Scale, linear
+
+LAW, DATA, BAND = "effect", "data", "free"
+
+
+def law_chart(effect: Effect, curve: Curve) -> Chart:
+    """The curve of an effect, with the free curve and the points behind it where there are any."""
+    x = linear(curve.values, room=0.0)
+    y = _height(curve)
+    panel = Panel(
+        x,
+        y,
+        text.axis(curve.signal, curve.unit),
+        text.axis("effect", curve.force_unit),
+        tuple(_marks(effect, curve, x, y)),
+        _alt(curve),
+        "tall",
+        zero=True,
+    )
+    return side_by_side([panel], _caption(effect, curve), _legend(effect, curve))
+
+
+def _marks(effect: Effect, curve: Curve, x: Scale, y: Scale) -> list[Mark]:
+    free, law = curve.free, line(x, y, curve.values, curve.force, LAW)
+    if free is None:
+        return [law] if curve.spread is None else [_band(x, y, curve.values, curve.force, curve.spread, LAW), law]
+    dots = points(x, y, free.at, free.asked, DATA)
+    if effect.mechanism == "unknown":
+        return [_band(x, y, curve.values, curve.force, free.spread, LAW), law, dots]
+    around = _band(x, y, curve.values, free.force, free.spread, BAND)
+    return [around, line(x, y, curve.values, free.force, BAND), law, dots]
+
+
+def _band(x: Scale, y: Scale, values: np.ndarray, force: np.ndarray, spread: np.ndarray, series: str) -> Mark:
+    return band(x, y, values, force - 2.0 * spread, force + 2.0 * spread, series)
+
+
+def _height(curve: Curve) -> Scale:
+    """An axis over the law and what the data say; where that is not known well, the axis does not follow."""
+    low, high = float(np.nanmin(curve.force)), float(np.nanmax(curve.force))
+    reach = (high - low) or abs(high)
+    ends = low - reach, high + reach
+    pieces = [curve.force, np.zeros(1)]
+    if curve.free is not None:
+        free = curve.free
+        pieces += [np.clip(free.force + k * free.spread, *ends) for k in (-2.0, 2.0)]
+        if len(free.asked):
+            pieces.append(np.clip(np.quantile(free.asked, [0.02, 0.98]), *ends))
+    elif curve.spread is not None:
+        pieces += [np.clip(curve.force + 2.0 * k * np.nan_to_num(curve.spread), *ends) for k in (-1.0, 1.0)]
+    return linear(*pieces)
+
+
+def _legend(effect: Effect, curve: Curve) -> tuple[Key, ...]:
+    if curve.free is None:
+        return ()
+    dots = Key(DATA, f"what single stretches of {curve.free.samples} samples ask for")
+    if effect.mechanism == "unknown":
+        return Key("law", "the curve, with two standard deviations on either side"), dots
+    return Key("law", "the law"), Key(BAND, "what the data say in its place, ± two standard deviations"), dots
+
+
+def _caption(effect: Effect, curve: Curve) -> str:
+    over = f"what it adds at {effect.port} over {text.words(curve.signal)}"
+    if curve.free is None:
+        spread = "" if curve.spread is None else ", with two standard deviations on either side"
+        return f"The effect's own curve{spread}: {over}."
+    data = (
+        "Dots are partial residuals: the law plus the constant force that the errors of one stretch of the estimation records ask for, all "
+        "other parameters as fitted."
+    )
+    if effect.mechanism == "unknown":
+        return f"The effect's own curve: {over}. {data}"
+    return f"The law and what the data say without it: {over}. The free curve is drawn where the records come. {data}"
+
+
+def _alt(curve: Curve) -> str:
+    low, high = float(np.nanmin(curve.force)), float(np.nanmax(curve.force))
+    return (
+        f"Curve of the effect over {text.words(curve.signal)}: between {text.with_unit(text.number(low), curve.force_unit)} and "
+        f"{text.with_unit(text.number(high), curve.force_unit)}{'' if curve.free is None else ', with what the data say'}."
+    )

@@ -1,0 +1,67 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from greybox_torch.diagnosis.effect import Effect, FreeCurve
+from greybox_torch.report.chart.panel import Chart
+from greybox_torch.report.sections.law import law_chart
+from tests.report.conftest import BACKLASH, UNKNOWN
+
+
+def over_data(effect: Effect) -> Effect:
+    """With a free curve at ten above the law that is known in the middle, and three points, one of them far away."""
+    assert effect.curve is not None
+    known = np.where(np.abs(effect.curve.values) < 0.05, effect.curve.force + 10.0, np.nan)
+    free = FreeCurve(known, 0.1 + 0.0 * known, np.array([-0.05, 0.0, 0.05]), np.array([0.1, 0.0, 1e6]), 62)
+    return replace(effect, curve=replace(effect.curve, free=free))
+
+
+def drawn(effect: Effect) -> Chart:
+    assert effect.curve is not None
+    return law_chart(effect, effect.curve)
+
+
+def test_a_law_alone() -> None:
+    assert BACKLASH.curve is not None
+    chart = drawn(replace(BACKLASH, curve=replace(BACKLASH.curve, spread=None)))
+    assert [m.kind for m in chart.columns[0][0].marks] == ["line"]
+    assert chart.legend == () and "data" not in chart.caption
+
+
+def test_a_law_over_the_data() -> None:
+    chart = drawn(over_data(BACKLASH))
+    (panel,) = chart.columns[0]
+    assert [(m.kind, m.series) for m in panel.marks] == [
+        ("area", "free"),
+        ("line", "free"),
+        ("line", "effect"),
+        ("points", "data"),
+    ]
+    assert "what the data say without it" in chart.caption and "partial residuals" in chart.caption
+    assert [key.series for key in chart.legend] == ["law", "free", "data"]
+    assert chart.legend[2].label == "what single stretches of 62 samples ask for"
+
+
+def test_the_axis_does_not_follow_what_is_not_known() -> None:
+    """The law reaches from −0.125 to 0.125: what lies farther off than that again is cut."""
+    scale = drawn(over_data(BACKLASH)).columns[0][0].y
+    assert -0.45 < scale.low < -0.125 and 0.125 < scale.high < 0.45
+
+
+def test_an_unknown_curve_has_its_band_and_points() -> None:
+    chart = drawn(over_data(UNKNOWN))
+    assert [(m.kind, m.series) for m in chart.columns[0][0].marks] == [
+        ("area", "effect"),
+        ("line", "effect"),
+        ("points", "data"),
+    ]
+    assert chart.legend[0].label == "the curve, with two standard deviations on either side"
+
+
+def test_without_any_point() -> None:
+    effect = over_data(BACKLASH)
+    assert effect.curve is not None and effect.curve.free is not None
+    none = replace(effect.curve.free, at=np.zeros(0), asked=np.zeros(0))
+    assert drawn(replace(effect, curve=replace(effect.curve, free=none))).columns[0][0].marks[-1].path == ""
