@@ -20,10 +20,12 @@ from tests.documentation.pages import ROOT, blocks, pages_with
 Make = Callable[..., Path]
 SMALLEST = tomllib.loads(blocks("docs/howto/data.md", "toml")[0][1])
 OWN_TESTS = {"docs/howto/extending.md", "docs/tutorial/first_diagnosis.md"}
-"""Pages whose code is run by tests/extending and test_commands.py."""
+"""Pages whose code is run by tests/extending and test_commands.py, as that of the recipes by test_recipes.py."""
 
 
-@pytest.mark.parametrize("page", [page for page in pages_with("python") if page not in OWN_TESTS])
+@pytest.mark.parametrize(
+    "page", [page for page in pages_with("python") if page not in OWN_TESTS and "/recipes/" not in page]
+)
 def test_python(page: str, motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     """The blocks of a page one after the other, in a folder with the motor's card, the demo and the trained models."""
     folder = motor_folder()
