@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from pathlib import Path
 from typing import Any
@@ -40,7 +39,7 @@ def recipe(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.M
             pytest.skip(f"the real recordings (../shared/recordings/{RECORDED[request.param]}) are not here")
         for file in folder.iterdir():
             if file.suffix in (".csv", ".mat", ".npz"):
-                os.symlink(file, file.name)
+                Path(file.name).symlink_to(file)
     else:
         exec(compile(files["record.py"], "record.py", "exec"), {})
     return request.param
