@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from greybox_torch.errors import UserError
+from greybox_torch.errors import UserError, quoted
 from greybox_torch.reading import read_bytes
 
 SCHEMA = "greybox-checkpoint/1"
@@ -55,7 +55,7 @@ def read_checkpoint_card(path: Path) -> CheckpointCard:
     if schema != SCHEMA:
         newer = re.fullmatch(r"greybox-checkpoint/([2-9]|[1-9]\d+)", str(schema)) is not None
         advice = "; a newer greybox_torch has written it: update to read it" if newer else ""
-        raise UserError(f'checkpoint {path}: "schema" is {_quoted(schema)}, expected "{SCHEMA}"{advice}')
+        raise UserError(f'checkpoint {path}: "schema" is {quoted(schema)}, expected "{SCHEMA}"{advice}')
     try:
         card = CheckpointCard.model_validate(content)
     except ValidationError as error:
@@ -77,7 +77,7 @@ def _problem(details: Any) -> str:
     expected = _EXPECTED.get(details["type"], details["msg"])
     if details["type"] == "missing":
         return f'"{place}" is missing; expected {expected}'
-    return f'"{place}" is {_quoted(details["input"])}, expected {expected}'
+    return f'"{place}" is {quoted(details["input"])}, expected {expected}'
 
 
 def _check_names(path: Path, card: CheckpointCard) -> None:
@@ -96,11 +96,3 @@ def _check_names(path: Path, card: CheckpointCard) -> None:
 
 def _listed(names: Iterable[str]) -> str:
     return ", ".join(names)
-
-
-def _quoted(value: Any) -> str:
-    try:
-        text = json.dumps(value, default=str, ensure_ascii=False)
-    except (ValueError, RecursionError):  # digits without end, nested without end
-        return "a value too long to show"
-    return text if len(text) <= 60 else text[:59] + "…"

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable
+from typing import Any
 
 
 class GreyboxError(Exception):
@@ -60,3 +62,12 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     by_lower_case = {candidate.lower(): candidate for candidate in known}
     close = get_close_matches(name.lower(), by_lower_case, n=1)
     return f' (did you mean "{by_lower_case[close[0]]}"?)' if close else ""
+
+
+def quoted(value: Any) -> str:
+    """A value of a file as a message shows it: as JSON, cut to 60 characters."""
+    try:
+        text = json.dumps(value, default=str, ensure_ascii=False)
+    except (ValueError, RecursionError):  # digits without end, nested without end
+        return "a value too long to show"
+    return text if len(text) <= 60 else text[:59] + "…"

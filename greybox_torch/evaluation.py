@@ -42,7 +42,7 @@ class Evaluation:
     @property
     def values(self) -> dict[str, float]:
         """The parameters' values by name, those of effects among them, in their units."""
-        return dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
+        return self.problem.values_by_name
 
     @property
     def initial(self) -> dict[str, dict[str, float]]:

@@ -9,7 +9,7 @@ from typing import Any
 
 from experiments.ablation.black_box import train_black_box
 from experiments.ablation.diagnosis import Diagnosed
-from experiments.ablation.measure import Fits, drift, fits_of, timed, values_of
+from experiments.ablation.measure import Fits, drift, fits_of, timed
 from experiments.ablation.networks import NetworkChoice, judged
 from experiments.ablation.results import Case, Entry
 from experiments.ablation.series import Scaling
@@ -93,7 +93,7 @@ class Ladder:
 
     def _published_entry(self) -> Entry:
         start = make_problem(self.data, self.model, self.data.recordings)
-        values = values_of(start)
+        values = start.values_by_name
         fits = fits_of(self.data, self.model, self.model, values, self._physics[0].result.substeps)
         return self._entry("published", None, fits, values, {"seconds": 0.0, "processor_seconds": 0.0})
 
@@ -139,14 +139,14 @@ class Ladder:
     def _of_problem(
         self, name: str, seed: int | None, model: GreyBoxModel, found: Physics, took: Mapping[str, float]
     ) -> Entry:
-        values = values_of(found.result.problem)
+        values = found.result.problem.values_by_name
         fits = fits_of(self.data, self.model, model, values, found.result.substeps)
         return self._entry(name, seed, fits, values, took, mse=found.result.mse)
 
     def _of_trained(self, name: str, seed: int, model: GreyBoxModel, physics: Physics) -> Entry:
         choice = self.network
         found, took = timed(partial(self._trained, choice, model, physics, seed))
-        values = values_of(found.result.problem)
+        values = found.result.problem.values_by_name
         augmented = found.result.problem.model
         assert isinstance(augmented, AugmentedModel)
         fits = fits_of(self.data, self.model, augmented, values, found.result.substeps)

@@ -44,11 +44,6 @@ def fits_of(data: DataSet, base: GreyBoxModel, model: GreyBoxModel, values: Mapp
     )
 
 
-def values_of(problem: Problem) -> dict[str, float]:
-    """Parameter values by name."""
-    return dict(zip(problem.names, map(float, problem.values), strict=True))
-
-
 def drift(physics: Problem, values: Mapping[str, float]) -> dict[str, float]:
     """Relative change of every free physical parameter against the re-estimated ``physics``; those that are zero there left out."""
     pairs = zip(physics.names, map(float, physics.values), physics.free, strict=True)

@@ -76,7 +76,7 @@ def arm_friction(p: Mapping[str, float], speed: np.ndarray) -> np.ndarray:
 
 def learned_friction(found: Trained, speed: np.ndarray) -> np.ndarray:
     """The estimated friction and the network's force, N m."""
-    values = dict(zip(found.result.problem.names, map(float, found.result.problem.values), strict=True))
+    values = found.result.problem.values_by_name
     return arm_friction(values, speed) + found.force(speed=speed)
 
 

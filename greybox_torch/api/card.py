@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.api.result import Result
+from greybox_torch.api.drafted_file import DraftedFile
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.drafting.card import CardDraft, draft_card
 from greybox_torch.errors import ArgumentError, UserError
-from greybox_torch.files import absolute, write_new
+from greybox_torch.files import absolute
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
 
@@ -29,7 +29,7 @@ _COLUMNS = ["channel", "unit", "column", "remark"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CardResult(Result):
+class CardResult(DraftedFile):
     """``text`` is the card, which belongs to ``path``; ``open`` says what is left to fill in."""
 
     draft: CardDraft
@@ -78,19 +78,6 @@ class CardResult(Result):
         print_table(console, _COLUMNS, self._table())
         for line in self.open:
             console.print(Text(f"To be filled in: {line}", style="yellow"), soft_wrap=True)
-
-    def files(self, folder: Path) -> dict[Path, str | bytes]:
-        return {folder / self.path.name: self.text}
-
-    def save(self, folder: str | PathLike[str] | None = None) -> tuple[Path, ...]:
-        """Write the card to its path, or into another folder, where the recordings have to lie alike.
-
-        Raises:
-            UserError: there is a file of that name already, or it cannot be written.
-        """
-        path = self.path if folder is None else Path(folder) / self.path.name
-        write_new(path, self.text)
-        return (path,)
 
     def plot(self) -> Figure:
         """Every channel that was found, over time (over samples where no time was found), as the files hold it."""

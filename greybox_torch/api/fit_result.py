@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,11 +12,11 @@ from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.api.estimated import EstimatedParameter, EstimatedStart, estimated_parameters, estimated_starts
+from greybox_torch.api.estimated_model import EstimatedModel
 from greybox_torch.api.fit_json import estimation_json, identifiability_json, profile_json, status
 from greybox_torch.api.fit_summary import parameter_table, print_estimate, warnings
 from greybox_torch.api.free_runs import plot_simulated
-from greybox_torch.api.result import Result
-from greybox_torch.api.scores import print_scores, score_rows, score_table, scores_side_by_side
+from greybox_torch.api.scores import print_scores, score_table, scores_side_by_side
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Comparison
@@ -38,7 +38,7 @@ RESULT, MODEL = "fit.json", "model"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FitResult(Result):
+class FitResult(EstimatedModel):
     """An estimate of the free parameters and start states of a model.
 
     ``estimation`` says how it was come by; ``comparisons`` are the free runs on all experiments with the values before ("start") and after
@@ -71,16 +71,6 @@ class FitResult(Result):
         """Start states by experiment and state, of the experiments that were estimated on."""
         names = self.estimation.problem.records.names
         return {name: estimated_starts(self.estimation, e) for e, name in enumerate(names)}
-
-    @property
-    def parameter_rows(self) -> list[dict[str, Any]]:
-        """A row for every parameter, with its name."""
-        return [{"name": name, **asdict(entry)} for name, entry in self.parameters.items()]
-
-    @property
-    def scores(self) -> list[dict[str, Any]]:
-        """A row for every output of every experiment, before and after: fit in %, root mean square error in the output's unit."""
-        return score_rows(self.data, self._scores)
 
     @property
     def status(self) -> str:
@@ -133,10 +123,6 @@ class FitResult(Result):
     @property
     def _title(self) -> str:
         return f"{self.data.name}: {self.estimation.problem.model.title}"
-
-    @property
-    def _scores(self) -> dict[str, Any]:
-        return {name: own.scores for name, own in self.comparisons.items()}
 
     def _checkpoint(self) -> Checkpoint:
         given = self.estimation.problem.model

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.data import DataSet, load_dataset
-from greybox_torch.diagnosis.one_of import spoken
+from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.errors import UserError
 from greybox_torch.files import json_text
 from greybox_torch.mechanisms.stored import stored_effects
@@ -53,9 +53,7 @@ def hypotheses_of(result: DiagnosisResult) -> Hypotheses:
     found: dict[str, list[Kept]] = {}
     for r in result.found.rivals:
         held = copy_holding(r.model, r.values, starts_free=True)
-        found.setdefault(r.finding, []).append(
-            Kept(f"{spoken(r.mechanism)} at {r.port}", r.probability, held, r.initial)
-        )
+        found.setdefault(r.finding, []).append(Kept(spoken_at(r.mechanism, r.port), r.probability, held, r.initial))
     recommended = Kept("the recommended model", 1.0, result.model, result.initial)
     return Hypotheses(
         result.data, model_reference(result.given), recommended, tuple(tuple(group) for group in found.values())
@@ -142,7 +140,7 @@ def _content(path: Path) -> dict[str, Any]:
 def _kept(folder: Path, entry: Mapping[str, Any], own: GreyBoxModel, data: DataSet) -> Kept:
     model, _ = load_beside(folder / str(entry["checkpoint"]), own, data)
     return Kept(
-        f"{spoken(str(entry['mechanism']))} at {entry['port']}", float(entry["probability"]), model, entry["initial"]
+        spoken_at(str(entry["mechanism"]), str(entry["port"])), float(entry["probability"]), model, entry["initial"]
     )
 
 

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Any
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.api.result import Result
+from greybox_torch.api.drafted_file import DraftedFile
 from greybox_torch.drafting.pattern import PATTERNS, class_name, model_text
 from greybox_torch.errors import ArgumentError, Kind
-from greybox_torch.files import write_new
 from greybox_torch.report import notebook
 
 if TYPE_CHECKING:
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class NewModel(Result):
+class NewModel(DraftedFile):
     """``text`` is the file, which belongs to ``path``; ``name`` the class in it, after the pattern ``like``."""
 
     name: str
@@ -42,19 +41,6 @@ class NewModel(Result):
 
     def show(self, console: Console) -> None:
         console.print(Text(f"{self.reference}: {PATTERNS[self.like]}"), soft_wrap=True)
-
-    def files(self, folder: Path) -> dict[Path, str | bytes]:
-        return {folder / self.path.name: self.text}
-
-    def save(self, folder: str | PathLike[str] | None = None) -> tuple[Path, ...]:
-        """Write the file to its path, or into another folder.
-
-        Raises:
-            UserError: there is a file of that name already, or it cannot be written.
-        """
-        path = self.path if folder is None else Path(folder) / self.path.name
-        write_new(path, self.text)
-        return (path,)
 
     def plot(self) -> Figure:
         """Which part of the model moves which output."""

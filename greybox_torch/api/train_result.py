@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,9 +12,9 @@ import numpy as np
 from rich.console import Console
 
 from greybox_torch.api.estimated import EstimatedParameter, estimated_parameters
+from greybox_torch.api.estimated_model import EstimatedModel
 from greybox_torch.api.free_runs import plot_simulated
-from greybox_torch.api.result import Result
-from greybox_torch.api.scores import score_rows, score_table, scores_side_by_side
+from greybox_torch.api.scores import score_table, scores_side_by_side
 from greybox_torch.api.train_json import training_json
 from greybox_torch.api.train_scores import START
 from greybox_torch.api.train_summary import parameter_table, print_training, training_sentence
@@ -39,7 +39,7 @@ RESULT, MODEL, NAMED_MODEL, FIGURE = "train.json", "model", "named", "learned.pn
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TrainingResult(Result):
+class TrainingResult(EstimatedModel):
     """A model with a trained network at one of its ports.
 
     ``trained`` says how it was come by, ``explanation`` what the network stands for (None where that was not asked for). ``comparisons``
@@ -68,16 +68,6 @@ class TrainingResult(Result):
     def parameters(self) -> dict[str, EstimatedParameter]:
         """By name, the network's weights among them: value, standard deviation, unit, bounds, and whether it was fixed."""
         return estimated_parameters(self.trained.result)
-
-    @property
-    def parameter_rows(self) -> list[dict[str, Any]]:
-        """A row for every parameter, with its name."""
-        return [{"name": name, **asdict(entry)} for name, entry in self.parameters.items()]
-
-    @property
-    def scores(self) -> list[dict[str, Any]]:
-        """A row for every output of every experiment by each model: fit in %, root mean square error in the output's unit."""
-        return score_rows(self.data, self._scores)
 
     @property
     def sentence(self) -> str:
@@ -146,13 +136,9 @@ class TrainingResult(Result):
             notebook.picture(self.plot(), "outputs over time, measured, and simulated by each model"),
         )
 
-    @property
-    def _scores(self) -> dict[str, Any]:
-        return {name: own.scores for name, own in self.comparisons.items()}
-
     def _copy(self, found: Estimation) -> GreyBoxModel:
         problem = found.problem
-        values = dict(zip(problem.names, map(float, problem.values), strict=True))
+        values = problem.values_by_name
         return copy_holding(problem.model, values, declared=with_card(self.data, problem.model.plain), starts_free=True)
 
     def _checkpoint(self, found: Estimation) -> Checkpoint:
@@ -160,7 +146,7 @@ class TrainingResult(Result):
         return Checkpoint(
             model=model_reference(self.given),
             title=self.given.title,
-            values=dict(zip(problem.names, np.asarray(problem.values, dtype=float).tolist(), strict=True)),
+            values=problem.values_by_name,
             units={p.name: p.unit for p in problem.model.declared_parameters},
             effects=stored_effects(problem.model),
             free_starts=True,

@@ -11,7 +11,7 @@ from rich.text import Text
 from greybox_torch.api.scores import print_scores
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.effect import Effect
-from greybox_torch.diagnosis.one_of import Alternative
+from greybox_torch.diagnosis.one_of import Alternative, spoken_at
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.tables import print_table
@@ -71,7 +71,7 @@ def _deviation(value: float | None) -> str | float:
 
 
 def _notes(effect: Effect) -> list[str]:
-    head = f"{effect.mechanism} at {effect.port}"
+    head = spoken_at(effect.mechanism, effect.port)
     lines = [f"{head}: {effect.where}"] if effect.where else []
     advice = f"; to tell them apart: {effect.separating_experiment}" if effect.separating_experiment else ""
     together = () if effect.one_of is None else effect.one_of.members
@@ -84,4 +84,4 @@ def _notes(effect: Effect) -> list[str]:
 
 
 def _listed(hypotheses: Sequence[Alternative]) -> str:
-    return ", ".join(f"{h.mechanism} at {h.port} ({h.probability:.2f})" for h in hypotheses)
+    return ", ".join(f"{spoken_at(h.mechanism, h.port)} ({h.probability:.2f})" for h in hypotheses)

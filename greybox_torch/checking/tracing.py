@@ -11,7 +11,7 @@ import torch
 from greybox_torch.codegen.expression import Graph, Node
 from greybox_torch.codegen.trace import nodes_of, symbols
 from greybox_torch.model import GreyBoxModel, Signals
-from greybox_torch.model.ports import Signal
+from greybox_torch.model.ports import value_of
 
 
 class LinedGraph(Graph):
@@ -69,7 +69,7 @@ def traced(model: GreyBoxModel, file: Path | None) -> Traced:
     with torch.no_grad():
         rates, outputs = model.derivative(x, u, p, port), model.output(x, u, p)
         signals = {
-            (site.name, name): _node(graph, _value(signal, x, u, p))
+            (site.name, name): _node(graph, value_of(signal, x, u, p))
             for site in model.ports
             for name, signal in site.signals.items()
         }
@@ -86,10 +86,6 @@ def _leaves(graph: Graph, kind: str, names: list[str]) -> dict[str, torch.Tensor
         return {}
     vector = symbols(graph, kind, len(names))
     return {name: vector.select(0, i) for i, name in enumerate(names)}
-
-
-def _value(signal: Signal, x: Signals, u: Signals, p: Signals) -> object:
-    return x[signal] if isinstance(signal, str) else signal(x, u, p)
 
 
 def _node(graph: Graph, value: object) -> int:

@@ -14,23 +14,6 @@ from greybox_torch.codegen.expression import ARITHMETIC, BOOLEAN, COMPARISONS, F
 from greybox_torch.codegen.lower import Equations
 from greybox_torch.codegen.template import PROGRAM
 
-_VECTOR_FUNCTIONS = {
-    "tan",
-    "asin",
-    "acos",
-    "atan",
-    "sinh",
-    "cosh",
-    "tanh",
-    "exp",
-    "log",
-    "sin",
-    "cos",
-    "erf",
-    "log1p",
-    "expm1",
-}
-
 
 def emit(equations: Equations, precision: str) -> str:
     """The complete C++ source for ``equations`` in ``"double"`` or ``"float"``."""

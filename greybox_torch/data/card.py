@@ -13,8 +13,8 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, PlainValidator, ValidationError, field_validator, model_validator
 
 from greybox_torch.data.card_channels import ChannelEntry, Entry, ExperimentEntry, Finite, Text, TimeEntry, printable
-from greybox_torch.data.card_errors import describe, quoted
-from greybox_torch.errors import UserError, did_you_mean
+from greybox_torch.data.card_errors import describe
+from greybox_torch.errors import UserError, did_you_mean, quoted
 from greybox_torch.reading import read_toml
 
 TIME = "time"  # in an experiment's `columns`, the key that renames the column of time stamps

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import NoneType
@@ -10,7 +9,7 @@ from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from greybox_torch.errors import UserError, did_you_mean
+from greybox_torch.errors import UserError, did_you_mean, quoted
 
 _Entry = TypeVar("_Entry", bound=BaseModel)
 
@@ -108,15 +107,6 @@ def _without_none(kind: Any) -> Any:
     """Entry for Entry | None."""
     kinds = get_args(kind)
     return next(k for k in kinds if k is not NoneType) if NoneType in kinds else kind
-
-
-def quoted(value: Any) -> str:
-    """A value of the card in a message."""
-    try:
-        text = json.dumps(value, default=str, ensure_ascii=False)
-    except (ValueError, RecursionError):  # digits without end, nested without end
-        return "a value too long to show"
-    return text if len(text) <= 60 else text[:59] + "…"
 
 
 def entries(argument: str, given: Mapping[str, Any] | None, entry: type[_Entry]) -> dict[str, _Entry]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken
+from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken_at
 
 
 @dataclass(frozen=True)
@@ -104,14 +104,14 @@ class Effect:
     def headline(self) -> str:
         """The finding as a headline has it: the statement of what cannot be told apart, or the law and its place."""
         if self.one_of is None:
-            return f"{spoken(self.mechanism)} at {self.port} (probability {self.probability:.2f})"
+            return f"{spoken_at(self.mechanism, self.port)} (probability {self.probability:.2f})"
         return f"{self.one_of.statement} (probability {self.one_of.probability:.2f}, {self.one_of.likeliest})"
 
     @property
     def sentence(self) -> str:
         """What a reader has to know of it where it is no finding."""
         return (
-            f"{spoken(self.mechanism)} at {self.port} accounts for {100 * self.size:.2g} % of the whole mismatch: "
+            f"{spoken_at(self.mechanism, self.port)} accounts for {100 * self.size:.2g} % of the whole mismatch: "
             "too little to be told from what the laws found lack to be exactly the machine's"
         )
 

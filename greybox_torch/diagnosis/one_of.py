@@ -34,7 +34,7 @@ class OneOf:
         """The first member's share, for a reader of the statement."""
         first = self.members[0]
         named = self.statement.startswith(spoken(first.mechanism))
-        return f"{'the first' if named else f'{spoken(first.mechanism)} at {first.port}'} {first.probability:.2f}"
+        return f"{'the first' if named else spoken_at(first.mechanism, first.port)} {first.probability:.2f}"
 
     def as_json(self) -> dict[str, Any]:
         return {
@@ -47,3 +47,8 @@ class OneOf:
 def spoken(mechanism: str) -> str:
     """A mechanism's name as a sentence has it."""
     return "an unknown effect" if mechanism == "unknown" else mechanism.replace("_", " ")
+
+
+def spoken_at(mechanism: str, port: str) -> str:
+    """A mechanism and its place as a sentence has them."""
+    return f"{spoken(mechanism)} at {port}"

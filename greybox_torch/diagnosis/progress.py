@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from greybox_torch.diagnosis.one_of import spoken
+from greybox_torch.diagnosis.one_of import spoken_at
 
 Named = tuple[str, str]
 """A port, and the mechanism there."""
@@ -72,4 +72,4 @@ class Journal:
 
 
 def _listed(effects: Sequence[Named]) -> str:
-    return ", and ".join(f"{spoken(mechanism)} at {port}" for port, mechanism in effects)
+    return ", and ".join(spoken_at(mechanism, port) for port, mechanism in effects)

@@ -49,4 +49,4 @@ class Study:
     @property
     def card(self) -> dict[str, float]:
         """The parameter values that the problem began with, by name."""
-        return dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
+        return self.problem.values_by_name

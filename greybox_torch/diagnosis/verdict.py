@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.diagnosis.effect import Effect
-from greybox_torch.diagnosis.one_of import spoken
+from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
 from greybox_torch.estimate.comparison import Score, fit_rows
 
@@ -42,7 +42,7 @@ class NotTried:
         if self.stages:
             told.append(f"Cut short: {'; '.join(self.stages)}.")
         if self.candidates:
-            named = ", ".join(f"{spoken(mechanism)} at {port}" for port, mechanism in self.candidates)
+            named = ", ".join(spoken_at(mechanism, port) for port, mechanism in self.candidates)
             told.append(f"Not tried any more: {named}.")
         return tuple(told)
 

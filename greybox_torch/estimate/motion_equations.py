@@ -14,8 +14,8 @@ import torch
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.reconstruction import Motion
 from greybox_torch.linear_algebra import solve
-from greybox_torch.mechanisms.local_signals import value_of
 from greybox_torch.model import Body, Port, Signals
+from greybox_torch.model.ports import value_of
 
 STEP = 1e-6
 """Relative step of differences."""
@@ -168,7 +168,7 @@ class MotionEquations:
         return x, Signals("input", {s.name: self.inputs[i] for i, s in enumerate(model.inputs)})
 
     def _with(self, free: np.ndarray) -> Signals:
-        numbers = dict(zip(self.problem.names, self.problem.values, strict=True))
+        numbers = self.problem.values_by_name
         numbers |= dict(zip(self.problem.free_names, free, strict=True))
         return Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in numbers.items()})
 

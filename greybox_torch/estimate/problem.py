@@ -45,6 +45,16 @@ class Problem:
         return tuple(n for n, f in zip(self.names, self.free, strict=True) if f)
 
     @property
+    def values_by_name(self) -> dict[str, float]:
+        """The parameter values by name."""
+        return dict(zip(self.names, map(float, self.values), strict=True))
+
+    @property
+    def parameter_tensors(self) -> Signals:
+        """The parameter values as tensors of no dimension, by name."""
+        return Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in self.values_by_name.items()})
+
+    @property
     def samples(self) -> int:
         """How many measured values there are to compare with, missing ones not counted."""
         return int((~np.isnan(self.records.y)).sum())
@@ -61,9 +71,6 @@ class Problem:
 
     def with_values(self, values: np.ndarray, initial: np.ndarray | None = None) -> Problem:
         return replace(self, values=values, initial=self.initial if initial is None else initial)
-
-    def with_initial_fixed(self) -> Problem:
-        return replace(self, initial_free=np.zeros_like(self.initial_free))
 
     def admissible(self, values: np.ndarray) -> bool:
         """Whether the model's joint constraints hold at ``values`` (n_p,)."""
@@ -125,7 +132,7 @@ def make_problem(
     if model.starts_free:
         problem = all_starts_free(dataset, problem)
     if not problem.admissible(problem.values):
-        broken = ", ".join(model.admissible(_tensors(problem)))
+        broken = ", ".join(model.admissible(problem.parameter_tensors))
         raise UserError(
             f"{dataset.place('[model.parameters]')} break a constraint of {model.title}: these must be positive: {broken}"
         )
@@ -169,11 +176,6 @@ def problem_for(problem: Problem, model: GreyBoxModel, values: Mapping[str, floa
     expected = [problem.expected[own[p.name]] if p.name in own else v for p, v in zip(declared, begun, strict=True)]
     fresh = replace(fresh, values=begun, expected=np.array(expected))
     return replace(fresh, initial=model.begun(fresh.initial, fresh.driving_records, fresh.records.first, fresh.values))
-
-
-def _tensors(problem: Problem) -> Signals:
-    pairs = zip(problem.names, problem.values, strict=True)
-    return Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in pairs})
 
 
 def with_card(dataset: DataSet, model: GreyBoxModel) -> list[Parameter]:

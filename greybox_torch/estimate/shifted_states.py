@@ -28,7 +28,7 @@ def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, poin
         if n_u
         else torch.ones(0, dtype=torch.float64)
     )
-    values = dict(zip(problem.names, problem.values, strict=True))
+    values = problem.values_by_name
     p = Signals(
         "parameter", {q.name: torch.tensor(values[q.name], dtype=torch.float64) for q in model.declared_parameters}
     )

@@ -23,7 +23,7 @@ def surroundings_along(model: GreyBoxModel, problem: Problem, states: np.ndarray
     """Ranges of the signals around every port of ``model``, along states (N, n_x or more) at the samples of the problem's records."""
     x = Signals("state", {s.name: torch.as_tensor(states[:, i]) for i, s in enumerate(model.states)})
     u = Signals("input", {s.name: torch.as_tensor(problem.records.u[i]) for i, s in enumerate(model.inputs)})
-    values = dict(zip(problem.names, problem.values, strict=True))
+    values = problem.values_by_name
     p = Signals(
         "parameter", {q.name: torch.tensor(values[q.name], dtype=torch.float64) for q in model.declared_parameters}
     )

@@ -30,11 +30,6 @@ class Termination(Enum):
     )
     nothing_free = "nothing to estimate: every parameter and initial state is fixed"
 
-    @property
-    def succeeded(self) -> bool:
-        """Whether the result is an optimum."""
-        return self in (Termination.converged, Termination.small_step, Termination.nothing_free)
-
 
 @dataclass(frozen=True)
 class Outcome:

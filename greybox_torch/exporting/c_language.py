@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from greybox_torch.codegen.expression import ARITHMETIC, COMPARISONS
+from greybox_torch.exporting.statements import with_sign
 
 _LOGIC = {"and": "&&", "or": "||"}
 _HELPERS = {
@@ -34,13 +34,9 @@ class C:
         return f"{kind}[{index}]"
 
     def operation(self, name: str, arguments: Sequence[str]) -> str:
-        signs = {**ARITHMETIC, **COMPARISONS, **_LOGIC}
-        if name in signs:
-            return f"{arguments[0]} {signs[name]} {arguments[1]}"
-        if name == "neg":
-            return f"-{arguments[0]}"
-        if name == "not":
-            return f"!{arguments[0]}"
+        written = with_sign(name, arguments, _LOGIC, "!")
+        if written is not None:
+            return written
         if name == "where":
             return f"{arguments[0]} ? {arguments[1]} : {arguments[2]}"
         called = _CALLED.get(name, name)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from greybox_torch.codegen.expression import BOOLEAN, Graph
+from greybox_torch.codegen.expression import ARITHMETIC, BOOLEAN, COMPARISONS, Graph
 
 
 class Language(Protocol):
@@ -22,6 +22,19 @@ class Language(Protocol):
     def as_condition(self, number: str) -> str: ...
 
     def declaration(self, name: str, is_condition: bool, value: str) -> str: ...
+
+
+def with_sign(name: str, arguments: Sequence[str], logic: Mapping[str, str], negation: str) -> str | None:
+    """An operation that is written with a sign between its arguments or before it; None where it is written otherwise.
+
+    Args:
+        logic: the language's signs for "and" and "or"; ``negation`` its sign for "not".
+    """
+    between = {**ARITHMETIC, **COMPARISONS, **logic}
+    if name in between:
+        return f"{arguments[0]} {between[name]} {arguments[1]}"
+    before = {"neg": "-", "not": negation}
+    return f"{before[name]}{arguments[0]}" if name in before else None
 
 
 def statements(graph: Graph, roots: Sequence[int], language: Language) -> tuple[list[str], list[str]]:

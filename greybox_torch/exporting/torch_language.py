@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from greybox_torch.codegen.expression import ARITHMETIC, COMPARISONS
+from greybox_torch.exporting.statements import with_sign
 
 _LOGIC = {"and": "&", "or": "|"}
 _CALLED = {"min": "minimum", "max": "maximum"}
@@ -20,14 +20,8 @@ class Torch:
         return f"{kind}[..., {index}]"
 
     def operation(self, name: str, arguments: Sequence[str]) -> str:
-        signs = {**ARITHMETIC, **COMPARISONS, **_LOGIC}
-        if name in signs:
-            return f"{arguments[0]} {signs[name]} {arguments[1]}"
-        if name == "neg":
-            return f"-{arguments[0]}"
-        if name == "not":
-            return f"~{arguments[0]}"
-        return f"torch.{_CALLED.get(name, name)}({', '.join(arguments)})"
+        called = f"torch.{_CALLED.get(name, name)}({', '.join(arguments)})"
+        return with_sign(name, arguments, _LOGIC, "~") or called
 
     def as_number(self, condition: str) -> str:
         return f"{condition}.to(x.dtype)"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.diagnosis.effect import Effect
-from greybox_torch.diagnosis.one_of import spoken
+from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.fleets.row import Row
@@ -56,7 +56,7 @@ def _answer(verdict: Verdict, leading: Effect | None) -> str:
 def _leading(effect: Effect) -> dict[str, Any]:
     """What the row says of the largest effect. The heights of a learned curve are no parameters of the machine."""
     told: dict[str, Any] = {
-        "effect": effect.one_of.statement if effect.one_of else f"{spoken(effect.mechanism)} at {effect.port}",
+        "effect": effect.one_of.statement if effect.one_of else spoken_at(effect.mechanism, effect.port),
         "port": effect.port,
         "mechanism": effect.mechanism,
         "probability": _finite(effect.one_of.probability if effect.one_of else effect.probability),

@@ -13,11 +13,11 @@ from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.added_declarations import added_inputs, added_parameters, added_states, started_at
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.delayed_input import after, delayed
-from greybox_torch.mechanisms.local_signals import LocalSignals, value_of
+from greybox_torch.mechanisms.local_signals import LocalSignals
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
 from greybox_torch.mechanisms.start_positions import position_trials
 from greybox_torch.model import GreyBoxModel, Signals
-from greybox_torch.model.ports import Actuator, Sensor
+from greybox_torch.model.ports import Actuator, Sensor, value_of
 
 
 class AugmentedModel(GreyBoxModel):

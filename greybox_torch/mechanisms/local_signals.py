@@ -8,7 +8,7 @@ from typing import Any
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Signals
-from greybox_torch.model.ports import Actuator, Port, Sensor, Signal, driving_body
+from greybox_torch.model.ports import Actuator, Port, Sensor, driving_body, value_of
 
 
 class LocalSignals:
@@ -101,11 +101,6 @@ class LocalSignals:
     def _position(self, name: str, x: Signals, u: Signals, p: Signals) -> Any:
         signal = self.body(name).position
         return x[f"{name}.position"] if signal is None else value_of(signal, x, u, p)
-
-
-def value_of(signal: Signal, x: Any, u: Any, p: Any) -> Any:
-    """The value of a port's signal: a state, or a function of states, inputs and parameters."""
-    return x[signal] if isinstance(signal, str) else signal(x, u, p)
 
 
 def _by_prefix(names: Sequence[str], prefixes: Collection[str]) -> dict[str, dict[str, str]]:

@@ -149,14 +149,6 @@ class GreyBoxModel(torch.nn.Module):
             values[parameter.name] = project(self.raw[_key(parameter.name)] * scale, low, high)  # exact at the bounds
         return Signals("parameter", values)
 
-    def project_(self) -> None:
-        """Bring the raw parameters back into their bounds, after an optimiser's step."""
-        with torch.no_grad():
-            for parameter in self.declared_parameters:
-                scale = self._scales[parameter.name]
-                low, high = parameter.bounds
-                self.raw[_key(parameter.name)].clamp_(low / scale, high / scale)
-
     def rates(self, x: torch.Tensor, u: torch.Tensor, p: Any) -> torch.Tensor:
         """The right-hand side on stacked tensors: x (n_x, *batch), u (n_u, *batch) -> (n_x, *batch)."""
         xs, us = self._named(x, u)

@@ -102,6 +102,11 @@ class Sensor:
 Port = Body | Coupling | Balance | Actuator | Sensor
 
 
+def value_of(signal: Signal, x: Any, u: Any, p: Any) -> Any:
+    """The value of a port's signal: a state, or a function of states, inputs and parameters."""
+    return x[signal] if isinstance(signal, str) else signal(x, u, p)
+
+
 def driving_body(ports: Iterable[Port]) -> Body | None:
     """The body whose position kinematic errors are taken to follow, and whose speed changes gains: the first declared one."""
     return next((port for port in ports if isinstance(port, Body)), None)

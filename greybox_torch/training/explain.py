@@ -143,7 +143,7 @@ def _matches(found: Trained, learned: LearnedForce) -> list[Match]:
 def _terms(found: Trained, matches: Sequence[Match], told: Callable[[str], None]) -> tuple[NamedTerm, ...]:
     """The laws that come near the curve, and the kinematic ones of its signals, in the network's place; best first."""
     physics, network = found.physics.problem, found.hybrid.network
-    beside = dict(zip(found.result.problem.names, map(float, found.result.problem.values), strict=True))
+    beside = found.result.problem.values_by_name
     beside = {name: beside[name] for name in physics.names}
     candidates = [(attach(physics.model, network.port, m.law), [m.values], m.share) for m in worth_a_refit(matches)] + [
         (attachment, sizes, None) for attachment, sizes in _kinematic(found)

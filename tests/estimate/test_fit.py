@@ -19,7 +19,7 @@ from tests.estimate.bench_motor import NAN, TRUTH, UNITS, Runaway, noisy, proble
 def test_recovers_the_parameters(motor: GreyBoxModel, experiments: list[Any], data_set: Any) -> None:
     lines: list[tuple[str, int, float]] = []
     found = fit_records(problem_of(data_set(UNITS, experiments), motor), progress=lambda *line: lines.append(line))
-    assert found.termination.succeeded
+    assert found.termination in (Termination.converged, Termination.small_step)
     assert values(found) == pytest.approx(TRUTH, rel=1e-5)
     np.testing.assert_allclose(found.problem.initial[:, 0], [2.0, -1.0], atol=1e-4)
     assert found.mse < 1e-8
@@ -46,7 +46,7 @@ def test_fixed_parameters_stay(motor: GreyBoxModel, experiments: list[Any], data
 def test_bounds_are_kept(motor: GreyBoxModel, experiments: list[Any], data_set: Any) -> None:
     data = data_set(UNITS, experiments, parameters={"J": {"value": 0.04, "lower": 0.03, "upper": 0.05}})
     found = fit_records(problem_of(data, motor))
-    assert found.termination.succeeded
+    assert found.termination in (Termination.converged, Termination.small_step)
     assert values(found)["J"] == 0.03
     free_J = data_set(UNITS, experiments, parameters={"J": {"value": 0.03, "fixed": True}})
     assert values(found)["b"] == pytest.approx(values(fit_records(problem_of(free_J, motor)))["b"], rel=1e-6)

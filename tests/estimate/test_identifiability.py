@@ -237,4 +237,5 @@ def test_sentences_carry_their_detail_before_what_to_try(kind: Termination) -> N
     plain, detailed = Outcome(kind).sentence, Outcome(kind, "J and b").sentence
     assert plain == kind.value
     assert detailed.replace(" (J and b)", "") == plain
-    assert kind.succeeded or "try" in plain
+    optima = (Termination.converged, Termination.small_step, Termination.nothing_free)
+    assert kind in optima or "try" in plain

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -23,5 +24,5 @@ def test_start_states_from_the_first_tenth(motor: GreyBoxModel, motor_speed: Any
     found = estimate_initial(problem, Simulator.of(motor, ()))
     assert found.initial[0, 0] == pytest.approx(3.0, rel=1e-6)
     assert found.values.tolist() == [0.02, 0.1, 0.05]
-    fixed = estimate_initial(problem.with_initial_fixed(), Simulator.of(motor, ()))
+    fixed = estimate_initial(replace(problem, initial_free=np.zeros(1, dtype=bool)), Simulator.of(motor, ()))
     assert fixed.initial[0, 0] == 0.0

@@ -32,7 +32,7 @@ def test_rosenbrock() -> None:
         rosenbrock, np.array([-1.2, 1.0]), -OPEN, OPEN, on_iteration=lambda i, cost, damping: costs.append(cost)
     )
     assert found is not None
-    assert found.termination.succeeded
+    assert found.termination in (Termination.converged, Termination.small_step)
     np.testing.assert_allclose(found.point, [1.0, 1.0], atol=1e-6)
     assert costs == sorted(costs, reverse=True)
     assert found.evaluations >= found.iterations >= len(costs) > 5
@@ -101,7 +101,6 @@ def test_iteration_limit() -> None:
     found = minimise(rosenbrock, np.array([-1.2, 1.0]), -OPEN, OPEN, settings=Settings(iterations=2))
     assert found is not None
     assert found.termination is Termination.iteration_limit
-    assert not found.termination.succeeded
     assert "more iterations" in found.termination.value
 
 

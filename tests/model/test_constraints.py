@@ -99,17 +99,7 @@ def test_learns_from_a_start_at_its_bound() -> None:
             loss = (model.physical().k - wanted) ** 2
             loss.backward()
             optimiser.step()
-            model.project_()
         assert model.values()["k"] == pytest.approx(reached, abs=1e-6)
-
-
-def test_project_brings_raw_values_back() -> None:
-    model = one_parameter(2.0, 1.0, 3.0)
-    with torch.no_grad():
-        model.raw["k"].fill_(100.0)
-    model.project_()
-    assert model.values()["k"] == 3.0
-    assert float(model.raw["k"].detach()) == 1.5
 
 
 def test_fixed_parameters_take_no_gradient() -> None:

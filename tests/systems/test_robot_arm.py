@@ -14,6 +14,7 @@ from greybox_torch.errors import UserError
 from greybox_torch.estimate.comparison import compare
 from greybox_torch.estimate.fit import Estimation, fit_records
 from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate.termination import Termination
 from greybox_torch.model import Body, Coupling, Signals
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.systems import RobotArm, load_model
@@ -123,7 +124,7 @@ def test_published_start_values_simulate_as_published() -> None:
 def test_fit_of_the_published_problem() -> None:
     """Seven parameters and three initial speeds: the independent optimum of the recordings' README."""
     found = _published_fit()
-    assert found.termination.succeeded
+    assert found.termination in (Termination.converged, Termination.small_step)
     assert found.mse <= 9.47
     optimum = {
         "a_m": 0.26631,

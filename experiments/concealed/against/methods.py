@@ -14,7 +14,7 @@ from greybox_torch import NumericalError
 
 
 def _retuned(plain: Plain) -> tuple[Answer, ...]:
-    values = dict(zip(plain.problem.names, map(float, plain.problem.values), strict=True))
+    values = plain.problem.values_by_name
     return (Answer(plain.problem.model, values, None),)
 
 

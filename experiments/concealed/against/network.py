@@ -81,7 +81,7 @@ def network_model(problem: Problem, simulator: Simulator, width: int, *, seed: i
     base, states = problem.model, np.concatenate(visited_states(problem, simulator))
     both = np.concatenate([states, problem.records.u.T], axis=1)
     spread = np.sqrt(np.mean(both**2, axis=0))
-    values = dict(zip(problem.names, problem.values, strict=True))
+    values = problem.values_by_name
     forces = [force_scale(base, place, states, problem.records.u.T, values) for place in ports_of(base)]
     return NetworkModel(base, width, np.where(spread > 0, spread, 1.0), forces, seed=seed)
 

@@ -54,7 +54,7 @@ def neural_residual(plain: Plain, *, widths: Sequence[int] = WIDTHS, seed: int =
     trained = [_trained(plain, width, seed) for width in widths]
     best = min(trained, key=lambda t: t.left)
     notes = {"held_out": {str(t.width): t.left for t in trained}, "width": best.width}
-    values = dict(zip(best.problem.names, map(float, best.problem.values), strict=True))
+    values = best.problem.values_by_name
     return Answer(best.model, values, None, notes)
 
 

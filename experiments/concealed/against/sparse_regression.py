@@ -31,7 +31,7 @@ from experiments.concealed.against.sparse_terms import SparseTerms, columns, ext
 from experiments.concealed.against.terms import terms
 from greybox_torch import NumericalError
 from greybox_torch.diagnosis.hypothesis import Hypothesis, finish, hypothesis, window_lengths
-from greybox_torch.estimate import Problem, problem_for
+from greybox_torch.estimate import problem_for
 from greybox_torch.mechanisms import Attachment, attach
 
 WANDER = (30.0, 1000.0)
@@ -92,11 +92,11 @@ def sparse_regression(plain: Plain) -> tuple[Answer, Answer]:
     }
     least = min((e.left for e in entries), default=np.inf)
     if not least < WORTH * before:
-        nothing = Answer(plain.problem.model, _by_name(plain.problem), (), notes)
+        nothing = Answer(plain.problem.model, plain.problem.values_by_name, (), notes)
         return nothing, nothing
     best = min((e for e in entries if TIED * e.left <= least), key=lambda e: (len(e.sparse.terms), e.left))
     names = [(best.sparse.port, name) for name in best.said]
-    as_regressed = _by_name(problem_for(plain.problem, best.fitted.model, {}))
+    as_regressed = problem_for(plain.problem, best.fitted.model, {}).values_by_name
     return (
         Answer(best.fitted.model, as_regressed, names, notes),
         Answer(best.fitted.model, _on_records(plain, best), names, notes),
@@ -182,7 +182,3 @@ def _on_records(plain: Plain, entry: Entry) -> dict[str, float]:
 def split(plain: Plain) -> int:
     """The sample of the records at which the last part of the estimation experiments begins."""
     return int((1.0 - CHOSEN_ON) * plain.problem.records.u.shape[1])
-
-
-def _by_name(problem: Problem) -> dict[str, float]:
-    return dict(zip(problem.names, map(float, problem.values), strict=True))

@@ -8,6 +8,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
@@ -28,7 +29,7 @@ def said_of_windows(
         return ()
     gone = [e for e in before.effects if e.prefix in gains and e.prefix not in after.prefixes]
     return tuple(
-        f"{e.mechanism.name.replace('_', ' ')} at {e.port} removes {100 * gains[e.prefix].share:.3g} % of the held-out squared error over "
+        f"{spoken_at(e.mechanism.name, e.port)} removes {100 * gains[e.prefix].share:.3g} % of the held-out squared error over "
         "windows, and was taken back because free runs of the validation experiments come out worse with it. Those without it are lost, "
         "too: no free run follows this machine for long, so that the windows say more."
         for e in gone

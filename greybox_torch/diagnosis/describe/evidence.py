@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
+from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -82,7 +83,7 @@ def ceiling_sentence(effect: Effect) -> str:
     """How near a named effect comes to what any law of its kind could explain."""
     share = 100 * (effect.ceiling or 0.0)
     return (
-        f"{effect.mechanism.replace('_', ' ')} at {effect.port} reaches {share:.0f} % of the ceiling: the gain, in the logarithm "
+        f"{spoken_at(effect.mechanism, effect.port)} reaches {share:.0f} % of the ceiling: the gain, in the logarithm "
         "of the mean squared error, of the best free curve that was fitted in its place."
     )
 
@@ -137,4 +138,4 @@ def _noise(study: Study, state: SearchState) -> str:
 
 
 def _name(attachment: Attachment) -> str:
-    return f"{attachment.mechanism.name.replace('_', ' ')} at {attachment.port}"
+    return spoken_at(attachment.mechanism.name, attachment.port)

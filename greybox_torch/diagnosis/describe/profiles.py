@@ -38,14 +38,8 @@ def local_signals(
     x = Signals("state", {s.name: torch.as_tensor(states[:, i]) for i, s in enumerate(model.states)})
     records = problem.driving_records
     u = Signals("input", {s.name: torch.as_tensor(records.u[i]) for i, s in enumerate(model.inputs)})
-    local = model.local_signals(attachment, x, u, parameters_of(problem))
+    local = model.local_signals(attachment, x, u, problem.parameter_tensors)
     return {n: np.broadcast_to(np.asarray(v, dtype=float), states.shape[:1]) for n, v in local.items()}
-
-
-def parameters_of(problem: Problem) -> Signals:
-    """The parameter values of a problem as tensors by name."""
-    pairs = zip(problem.names, problem.values, strict=True)
-    return Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in pairs})
 
 
 def profile(name: str, unit: str, values: np.ndarray, energy: np.ndarray) -> Profile:
@@ -78,7 +72,7 @@ def law_curve(model: AugmentedModel, attachment: Attachment, around: Surrounding
     if "delayed" in attachment.mechanism.needs or attachment.mechanism.links:
         return None
     held = {n: torch.full_like(grid, around.ranges[n].rms) for n in around.ranges if n != name}
-    force = model.curve(attachment, {**held, name: grid}, parameters_of(problem))
+    force = model.curve(attachment, {**held, name: grid}, problem.parameter_tensors)
     unit = around.units.get("deflection", "") if attachment.mechanism.kinematic else around.force_unit
     values = np.broadcast_to(np.asarray(force, dtype=float), (POINTS,))
     return Curve(name, around.units.get(name, ""), grid.numpy(), values, unit)

@@ -16,7 +16,6 @@ import numpy as np
 import torch
 from scipy.stats import norm
 
-from greybox_torch.diagnosis.describe.profiles import parameters_of
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.verdict import Trace
 from greybox_torch.estimate.problem import Problem
@@ -100,7 +99,7 @@ def _acts_at_once(problem: Problem) -> bool:
     """Whether an output can answer to the input of the same sample: by the hold, or by the model's own output equation."""
     u = torch.as_tensor(problem.records.u)
     x = torch.as_tensor(problem.initial[0])[:, None].expand(-1, u.shape[1])
-    y = problem.model.measured(x, u, parameters_of(problem))
+    y = problem.model.measured(x, u, problem.parameter_tensors)
     return problem.records.hold != "zoh" or bool((y != y[:, :1]).any())
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from greybox_torch.diagnosis.one_of import spoken
+from greybox_torch.diagnosis.one_of import spoken, spoken_at
 
 TIME_SHIFT = "a time shift"
 """The nature of delays and lags, which have a statement of their own."""
@@ -41,7 +41,7 @@ def statement(members: Sequence[Member]) -> str:
         return f"{natures.pop()}{f' of about {size}' if size else ''} at {_either(m.port for m in members)}"
     if len({m.port for m in members}) == 1:
         return f"{_either(spoken(m.mechanism) for m in members)} at {members[0].port}"
-    return ", or ".join(dict.fromkeys(f"{spoken(m.mechanism)} at {m.port}" for m in members))
+    return ", or ".join(dict.fromkeys(spoken_at(m.mechanism, m.port) for m in members))
 
 
 def common_size(members: Sequence[Member]) -> str:

@@ -39,7 +39,7 @@ class Final:
 
     def values(self) -> dict[str, float]:
         """Parameter values by name."""
-        return dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
+        return self.problem.values_by_name
 
     def deviations(self) -> dict[str, float]:
         """Standard deviation of every free parameter: the larger of the plain and the sandwich one."""

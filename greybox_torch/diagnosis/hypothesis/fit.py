@@ -46,7 +46,7 @@ class Hypothesis:
 
     def values(self) -> dict[str, float]:
         """Parameter values by name, from the longest windows."""
-        return dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
+        return self.problem.values_by_name
 
     @property
     def problem(self) -> Problem:

@@ -34,10 +34,6 @@ a damper whose oil is torn along.
 """
 
 
-PERIODIC = (TorqueRipple, PositionDependentFriction, TransmissionError)
-"""Mechanisms whose order has to be found in the data first."""
-
-
 def candidates(
     model: GreyBoxModel,
     shifts: Mapping[str, str],

@@ -21,7 +21,7 @@ from greybox_torch.diagnosis.screen.position_spectrum import orders_over_positio
 from greybox_torch.diagnosis.screen.regression import Regression, regressions, with_law
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, best_of_each, identity_of, suggested
-from greybox_torch.diagnosis.screen.views import Views, values_of, views_of
+from greybox_torch.diagnosis.screen.views import Views, views_of
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.equation_error import EquationError
 from greybox_torch.estimate.motion_equations import MotionEquations
@@ -110,9 +110,9 @@ def _refined(
     fitted = EquationError(equations, view.finest, view.coarser, view.inverse, view.scales).fitted()
     if fitted is None:
         return None
-    found = values_of(fitted)
+    found = fitted.problem.values_by_name
     own = {n: v for n, v in found.items() if n.startswith(f"{score.attachment.prefix}.")}
-    before = dict(zip(current.names, map(float, current.values), strict=True))
+    before = current.values_by_name
     return Candidate(score.attachment, (found, {**before, **own}), score.explained)
 
 

@@ -79,7 +79,7 @@ def with_law(
     model = AugmentedModel(base, [*accepted, attachment], surroundings, probed=[attachment] if probed else [])
     own = len(base.declared_parameters)
     plain = problem if problem.model is base else _without_effects(problem, base, own)
-    known = dict(zip(problem.names, map(float, problem.values), strict=True))
+    known = problem.values_by_name
     return problem_for(plain, model, {**known, **values})
 
 

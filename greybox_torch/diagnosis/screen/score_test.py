@@ -84,7 +84,7 @@ class Screen:
 
     def values(self, problem: Problem) -> np.ndarray:
         """Parameter vector of the screen's model: the problem's values, the probes' values, zero in the directions."""
-        numbers = dict(zip(problem.names, problem.values, strict=True))
+        numbers = problem.values_by_name
         for group, (_, probe) in zip(self.directions, self.probed, strict=True):
             prefix = group[0].rpartition(".")[0]
             numbers |= {f"{prefix}.{name}": value for name, value in probe.values.items()}

@@ -86,7 +86,7 @@ def _followed(
     surroundings, card = study.surroundings, study.card
     found: dict[tuple, Candidate] = {}
     for at_length, fit in zip(screened, fits, strict=True):
-        fitted = dict(zip(fit.problem.names, map(float, fit.problem.values), strict=True))
+        fitted = fit.problem.values_by_name
         for score in choose(best_of_each(at_length, surroundings)):
             if score.explained < study.settings.least_screen_share:
                 continue

@@ -44,12 +44,7 @@ class Views:
     def starts(self) -> list[dict[str, float]]:
         """Parameter values by name, of either form over the longest stretches, where noise counts least."""
         last = [views[-1] for inverse in (False, True) if (views := self.of_form(inverse))]
-        return [values_of(view) for view in last]
-
-
-def values_of(view: EquationError) -> dict[str, float]:
-    """The parameters of a view, by name."""
-    return dict(zip(view.problem.names, map(float, view.problem.values), strict=True))
+        return [view.problem.values_by_name for view in last]
 
 
 def views_of(problem: Problem, motion: Motion | str | None = None) -> Views | str:
