@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 import torch
 
-from greybox_torch.diagnosis.describe.profiles import law_curve, parameters_of
+from greybox_torch.diagnosis.describe.profiles import law_curve
 from greybox_torch.diagnosis.effect import Curve, FreeCurve
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.screen.candidates import FLEXIBLE
@@ -26,10 +26,10 @@ from greybox_torch.estimate.window_fit import WindowFit, states_along
 from greybox_torch.linear_algebra import eigh
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.local_signals import value_of
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Signals
+from greybox_torch.model.ports import value_of
 
 KNOTS = 14
 """Of the free curve."""
@@ -63,8 +63,8 @@ def over_data(study: Study, fitted: Hypothesis, attachment: Attachment, final: P
         return drawn
     seen = fitted_to.values + (fitted_to.force if attachment.mechanism.kinematic else 0.0)
     if attachment.mechanism.kinematic:
-        drawn = _as_force(model, attachment, around, drawn, parameters_of(final))
-        fitted_to = _as_force(model, attachment, around, fitted_to, parameters_of(fitted.fits[0].problem))
+        drawn = _as_force(model, attachment, around, drawn, final.parameter_tensors)
+        fitted_to = _as_force(model, attachment, around, fitted_to, fitted.fits[0].problem.parameter_tensors)
     free = _free_curve(study, fitted, attachment, signal, fitted_to, seen)
     return replace(drawn, free=free)
 
@@ -161,7 +161,7 @@ def _along(fitted: Hypothesis, attachment: Attachment, signal: str) -> np.ndarra
     states, records = states_along(fit, fitted.simulator), fit.problem.driving_records
     x = Signals("state", {s.name: torch.as_tensor(states[:, i]) for i, s in enumerate(model.states)})
     u = Signals("input", {s.name: torch.as_tensor(records.u[i]) for i, s in enumerate(model.inputs)})
-    site, values = model.local.ports[attachment.port], parameters_of(fit.problem)
+    site, values = model.local.ports[attachment.port], fit.problem.parameter_tensors
     if signal in site.signals:
         found = value_of(site.signals[signal], x, u, values)
     else:
