@@ -51,11 +51,12 @@ def source_of(files: Sequence[Path], join: str | None, columns: Sequence[str], t
     """
     if len(files) == 1:
         table = read(files[0], tuple(columns))
-        return Source((table,), _same_length(table))
+        return Source((table,), _same_length(table), table.notes)
     if join == "concatenate":
         tables = tuple(read(file, tuple(columns)) for file in files)
         held = [_same_length(table) for table in tables]
-        return Source(tables, {column: np.concatenate([one[column] for one in held]) for column in columns})
+        joined = {column: np.concatenate([one[column] for one in held]) for column in columns}
+        return Source(tables, joined, tuple(dict.fromkeys(note for table in tables for note in table.notes)))
     if time is None:
         raise UserError(
             f'{files[0]}: join = "time" needs time stamps; expected time = "<column>" at the top of the card'
@@ -69,6 +70,7 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
     for file in files:
         table = _what_there_is(file, lacking, time, read)
         own = _same_length(table)
+        notes += table.notes
         check_time(own[time], lambda sample, table=table: table.place(time, sample))
         if not tables:
             held = own

@@ -11,6 +11,7 @@ from greybox_torch.data.columns.listing import Listing
 from greybox_torch.data.columns.matlab import matlab_columns
 from greybox_torch.data.columns.npz import npz_columns
 from greybox_torch.data.columns.parquet import parquet_columns
+from greybox_torch.data.columns.robot import mcap_columns, ros_bag_columns
 from greybox_torch.data.columns.text import text_columns
 from greybox_torch.data.readers import READERS, guarded
 from greybox_torch.errors import UserError
@@ -29,6 +30,8 @@ _LISTERS: dict[str, Callable[[Path], Listing]] = {
     ".json": json_columns,
     ".jsonl": json_lines_columns,
     ".ndjson": json_lines_columns,
+    ".mcap": mcap_columns,
+    ".db3": ros_bag_columns,
 }
 
 

@@ -17,8 +17,10 @@ from greybox_torch.data.readers.csv import read_csv
 from greybox_torch.data.readers.hdf5 import read_hdf5
 from greybox_torch.data.readers.json_log import read_json, read_json_lines
 from greybox_torch.data.readers.matlab import read_matlab
+from greybox_torch.data.readers.mcap_log import read_mcap
 from greybox_torch.data.readers.npz import read_npz
 from greybox_torch.data.readers.parquet import read_parquet
+from greybox_torch.data.readers.ros_bag import read_ros_bag
 from greybox_torch.data.readers.table import Table
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.reading import check_file
@@ -36,6 +38,8 @@ READERS: dict[str, Reader] = {
     ".json": read_json,
     ".jsonl": read_json_lines,
     ".ndjson": read_json_lines,
+    ".mcap": read_mcap,
+    ".db3": read_ros_bag,
     ".tsv": read_csv,
     ".txt": read_csv,
     ".dat": read_csv,
@@ -122,7 +126,9 @@ def _check_there(path: Path) -> None:
         check_file(path, "a recording")
     except UserError as error:
         if "Is a directory" in str(error):
-            raise UserError(f"{path}: is a folder; expected a recording") from None
+            bags = sorted(file.name for kind in ("*.mcap", "*.db3") for file in path.glob(kind))
+            hint = f", such as {path.name}/{bags[0]} in it" if bags else ""
+            raise UserError(f"{path}: is a folder; expected a recording{hint}") from None
         if "no such file" not in str(error):
             raise
         beside = [other.name for other in path.parent.iterdir()] if path.parent.is_dir() else []

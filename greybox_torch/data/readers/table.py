@@ -28,13 +28,14 @@ class NoSuchColumn(UserError):
 class Table:
     """Columns of a file as float64 arrays of shape (N,), and where the format has lines, the line of every sample.
 
-    `units` are by column, where the file says them.
+    `units` are by column, where the file says them; `notes` say what was done to the samples while reading.
     """
 
     path: Path
     columns: dict[str, NDArray[np.float64]]
     lines: Sequence[int] | None = None
     units: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
     def place(self, column: str, sample: int) -> str:
         """Where a sample stands in the file, to begin a message with."""
