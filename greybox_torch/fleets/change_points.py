@@ -5,7 +5,7 @@ Statistical Association 107 (2012) 1590-1598; of the package `ruptures`), with s
 Probability Letters 6 (1988) 181-189). Whether: each of them by a test on the stretch between its neighbours. For measured values this is
 the likelihood-ratio test for a shift of a normal mean, its significance bounded as by Worsley (Journal of the American Statistical
 Association 74 (1979) 365-367): the largest two-sample t over all places of the change, times their number. For what is either there or
-not it is Fisher's exact test, bounded alike.
+not it is Fisher's exact test; the chance that any place gives so unlikely a table is counted, not bounded.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,7 +52,7 @@ def change_points(values: Values, *, level: float = LEVEL, binary: bool = False)
     proposed = _pelt(values)
     level /= max(1, len(proposed))
     while proposed:
-        tested = list(_tested(values, proposed, _fisher if binary else _worsley))
+        tested = list(_tested(values, proposed, chance_of_presence if binary else chance_of_a_shift))
         weakest = max(tested, key=lambda change: change.p)
         if weakest.p <= level:
             return tuple(tested)
@@ -80,7 +79,7 @@ def _tested(values: Values, proposed: list[int], test: Callable[[Values], float]
         yield ChangePoint(index, float(values[begin:index].mean()), float(values[index:end].mean()), p)
 
 
-def _worsley(values: Values) -> float:
+def chance_of_a_shift(values: Values) -> float:
     """Bound on the probability of so large a shift somewhere among values (n,) of one normal distribution."""
     n = len(values)
     if n < 2 * SHORTEST:
@@ -95,10 +94,39 @@ def _worsley(values: Values) -> float:
     return min(1.0, float(len(places) * 2.0 * stats.t.sf(largest, n - 2)))
 
 
-def _fisher(values: Values) -> float:
-    """The same for values of 0 and 1 that are drawn with one probability."""
+def chance_of_presence(values: Values) -> float:
+    """The probability of so unlikely a table somewhere, for values of 0 and 1 in any order that is as likely as any other.
+
+    Exactly: orders are ways through the grid of (recordings, ones among them), and those are counted that pass by no table as unlikely as
+    the most unlikely one here.
+    """
     n, total = len(values), int(values.sum())
     places = range(SHORTEST, n - SHORTEST + 1)
-    tables = ([[ones := int(values[:k].sum()), k - ones], [total - ones, n - k - total + ones]] for k in places)
-    tests: list[Any] = [stats.fisher_exact(table) for table in tables]
-    return min(1.0, len(places) * min((float(test.pvalue) for test in tests), default=1.0))
+    if not places or not 0 < total < n:
+        return 1.0
+    tables = {k: _two_sided(n, total, k) for k in places}
+    ones = np.cumsum(values).astype(int)
+    least = min(float(tables[k][ones[k - 1]]) for k in places)
+    quiet = np.zeros(total + 1)
+    quiet[0] = 1.0  # share of the orders that have passed by no such table, by the ones so far
+    passed = 0.0
+    for k in range(1, n + 1):
+        left = n - k + 1
+        drawn = (total - np.arange(total + 1)) / left
+        quiet = quiet * np.clip(1.0 - drawn, 0.0, 1.0) + np.concatenate(
+            [[0.0], (quiet * np.clip(drawn, 0.0, 1.0))[:-1]]
+        )
+        if k in tables:
+            unlikely = tables[k] <= least * (1.0 + 1e-9)
+            passed += float(quiet[unlikely].sum())
+            quiet[unlikely] = 0.0
+    return min(1.0, passed)
+
+
+def _two_sided(n: int, total: int, k: int) -> Values:
+    """Fisher's exact probability of the table with s of the ``total`` ones among the first k of n, for s from 0 to ``total``."""
+    chances = stats.hypergeom.pmf(np.arange(total + 1), n, total, k)
+    order = np.argsort(chances)
+    summed = np.cumsum(chances[order])
+    last = np.searchsorted(chances[order], chances * (1.0 + 1e-9), side="right") - 1
+    return np.where(chances > 0.0, summed[np.clip(last, 0, None)], 1.0)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
+from scipy import stats
 
-from greybox_torch.fleets.change_points import change_points
+from greybox_torch.fleets.change_points import chance_of_presence, change_points
 
 RNG = np.random.default_rng
 
@@ -41,12 +45,35 @@ def test_too_few_recordings() -> None:
 def test_what_appears() -> None:
     (change,) = change_points(np.r_[np.zeros(6), np.ones(6)], binary=True)
     assert (change.index, change.before, change.after) == (6, 0.0, 1.0)
-    assert change.p == pytest.approx(9 * 2 / 924)  # Fisher's exact test of six of six, at one of nine places
+    assert change.p == pytest.approx(2 / 924)  # of all orders of six and six two are like this
     assert change_points(np.array([0.0, 1, 0, 1, 1, 0, 1, 0, 0, 1, 0, 1]), binary=True) == ()
 
 
 def test_the_level_is_what_decides() -> None:
-    assert change_points(np.r_[np.zeros(6), np.ones(6)], binary=True, level=0.01) == ()
+    assert change_points(np.r_[np.zeros(6), np.ones(6)], binary=True, level=0.002) == ()
+
+
+@pytest.mark.parametrize(
+    "values", [(0, 0, 0, 1, 1, 1), (0, 1, 0, 0, 1, 1, 1), (0, 0, 1, 1, 0, 1, 1, 1), (1, 0, 0, 0, 0, 0, 1, 0)]
+)
+def test_the_chance_of_an_order_is_exact(values: tuple[int, ...]) -> None:
+    """Against counting all orders."""
+    n, ones = len(values), sum(values)
+
+    def least(order: Sequence[int]) -> float:
+        tables = (
+            [[sum(order[:k]), k - sum(order[:k])], [sum(order[k:]), n - k - sum(order[k:])]] for k in range(2, n - 1)
+        )
+        return min(float(stats.fisher_exact(table).pvalue) for table in tables)
+
+    orders = [[int(i in chosen) for i in range(n)] for chosen in itertools.combinations(range(n), ones)]
+    as_unlikely = sum(least(order) <= least(values) * (1.0 + 1e-9) for order in orders)
+    assert chance_of_presence(np.array(values, float)) == pytest.approx(as_unlikely / len(orders))
+
+
+def test_ten_recordings_are_enough_for_what_appears() -> None:
+    (change,) = change_points(np.r_[np.zeros(5), np.ones(5)], binary=True, level=0.025)
+    assert change.index == 5
 
 
 def test_changes_are_dated_within_a_recording_and_false_ones_are_rare() -> None:
