@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from greybox_torch.api.arguments import (
@@ -18,6 +18,7 @@ from greybox_torch.api.diagnosis_result import DiagnosisResult
 from greybox_torch.codegen.build import check_compiler
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis import pipeline
+from greybox_torch.diagnosis.beliefs import beliefs_from_mapping
 from greybox_torch.diagnosis.progress import Progress
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, settings_from_mapping
 from greybox_torch.estimate.problem import make_problem
@@ -31,6 +32,7 @@ def diagnose(
     time_limit: float | None = None,
     settings: DiagnosisSettings | None = None,
     budget: SearchBudget | None = None,
+    beliefs: Mapping[str, float | str] | None = None,
     seed: int = 0,
     device: str = "cpu",
     progress: Callable[[str], None] = lambda text: None,
@@ -48,6 +50,8 @@ def diagnose(
             takes longer where it has to: the fit of the model as it stands, and the comparison of the result with all experiments.
         settings: the thresholds that it decides by; by default what the card's table [diagnosis] says, else the defaults.
         budget: how much it may compute; likewise.
+        beliefs: what is known beforehand, by "port/mechanism" (* for any): "likely", "unlikely", or a probability; 0 takes a hypothesis out
+            of the search. By default what the card's table [beliefs] says.
         seed: kept in the verdict; the search itself draws no random numbers.
         device: "cpu", "cuda" or "cuda:N".
         progress: is told what is being done, in words.
@@ -68,6 +72,7 @@ def diagnose(
     if device == "cpu":
         check_compiler("a diagnosis")
     make_problem(data, given, data.recordings)  # all of them fit the model, whatever the search takes first
+    believed = (data.beliefs, data.place("[beliefs]")) if beliefs is None else (beliefs, "argument beliefs")
     own = settings_from_mapping(data.diagnosis, data.place("[diagnosis]"))
     found = pipeline.diagnose(
         data,
@@ -77,6 +82,7 @@ def diagnose(
         time_limit=limit,
         settings=own[0] if settings is None else check_kind("settings", settings, DiagnosisSettings),
         budget=own[1] if budget is None else check_kind("budget", budget, SearchBudget),
+        beliefs=beliefs_from_mapping(believed[0], given, believed[1]),
         progress=progress,
         on_progress=on_progress,
     )

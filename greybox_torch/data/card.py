@@ -72,7 +72,8 @@ class Card(Entry):
     """The whole of `dataset.toml`. Either `sample_time` (s) is given or `time`, a column of time stamps.
 
     `resample` makes the time stamps even, that many seconds apart; `decimate` keeps one sample of so many, behind a low pass.
-    `diagnosis` names settings of `greybox diagnose`, `limits` what `greybox design` may ask of the machine; those commands check them.
+    `diagnosis` names settings of `greybox diagnose`, `beliefs` what is known beforehand of what that looks for, `limits` what
+    `greybox design` may ask of the machine; those commands check them.
     For `greybox fleet`, `machine` says which machine was recorded (several cards may be of one) and `recorded` when.
     """
 
@@ -87,6 +88,7 @@ class Card(Entry):
     model: ModelEntry = ModelEntry()
     diagnosis: dict[str, Any] = {}
     limits: dict[str, Any] = {}
+    beliefs: dict[str, Any] = {}
     machine: Text | None = None
     recorded: Annotated[date | None, PlainValidator(_a_date)] = None
 

@@ -49,6 +49,7 @@ class DataSet:
     held_out_by_default: bool
     diagnosis: dict[str, Any]
     limits: dict[str, Any]
+    beliefs: dict[str, Any]
 
     def __init__(
         self,
@@ -64,6 +65,7 @@ class DataSet:
         held_out_by_default: bool | None = None,
         diagnosis: Mapping[str, Any] | None = None,
         limits: Mapping[str, Any] | None = None,
+        beliefs: Mapping[str, Any] | None = None,
     ) -> None:
         """A data set of recordings that are in memory.
 
@@ -81,6 +83,8 @@ class DataSet:
             diagnosis: settings of a diagnosis by name, as the card's table [diagnosis] has them; what is given to `diagnose` goes before.
             limits: of a next recording, as the card's table [limits] has them: seconds, and by input, output or state
                 {"lower": …, "upper": …, "rate": …}.
+            beliefs: what is known beforehand of what a diagnosis looks for, as the card's table [beliefs] has it: by "port/mechanism"
+                "likely", "unlikely" or a probability.
 
         Raises:
             UserError: no recordings, two of one name, channels or units that differ between them, a channel without any sample in one
@@ -112,6 +116,7 @@ class DataSet:
             "held_out_by_default": hold_out or bool(held_out_by_default),
             "diagnosis": dict(diagnosis or {}),
             "limits": dict(limits or {}),
+            "beliefs": dict(beliefs or {}),
         }
         for field, value in own.items():
             object.__setattr__(self, field, value)

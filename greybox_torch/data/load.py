@@ -44,6 +44,7 @@ def load_dataset(path: str | PathLike[str]) -> DataSet:
         initial=card.model.initial,
         diagnosis=card.diagnosis,
         limits=card.limits,
+        beliefs=card.beliefs,
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline
+from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.standing import least_size, sizes
@@ -66,6 +67,7 @@ def diagnose(
     time_limit: float | None = None,
     settings: DiagnosisSettings = DiagnosisSettings(),
     budget: SearchBudget = SearchBudget(),
+    beliefs: Beliefs = NO_BELIEFS,
     progress: Callable[[str], None] = silent,
     on_progress: Callable[[Progress], None] = lambda progress: None,
 ) -> Diagnosis:
@@ -83,6 +85,7 @@ def diagnose(
             with all experiments, take the time that they need.
         settings: the thresholds that it decides by.
         budget: how much it may compute.
+        beliefs: what is known beforehand.
         progress: told what is being done.
         on_progress: told where the diagnosis stands, the leading finding with it; from several threads.
 
@@ -107,6 +110,7 @@ def diagnose(
         options=SimulationOptions(device),
         settings=settings,
         budget=budget,
+        beliefs=beliefs,
         report=report,
         journal=journal,
     )
@@ -174,12 +178,13 @@ def _as_found(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int,
         left=what_is_left(judged, detected, bool(effects)),
         settings=study.settings,
         budget=study.budget,
+        beliefs=study.beliefs,
         not_tried=NotTried() if found.complete else NotTried(found.cut, study.journal.left),
     )
     final = judged.augmented if effects else judged.plain
     chosen = state.current if effects else state.plain
     attachments = [attachment_json(e, study.surroundings[e.port]) for e in chosen.effects]
-    beside = rivals(state, study.settings) if effects else ()
+    beside = rivals(state, study.settings, study.beliefs) if effects else ()
     return Diagnosis(verdict, chosen.model, final.values(), starts_of(final.problem), attachments, beside)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from greybox_torch.deadline import check_time
+from greybox_torch.diagnosis.beliefs import Beliefs
 from greybox_torch.diagnosis.progress import Journal
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.problem import Problem
@@ -24,7 +25,8 @@ class Study:
 
     ``options`` are those of every simulation. ``surroundings`` and ``shifts`` are what mechanisms need to know of the ports: where signals
     moved, and which state carries the deflection of a coupling; both are known once the model as it stands is fitted. ``motion``: what the
-    outputs show of the states, or why they do not. ``report`` is told what is being done, ``journal`` which candidates are tried.
+    outputs show of the states, or why they do not. ``beliefs``: what is known
+    beforehand. ``report`` is told what is being done, ``journal`` which candidates are tried.
     """
 
     problem: Problem
@@ -34,6 +36,7 @@ class Study:
     motion: Motion | str | None = None
     settings: DiagnosisSettings = field(default_factory=DiagnosisSettings)
     budget: SearchBudget = field(default_factory=SearchBudget)
+    beliefs: Beliefs = field(default_factory=Beliefs)
     report: Callable[[str], None] = silent
     journal: Journal = field(default_factory=Journal)
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
@@ -110,6 +111,8 @@ class Verdict:
     """By what it was decided, and with ``budget`` how much was computed for it."""
     budget: SearchBudget = SearchBudget()
     not_tried: NotTried = NotTried()
+    beliefs: Beliefs = NO_BELIEFS
+    """What was known beforehand."""
 
     @property
     def mismatch(self) -> bool:
@@ -150,7 +153,8 @@ class Verdict:
     def as_json(self) -> dict[str, Any]:
         """The dictionary of `verdict.json` (contract sections 4 and 8).
 
-        Beside that "settings": those that differ from their default, and "not_tried": what was left when the search was stopped.
+        Beside that "settings": those that differ from their default, "not_tried": what was left when the search was stopped,
+        and "beliefs": probabilities that were given beforehand, where any were.
         """
         return {
             "schema": SCHEMA,
@@ -172,4 +176,5 @@ class Verdict:
             "stages": dict(self.stages),
             "not_tried": self.not_tried.as_json(),
             "settings": changed_settings(self.settings, self.budget),
+            **({"beliefs": dict(self.beliefs.given)} if self.beliefs.given else {}),
         }

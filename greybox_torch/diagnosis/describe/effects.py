@@ -78,7 +78,7 @@ def _effect(
         without = state.without.get(attachment.prefix, state.plain)
         probability, alternatives = by_comparison(without, state.current, study.settings), ()
     else:
-        probability, alternatives = shared(taken.taken, taken.ranked, study.settings)
+        probability, alternatives = shared(taken.taken, taken.ranked, study.settings, study.beliefs, taken.led)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     if not isinstance(attachment.mechanism, Unknown):
         share = remaining_share(state.plain, state.current, study.settings)
@@ -86,7 +86,7 @@ def _effect(
     profiles = _profiles(study, state, model, attachment, site)
     timelines = () if gain is None else gain.timelines
     mechanism = attachment.mechanism
-    members = None if taken is None else one_of(model.base, taken, probability, study.settings)
+    members = None if taken is None else one_of(model.base, taken, probability, study.settings, study.beliefs)
     return Effect(
         port=attachment.port,
         mechanism=mechanism.name,

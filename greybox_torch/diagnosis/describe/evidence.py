@@ -66,9 +66,14 @@ def sentences(
 def _step_sentence(done: SelectionStep, settings: DiagnosisSettings) -> str:
     """What a forward step took, or why it took nothing."""
     if done.taken is not None:
+        preferred = (
+            ""
+            if done.led is None
+            else f" By the recordings alone {_name(done.led.candidate.attachment)} would come first; what is believed beforehand decides."
+        )
         return (
             f"{_name(done.taken.candidate.attachment)} lowers the mean squared error by a factor {np.exp(done.taken.gain):.3g}, "
-            f"{done.taken.significance:.1f} standard errors away from chance."
+            f"{done.taken.significance:.1f} standard errors away from chance.{preferred}"
         )
     if not done.ranked:
         return "No candidate explains any of the remaining error."

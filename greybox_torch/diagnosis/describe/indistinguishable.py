@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.describe.divergence import divergence
 from greybox_torch.diagnosis.describe.statement import Member, statement
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
@@ -13,7 +14,13 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.model import GreyBoxModel
 
 
-def one_of(model: GreyBoxModel, step: SelectionStep, probability: float, settings: DiagnosisSettings) -> OneOf | None:
+def one_of(
+    model: GreyBoxModel,
+    step: SelectionStep,
+    probability: float,
+    settings: DiagnosisSettings,
+    beliefs: Beliefs = NO_BELIEFS,
+) -> OneOf | None:
     """The finding of a step with its rivals whose fitted outputs differ from its own by less than could be seen, or between which these
     recordings are undecided; None where it stands alone.
 
@@ -27,7 +34,7 @@ def one_of(model: GreyBoxModel, step: SelectionStep, probability: float, setting
     if taken is None or taken.unknown:
         return None
     found = [(taken, probability)]
-    for rival, share in shares(taken, step.ranked, settings):
+    for rival, share in shares(taken, step.ranked, settings, beliefs, step.led):
         attachment = rival.candidate.attachment
         same_law = taken.candidate.attachment.mechanism.name in attachment.mechanism.includes
         if rival.unknown or (same_law and attachment.port == taken.candidate.attachment.port):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.hypothesis.whole_records import from_windows
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
 from greybox_torch.diagnosis.select.posterior import shares
@@ -33,7 +34,7 @@ class Rival:
     initial: Mapping[str, Mapping[str, float]]
 
 
-def rivals(state: SearchState, settings: DiagnosisSettings) -> tuple[Rival, ...]:
+def rivals(state: SearchState, settings: DiagnosisSettings, beliefs: Beliefs = NO_BELIEFS) -> tuple[Rival, ...]:
     """Every finding of the state with its likeliest named rivals, the finding first.
 
     Free curves are left out: they follow any of the laws.
@@ -43,7 +44,7 @@ def rivals(state: SearchState, settings: DiagnosisSettings) -> tuple[Rival, ...]
         step = state.step_of(effect.prefix)
         if step is None or step.taken is None or step.taken.unknown:
             continue
-        ranked = shares(step.taken, step.ranked, settings)
+        ranked = shares(step.taken, step.ranked, settings, beliefs, step.led)
         beside = [(r, p) for r, p in ranked if not r.unknown and r.gain > 0][:MOST]
         own = settings.highest_probability - sum(p for _, p in ranked)
         found += [_rival(effect.prefix, r, p) for r, p in [(step.taken, own), *beside]]

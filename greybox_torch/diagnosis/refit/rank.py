@@ -155,7 +155,8 @@ def _laws_behind_curve(
         return None if fitted is None else judged(candidate, current, fitted, study.settings)
 
     laws = laws_on_curve(study.problem.model, best.fitted, best.candidate.attachment, study.surroundings, study.card)
-    return [r for r in side_by_side(partial(tried, law) for law in laws) if r is not None]
+    allowed = [law for law in laws if not study.beliefs.exclude(law.attachment)]
+    return [r for r in side_by_side(partial(tried, law) for law in allowed) if r is not None]
 
 
 def _finalists(

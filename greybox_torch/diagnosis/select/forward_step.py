@@ -15,6 +15,7 @@ from greybox_torch.diagnosis.select.choice import chosen, least_gain
 from greybox_torch.diagnosis.select.compare import compare
 from greybox_torch.diagnosis.select.finer_curve import with_finer_curve
 from greybox_torch.diagnosis.select.offered import from_motion, screen_scores
+from greybox_torch.diagnosis.select.posterior import believed
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import Stage
@@ -59,8 +60,9 @@ def take_best(
     ]
     if little_is_left(study, state):
         paying = [r for r in paying if completes(r.fitted, settings)]
-    taken = chosen([r for r in paying if not r.unknown or substantial(study, state, r)], state.plain, settings)
-    step = SelectionStep(screened, state.current, tuple(in_turn), taken)
+    led = chosen([r for r in paying if not r.unknown or substantial(study, state, r)], state.plain, settings)
+    taken = None if led is None else believed(led, paying, settings, study.beliefs)
+    step = SelectionStep(screened, state.current, tuple(in_turn), taken, None if taken is led else led)
     state = replace(state.at(state.current if taken is None else taken.fitted), steps=(*state.steps, step))
     yield state
     return (yield from with_finer_curve(study, state)) if taken is not None and taken.unknown else state

@@ -25,11 +25,14 @@ def screen_scores(study: Study, state: SearchState, *, curves: bool, fine: bool)
     """
     study.working_on("screening fine curves" if fine else "screening every port and mechanism")
     model, at = study.problem.model, state.current
-    offered = _fine_curves(study) if fine else _offered(study, state, curves)
+    every = _fine_curves(study) if fine else _offered(study, state, curves)
+    offered = [a for a in every if not (_is_there(a, at.effects) or study.beliefs.exclude(a))]
+    if not offered:
+        return tuple(() for _ in at.fits)
     screen = Screen.of(
         model,
         at.effects,
-        [a for a in offered if not _is_there(a, at.effects)],
+        offered,
         study.surroundings,
         at.problem.free_names,
         study.options,
@@ -47,7 +50,10 @@ def from_motion(study: Study, state: SearchState) -> list[Candidate]:
         return []
     study.working_on("comparing the equations with the measured motion")
     return candidates_from_motion(
-        study, state.current.problem, state.effects, lambda a: not _is_there(a, state.effects)
+        study,
+        state.current.problem,
+        state.effects,
+        lambda a: not (_is_there(a, state.effects) or study.beliefs.exclude(a)),
     )
 
 

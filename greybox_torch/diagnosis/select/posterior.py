@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
@@ -39,34 +40,67 @@ def for_all_that_is_left(probability: float, share: float, left: Hypothesis, set
 
 
 def shared(
-    chosen: RankedCandidate, ranked: Sequence[RankedCandidate], settings: DiagnosisSettings
+    chosen: RankedCandidate,
+    ranked: Sequence[RankedCandidate],
+    settings: DiagnosisSettings,
+    beliefs: Beliefs = NO_BELIEFS,
+    led: RankedCandidate | None = None,
 ) -> tuple[float, tuple[Alternative, ...]]:
     """The probability of the chosen hypothesis of a step, and those of its rivals.
 
-    Rivals that the data cannot tell apart share it: a rival that the chosen one beats by z standard errors has the weight
-    exp(−(z / temperature)² / 2), times the share of the gain that it reaches, and 1/e for every parameter that it has more.
+    Rivals that the data cannot tell apart share it: a rival that the best one beats by z standard errors has the weight
+    exp(−(z / temperature)² / 2), times the share of the gain that it reaches, 1/e for every parameter that it has more, and the odds that
+    are believed.
+
+    Args:
+        led: the best one by the recordings alone, where it is not the chosen one.
     """
     highest = settings.highest_probability
-    rivals = shares(chosen, ranked, settings)
+    rivals = shares(chosen, ranked, settings, beliefs, led)
     own = round(highest - sum(p for _, p in rivals), 4)
     listed = [(r.candidate.attachment, p) for r, p in rivals if p > settings.least_alternative]
     return own, tuple(Alternative(a.port, a.mechanism.name, round(p, 4)) for a, p in listed)
 
 
 def shares(
-    chosen: RankedCandidate, ranked: Sequence[RankedCandidate], settings: DiagnosisSettings
+    chosen: RankedCandidate,
+    ranked: Sequence[RankedCandidate],
+    settings: DiagnosisSettings,
+    beliefs: Beliefs = NO_BELIEFS,
+    led: RankedCandidate | None = None,
 ) -> list[tuple[RankedCandidate, float]]:
-    """The rivals of the chosen hypothesis of a step with their probabilities, the likeliest first; of each law at a port the best one."""
+    """The rivals of the chosen hypothesis of a step with their probabilities, the likeliest first; of each law at a port the best one.
+
+    Arguments as for :func:`shared`.
+    """
+    best = chosen if led is None else led
     weights: dict[tuple[str, str], tuple[float, RankedCandidate]] = {}
     for rival in ranked:
         if (key := _key(rival)) != _key(chosen):
-            weight = _weight(chosen, rival, settings)
+            weight = _believed_weight(best, rival, settings, beliefs)
             if key not in weights or weight > weights[key][0]:
                 weights[key] = (weight, rival)
-    total = 1.0 + sum(weight for weight, _ in weights.values())
+    total = _believed_weight(best, chosen, settings, beliefs) + sum(weight for weight, _ in weights.values())
     highest = settings.highest_probability
     found = [(rival, highest * weight / total) for weight, rival in weights.values()]
     return sorted(found, key=lambda pair: (pair[1], _key(pair[0])), reverse=True)
+
+
+def believed(
+    taken: RankedCandidate, ranked: Sequence[RankedCandidate], settings: DiagnosisSettings, beliefs: Beliefs
+) -> RankedCandidate:
+    """The likeliest name by recordings and beliefs together; of those alike ``taken``, the likeliest by recordings alone."""
+    if not beliefs.given or taken.unknown:
+        return taken
+    named = [r for r in ranked if not r.unknown]
+    return max([taken, *named], key=lambda r: _believed_weight(taken, r, settings, beliefs))
+
+
+def _believed_weight(
+    best: RankedCandidate, rival: RankedCandidate, settings: DiagnosisSettings, beliefs: Beliefs
+) -> float:
+    weight = 1.0 if rival is best else _weight(best, rival, settings)
+    return weight * beliefs.weight(rival.candidate.attachment)
 
 
 def _key(candidate: RankedCandidate) -> tuple[str, str]:

@@ -55,4 +55,4 @@ def beyond_doubt(study: Study, state: SearchState, effect: Attachment) -> bool:
     done = state.step_of(effect.prefix)
     if done is None or done.taken is None:
         return False
-    return shared(done.taken, done.ranked, study.settings)[0] > study.settings.beyond_doubt
+    return shared(done.taken, done.ranked, study.settings, study.beliefs, done.led)[0] > study.settings.beyond_doubt

@@ -15,13 +15,14 @@ from greybox_torch.mechanisms.unknown import Unknown
 @dataclass(frozen=True)
 class SelectionStep:
     """One forward step: the scores of the screen by window length, the hypothesis that was built on, the refitted candidates, best first,
-    and which of them was taken (None: nothing).
+    and which of them was taken (None: nothing). ``led``: which would have been by the recordings alone, where beliefs put another first.
     """
 
     screened: tuple[tuple[ScreenScore, ...], ...]
     parent: Hypothesis
     ranked: tuple[RankedCandidate, ...]
     taken: RankedCandidate | None
+    led: RankedCandidate | None = None
 
 
 @dataclass(frozen=True, eq=False)

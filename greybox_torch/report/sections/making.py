@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from greybox_torch.diagnosis.beliefs import ANY
 from greybox_torch.diagnosis.settings import SettingRow, setting_rows
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report import text
@@ -30,11 +31,21 @@ class Value:
 
 
 @dataclass(frozen=True)
+class Belief:
+    """What was known of a hypothesis beforehand; ``port`` and ``mechanism`` are empty where any is meant."""
+
+    mechanism: str
+    port: str
+    said: str
+
+
+@dataclass(frozen=True)
 class Making:
     facts: tuple[tuple[str, str], ...]
     stages: tuple[Stage, ...]
     values: tuple[Value, ...]
     settings: tuple[SettingRow, ...]
+    beliefs: tuple[Belief, ...]
     command: str
     template: str = "making.html.j2"
 
@@ -57,7 +68,18 @@ class Making:
         longest = max([*verdict.stages.values(), 1e-12])
         stages = [Stage(text.words(n), text.seconds(s), 100.0 * s / longest) for n, s in verdict.stages.items()]
         rows = setting_rows(verdict.settings, verdict.budget)
-        return cls(facts, tuple(stages), tuple(_values(about)), rows, about.command)
+        beliefs = tuple(_belief(key, p) for key, p in verdict.beliefs.given.items())
+        return cls(facts, tuple(stages), tuple(_values(about)), rows, beliefs, about.command)
+
+
+def _belief(key: str, probability: float) -> Belief:
+    port, _, mechanism = key.partition("/")
+    said = (
+        "excluded"
+        if probability == 0.0
+        else f"probability {text.number(probability, 2)} where the recordings leave it open"
+    )
+    return Belief("" if mechanism == ANY else text.mechanism(mechanism), "" if port == ANY else port, said)
 
 
 def _values(about: About) -> list[Value]:

@@ -154,9 +154,9 @@ def test_what_no_rival_came_near_is_not_chosen_once_more(motor_data, motor, begu
     first = state.effects[0]
     state = result_of(drop_superfluous(search.study, state))
     assert len(state.effects) == 2
-    monkeypatch.setattr("greybox_torch.diagnosis.select.search.shared", lambda chosen, ranked, settings: (0.96, ()))
+    monkeypatch.setattr("greybox_torch.diagnosis.select.search.shared", lambda *given: (0.96, ()))
     assert beyond_doubt(search.study, state, first) and result_of(revise(search.study, state)).current is state.current
-    monkeypatch.setattr("greybox_torch.diagnosis.select.search.shared", lambda chosen, ranked, settings: (0.6, ()))
+    monkeypatch.setattr("greybox_torch.diagnosis.select.search.shared", lambda *given: (0.6, ()))
     assert not beyond_doubt(search.study, state, first)
 
 

@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.confirm.held_out import Gain, gain
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.significance import likelihood_significance, window_significance
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.choice import least_gain
-from greybox_torch.diagnosis.select.posterior import by_comparison, of_a_stopped_search, shared
+from greybox_torch.diagnosis.select.posterior import believed, by_comparison, of_a_stopped_search, shared
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.attachment import Attachment
@@ -131,6 +132,27 @@ def test_equal_rivals_share_equally(fitted) -> None:
     probability, alternatives = shared(chosen, [chosen, twin], SETTINGS)
     assert probability == pytest.approx(SETTINGS.highest_probability / 2, abs=1e-3)
     assert [(a.mechanism, a.probability) for a in alternatives] == [("coulomb_asymmetry", probability)]
+
+
+def test_beliefs_weigh_rivals_by_their_odds(fitted) -> None:
+    same = energies(0)
+    chosen, twin = ranked(ConstantBias(), fitted, 1.0, same), ranked(CoulombAsymmetry(), fitted, 1.0, same)
+    beliefs = Beliefs({"rotor/coulomb_asymmetry": 0.9})
+    assert believed(chosen, [chosen, twin], SETTINGS, beliefs) is twin
+    assert believed(chosen, [chosen, twin], SETTINGS, NO_BELIEFS) is chosen
+    assert believed(chosen, [chosen, twin], SETTINGS, Beliefs({"load/*": 0.9})) is chosen
+    own, (only,) = shared(twin, [chosen, twin], SETTINGS, beliefs, chosen)
+    assert own / only.probability == pytest.approx(9.0, rel=1e-2)
+    assert own + only.probability == pytest.approx(SETTINGS.highest_probability, abs=1e-3)
+
+
+def test_beliefs_do_not_outweigh_what_recordings_say(fitted) -> None:
+    """The weight of a rival is that of the recordings times its odds, whichever of the two is in the model."""
+    same = energies(0)
+    best, far = ranked(ConstantBias(), fitted, 1.0, same), ranked(CoulombFriction(), fitted, 0.5, 3.0 * same)
+    beliefs = Beliefs({"rotor/coulomb_friction": 0.9})
+    assert believed(best, [best, far], SETTINGS, beliefs) is best
+    assert shared(far, [best, far], SETTINGS, beliefs, best)[0] < 0.01
 
 
 def test_a_far_rival_gets_none(fitted) -> None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
+from greybox_torch.diagnosis.beliefs import Beliefs
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, setting_rows
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report.about import About
@@ -24,6 +26,18 @@ def test_settings_that_differ_stand_first_and_are_marked(of_kind: Callable[[str]
     table = page[page.index('<table class="settings">') :]
     assert table.count('class="chosen"') == 2
     assert table.index("least_significance") < table.index("knots") < table.index("noise_differences")
+
+
+def test_beliefs_are_told(of_kind: Callable[[str], Verdict], about: About) -> None:
+    plain = of_kind("found")
+    assert "Known beforehand" not in render_page(plain, about) and "beliefs" not in plain.as_json()
+    given = {"gear_spring/backlash": 0.0, "*/coulomb_friction": 0.9, "motor/*": 0.1}
+    verdict = replace(plain, beliefs=Beliefs(given))
+    page = " ".join(re.sub("<[^>]+>", "", render_page(verdict, about)).split())
+    assert "backlash at gear_spring: excluded" in page
+    assert "Coulomb friction at any port: probability 0.90 where the recordings leave it open" in page
+    assert "any mechanism at motor: probability 0.10" in page
+    assert verdict.as_json()["beliefs"] == given
 
 
 def test_settings_at_their_default_are_told_to_be(of_kind: Callable[[str], Verdict], about: About) -> None:
