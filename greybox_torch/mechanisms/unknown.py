@@ -49,6 +49,11 @@ class Unknown(Mechanism):
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(tuple(f"w_{k}" for k in range(self.knots)))]
 
+    @property
+    def only_coarse(self) -> bool:
+        """Whether a finer curve would say nothing: time does not come back, so that it would only draw what happened once."""
+        return self.signal == "time"
+
     def signals(self) -> tuple[str, ...]:
         return (self.signal, self.factor) if self.factor else (self.signal,)
 

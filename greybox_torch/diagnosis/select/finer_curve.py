@@ -7,13 +7,12 @@ from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
-from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.unknown import Unknown
 
 
 def with_finer_curve(study: Study, state: SearchState) -> Stage[SearchState]:
-    """The state with its newest effect, a curve, drawn with twice the knots, and so on, as long as that pays."""
-    while len(state.current.problem.free_names) + _knots(state.effects[-1]) < study.budget.most_parameters:
+    """The state with its newest effect, a curve, drawn with twice the knots, and so on, as long as that pays and means anything."""
+    while _may_be_finer(study, state):
         study.working_on("drawing the curve more finely")
         drawn = state.current
         attachment, values = finer(drawn, drawn.effects[-1], study.surroundings)
@@ -28,6 +27,8 @@ def with_finer_curve(study: Study, state: SearchState) -> Stage[SearchState]:
     return state
 
 
-def _knots(curve: Attachment) -> int:
-    assert isinstance(curve.mechanism, Unknown)
-    return curve.mechanism.knots
+def _may_be_finer(study: Study, state: SearchState) -> bool:
+    curve = state.effects[-1].mechanism
+    assert isinstance(curve, Unknown)
+    wanted = len(state.current.problem.free_names) + curve.knots
+    return not curve.only_coarse and wanted < study.budget.most_parameters

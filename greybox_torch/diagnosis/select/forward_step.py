@@ -18,6 +18,7 @@ from greybox_torch.diagnosis.select.offered import from_motion, screen_scores
 from greybox_torch.diagnosis.select.posterior import believed
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
 
@@ -87,9 +88,15 @@ def substantial(study: Study, state: SearchState, curve: RankedCandidate) -> boo
     By less than the margin it would give way to names, or to nothing where no name pays.
     """
     fits = zip(state.plain.fits, state.current.fits, curve.fitted.fits, strict=True)
+    least = _least_curve_share(state, study.settings)
     return curve.gain > study.settings.curve_margin and any(
-        b.mean_square - a.mean_square > study.settings.least_curve_share * p.mean_square for p, b, a in fits
+        b.mean_square - a.mean_square > least * p.mean_square for p, b, a in fits
     )
+
+
+def _least_curve_share(state: SearchState, settings: DiagnosisSettings) -> float:
+    """The part of the plain model's error that a free curve has to remove: more beside named effects, which are never exact."""
+    return settings.least_curve_share_beside_names if state.effects else settings.least_curve_share
 
 
 def _worth_a_refit(study: Study, state: SearchState, screened: Screened, fine: bool) -> list[Candidate]:
@@ -106,7 +113,7 @@ def _worth_a_refit(study: Study, state: SearchState, screened: Screened, fine: b
 def _promising(study: Study, state: SearchState, curve: Candidate) -> bool:
     """Whether the screen leaves hope that a free curve is substantial: its refits are the slowest of all."""
     left = (c.mean_square / p.mean_square for p, c in zip(state.plain.fits, state.current.fits, strict=True))
-    return curve.explained * max(left) > study.settings.curve_promise * study.settings.least_curve_share
+    return curve.explained * max(left) > study.settings.curve_promise * _least_curve_share(state, study.settings)
 
 
 def _at_other_ports(

@@ -13,6 +13,7 @@ from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulation.side_by_side import side_by_side
 
 
@@ -66,9 +67,9 @@ def _is_there(offered: Attachment, effects: tuple[Attachment, ...]) -> bool:
 
 
 def _fine_curves(study: Study) -> list[Attachment]:
-    return candidates(
-        study.problem.model, study.shifts, study.surroundings, flexible=True, knots=study.budget.fine_knots
-    )
+    knots = study.budget.fine_knots
+    found = candidates(study.problem.model, study.shifts, study.surroundings, flexible=True, knots=knots)
+    return [a for a in found if isinstance(a.mechanism, Unknown) and not a.mechanism.only_coarse]
 
 
 def _offered(study: Study, state: SearchState, curves: bool) -> list[Attachment]:

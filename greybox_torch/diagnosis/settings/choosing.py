@@ -82,7 +82,7 @@ class ScreenSettings:
     )
     curve_promise: float = share(
         0.5,
-        "Part of least_curve_share that a curve must promise in the screen to be refitted.",
+        "Part of what a free curve has to remove that it must promise in the screen to be refitted.",
         unit="share of least_curve_share",
     )
     least_periods: float = number(
@@ -148,6 +148,12 @@ class SelectionSettings:
     )
     least_curve_share: float = share(
         0.02, "Part of the plain model's error that a free curve has to remove at some window length.", unit=GAIN
+    )
+    least_curve_share_beside_names: float = share(
+        0.05,
+        "The same beside named effects, whose laws are never exactly the machine's.",
+        unit=GAIN,
+        chosen_by="cases simulated elsewhere: effects begin at 0.05",
     )
     curve_margin: float = number(
         0.1, "How much better a free curve must be than every name to be preferred.", unit=LOG_ERROR
