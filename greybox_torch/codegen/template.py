@@ -66,6 +66,7 @@ INLINE void tangent_output(const vec *C, const vec *d, const vec *z, vec *s) {
 struct Job {
   long groups, steps, substeps, foh, samples, directions, threads;
   long first_probe, last_probe, band;  // products of probes farther apart than the band are left out
+  long every, restarts;    // samples between restarts, and how many there are, the start included; none where null
   const real *u;           // [NU][samples]   recorded inputs, all experiments one after another
   const real *dt;          // [samples]       time to the next sample
   const long *start;       // [groups][LANES] first sample of each window
@@ -77,6 +78,8 @@ struct Job {
   real *y;                 // [groups][steps][NY][LANES]
   real *dy;                // [groups][steps][NY][directions][LANES], unused where normal is wanted
   real *trace;             // [groups][steps][NX][LANES] or null: states at the samples
+  const long *kept;        // [NX]            whether a state goes on at restarts
+  real *restart;           // [groups][restarts][NX][LANES] or null, in: where the other states begin anew, out: where those kept are then
   const real *measured;    // [NY][samples] or null: what the outputs are compared with, NaN = missing
   const real *weight;      // [NY]            factor on the errors
   real *normal;            // [groups][R][R][LANES], R = directions + 1 rounded up to TILE: JᵀJ, Jᵀe and eᵀe, lower triangle of tiles
@@ -124,6 +127,12 @@ template <bool TANGENTS> static void run_group(const Job &job, long g) {
   for (int k = 0; k <= NS; k++) UNROLL for (int i = 0; i < NY; i++) D[k][i] = vec{};
   UNROLL for (int i = 0; i < NX; i++) x[i] = gx[i];
   for (long n = 0; n < job.steps; n++) {
+    if (job.restart && n && n % job.every == 0 && n / job.every < job.restarts) {
+      vec *begin = (vec *)job.restart + (g * job.restarts + n / job.every) * NX;
+      for (int i = 0; i < NX; i++)
+        if (job.kept[i]) begin[i] = x[i] = x[i] == x[i] ? x[i] : vec{};
+        else x[i] = begin[i];
+    }
     long now[LANES], next[LANES];
     for (int l = 0; l < LANES; l++) {
       long at = job.start[g * LANES + l] + n, end = job.last[g * LANES + l];

@@ -18,7 +18,7 @@ from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.rival import Rival
 from greybox_torch.estimate.rough_starts import rough_starts
 from greybox_torch.estimate.window_step import Hold, WindowModel, held, stepped
-from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.passes import Pass, Restarts
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import Windows, cut
 
@@ -146,22 +146,28 @@ def states_along(fit: WindowFit, simulator: Simulator) -> np.ndarray:
 
 
 def carried_starts(problem: Problem, simulator: Simulator, windows: Windows, starts: np.ndarray) -> np.ndarray:
-    """``starts`` (W, n_x) with the carried states brought along from window to window of each experiment."""
-    if not problem.carried.any():
-        return starts
-    starts, records = starts.copy(), problem.driving_records
+    """``starts`` (W, n_x) with the carried states brought along from window to window of each experiment.
+
+    Args:
+        windows: as :func:`cut` makes them.
+    """
+    records = problem.records
     experiment = records.experiments(windows.start)
     chains = [np.flatnonzero(experiment == e) for e in range(len(records.first))]
-    for k in range(max(len(c) for c in chains) - 1):
-        now = np.array([c[k] for c in chains if len(c) > k + 1])
-        following = np.array([c[k + 1] for c in chains if len(c) > k + 1])
-        ahead = windows.start[following] - windows.start[now]
-        part = Windows(windows.start[now], windows.last[now], int(ahead.max()) + 1)
-        run = simulator.run(records, Pass(part, problem.values, starts[now], keep_states=True))
-        assert run.states is not None
-        reached = np.nan_to_num(run.states[np.arange(len(now)), ahead])
-        starts[np.ix_(following, problem.carried)] = reached[:, problem.carried]
-    return starts
+    most = max(len(c) for c in chains)
+    if most == 1 or not problem.carried.any():
+        return starts
+    longest = next(c for c in chains if len(c) == most)
+    every = int(windows.start[longest[1]] - windows.start[longest[0]])
+    of_chain = np.array([c[np.minimum(np.arange(most), len(c) - 1)] for c in chains])
+    begin = Windows(windows.start[of_chain[:, 0]], records.last, every * (most - 1) + 1)
+    restarts = Restarts(every, problem.carried, starts[of_chain])
+    run = simulator.run(problem.driving_records, Pass(begin, problem.values, starts[of_chain[:, 0]], restarts=restarts))
+    assert run.begun is not None
+    result = starts.copy()
+    for chain, begun in zip(chains, run.begun, strict=True):
+        result[np.ix_(chain[1:], problem.carried)] = np.nan_to_num(begun[1 : len(chain)][:, problem.carried])
+    return result
 
 
 def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: int, size: float | None) -> Hold:

@@ -12,7 +12,7 @@ from torch.func import jvp, vmap
 from greybox_torch.deadline import check_time
 from greybox_torch.model import GreyBoxModel, Signals
 from greybox_torch.simulation.packed_normals import PackedNormals
-from greybox_torch.simulation.passes import Pass, Run
+from greybox_torch.simulation.passes import Pass, Restarts, Run
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.windows import Windows
 
@@ -54,9 +54,13 @@ class EagerStepper:
             dx[n_p:] = self._tensor(np.moveaxis(asked.start_directions, 0, -1))
         dp = self._parameter_directions(n_p, n_s, count)
         ys, dys, xs = [], [], []
+        begun = [x]
         with torch.no_grad():
-            for u0, u1, dt in self._inputs(records, windows):
+            for n, (u0, u1, dt) in enumerate(self._inputs(records, windows)):
                 check_time()  # a pass takes seconds here
+                if asked.restarts is not None and n and n % asked.restarts.every == 0:
+                    x = self._restarted(x, asked.restarts, n // asked.restarts.every)
+                    begun.append(x)
                 y, dy = self._pushed(self._outputs, x, u0, values, dx, dp)
                 ys.append(y)
                 dys.append(dy)
@@ -75,11 +79,19 @@ class EagerStepper:
             x_end=_array(x, (1, 0)),
             dx_end=_array(dx, (2, 0, 1)) if directed else None,
             states=_array(torch.stack(xs), (2, 0, 1)) if asked.keep_states else None,
+            begun=None if asked.restarts is None else _array(torch.stack(begun), (2, 0, 1)),
             normal=None if asked.probes is not None else normal,
             packed=None
             if asked.probes is None or normal is None
             else PackedNormals.of(normal[..., None], len(normal), normal.shape[1]),
         )
+
+    def _restarted(self, x: Vector, restarts: Restarts, k: int) -> Vector:
+        """The states with which windows go on at their ``k``-th restart; as they are where there is none."""
+        if k >= restarts.starts.shape[1]:
+            return x
+        kept = torch.as_tensor(restarts.kept, device=self.device)[:, None]
+        return torch.where(kept, torch.nan_to_num(x), self._tensor(restarts.starts[:, k].T))
 
     def _pushed(
         self, function: Field, x: Vector, u: Vector, p: Vector, dx: Vector, dp: Vector

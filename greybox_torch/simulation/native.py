@@ -32,7 +32,7 @@ class _Job(ctypes.Structure):
 
     _fields_ = [
         *[(n, _LONG) for n in ("groups", "steps", "substeps", "foh", "samples", "directions", "threads")],
-        *[(n, _LONG) for n in ("first_probe", "last_probe", "band")],
+        *[(n, _LONG) for n in ("first_probe", "last_probe", "band", "every", "restarts")],
         *[
             (n, _POINTER)
             for n in (
@@ -47,6 +47,8 @@ class _Job(ctypes.Structure):
                 "y",
                 "dy",
                 "trace",
+                "kept",
+                "restart",
                 "measured",
                 "weight",
                 "normal",
@@ -105,6 +107,8 @@ class NativeStepper:
             "y": _empty((groups, windows.steps, n_y, lanes), real),
             "dy": _empty((groups, windows.steps, n_y, n_d, lanes), real) if n_d and weights is None else None,
             "trace": _empty((groups, windows.steps, n_x, lanes), real) if asked.keep_states else None,
+            "kept": None if asked.restarts is None else asked.restarts.kept.astype(np.int64),
+            "restart": None if asked.restarts is None else _lanes(asked.restarts.starts, lanes, real),
             "measured": None if weights is None else signals["y"],
             "weight": None if weights is None else _aligned(weights, real),
             "normal": None if weights is None else _zeros((groups, width, width, lanes), real),
@@ -112,8 +116,9 @@ class NativeStepper:
         threads = _threads(groups, windows.steps * substeps * (1 + n_d))
         sizes = (groups, windows.steps, substeps, int(records.hold == "foh"), len(records.dt), n_d, threads)
         sparse = (n_d, n_d, 0) if asked.probes is None else (n_p - asked.probes.count, n_p, asked.probes.band + _TILE)
+        restarts = (1, 0) if asked.restarts is None else (asked.restarts.every, asked.restarts.starts.shape[1])
         pointers = [None if a is None else a.ctypes.data for a in packed.values()]
-        self.loaded.run(ctypes.byref(_Job(*sizes, *sparse, *pointers)))
+        self.loaded.run(ctypes.byref(_Job(*sizes, *sparse, *restarts, *pointers)))
         dy, normal = packed["dy"], packed["normal"]
         return Run(
             y=_windows(packed["y"], count),
@@ -121,6 +126,7 @@ class NativeStepper:
             x_end=_windows(packed["x"], count),
             dx_end=_windows(packed["dx"], count) if n_d else None,
             states=_windows(packed["trace"], count) if asked.keep_states else None,
+            begun=None if packed["restart"] is None else _windows(packed["restart"], count),
             normal=None
             if normal is None or asked.probes is not None
             else _mirrored(_windows(normal, count)[:, : n_d + 1, : n_d + 1]),

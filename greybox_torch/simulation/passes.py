@@ -23,6 +23,19 @@ class Probes:
 
 
 @dataclass(frozen=True)
+class Restarts:
+    """In every window the states are set anew at the samples that are multiples of ``every``, but for those ``kept`` (n_x,), which go on.
+
+    ``starts`` (W, K, n_x): what they are set to, the window's own start first. Where a window ends earlier the rest is not used. A kept
+    state that is not a number goes on from zero.
+    """
+
+    every: int
+    kept: np.ndarray
+    starts: np.ndarray
+
+
+@dataclass(frozen=True)
 class Pass:
     """What is asked of one pass over W windows.
 
@@ -36,6 +49,7 @@ class Pass:
         weights: (n_y,) factors on the errors against the records' outputs; asks for ``normal`` instead of ``dy``.
         keep_states: also return the states at the samples.
         probes: asks for ``packed`` instead of ``normal``, without what is not wanted of it.
+        restarts: where the states are set anew; asks for ``begun``. Without tangents.
     """
 
     windows: Windows
@@ -48,6 +62,7 @@ class Pass:
     weights: np.ndarray | None = None
     keep_states: bool = False
     probes: Probes | None = None
+    restarts: Restarts | None = None
 
 
 @dataclass(frozen=True)
@@ -58,7 +73,8 @@ class Run:
     ``x_end`` (W, n_x) and ``dx_end`` (W, n_d, n_x) after the last step; ``states`` (W, K, n_x) if they were asked for.
     ``normal`` (W, n_d + 1, n_d + 1), if errors against a measurement were asked for: the matrix [J e]ᵀ[J e] of the directions' output
     sensitivities J and the weighted errors e = measured − simulated; then ``dy`` is None. Samples beyond a window's end are
-    meaningless, and carry no weight in ``normal``. ``packed`` holds the same matrices where probes were named.
+    meaningless, and carry no weight in ``normal``. ``packed`` holds the same matrices where probes were named. ``begun`` (W, K, n_x): the
+    states with which the window goes on at every restart.
     """
 
     y: np.ndarray
@@ -68,3 +84,4 @@ class Run:
     states: np.ndarray | None
     normal: np.ndarray | None = None
     packed: PackedNormals | None = None
+    begun: np.ndarray | None = None
