@@ -27,6 +27,7 @@ from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.plain_model import fit_plain_model, weighted_by_noise
 from greybox_torch.diagnosis.select.search import search
 from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import best_so_far, or_else, result_of
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study
@@ -114,6 +115,8 @@ def find_with_more(
                 last = replace(found, more=(*last.more, more.sentence()))
                 if last.state.effects and last.others and serves(last.others, best.state, last.state):
                     best = last
+                elif best.state.effects:
+                    break  # one more experiment does not better what was found, and each costs a whole search
     except (TimeIsUp, KeyboardInterrupt):
         return replace(best, complete=False, others=None, cut=(*best.cut, AGAIN))
     if best.complete and not last.complete:
@@ -205,7 +208,7 @@ def _holding(
     study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], judged: Judgement
 ) -> Judged:
     told: tuple[str, ...] = ()
-    while state.effects and ((empty := _empty(study, state, judged.augmented)) or not judged.holds):
+    while state.effects and ((empty := _empty(study, state, judged.augmented, gains)) or not judged.holds):
         if not state.compared_without:
             state = result_of(drop_superfluous(study, state))
         if empty is not None and empty in state.prefixes:
@@ -221,8 +224,20 @@ def _holding(
     return state, gains, judged, told, True
 
 
-def _empty(study: Study, state: SearchState, augmented: Final) -> str | None:
-    """An effect whose parameters, fitted to whole records, say nothing about the machine."""
-    told = (augmented.values(), augmented.deviations())
-    found = (e.prefix for e in state.effects if degenerate(e, study.surroundings, *told) is not None)
-    return next(found, None)
+def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[str, Gain]) -> str | None:
+    """An effect whose parameters, fitted to whole records, say nothing about the machine.
+
+    Deviations are asked only where held-out experiments do not show by themselves that zero is not as good: of two amplitudes that trade
+    for one another, as the stiffness and the damping of a hard stop, neither may be determined.
+    """
+    values, deviations = augmented.values(), augmented.deviations()
+    for e in state.effects:
+        proven = not e.mechanism.essential and _proven(gains.get(e.prefix), study.settings)
+        if degenerate(e, study.surroundings, values, {} if proven else deviations) is not None:
+            return e.prefix
+    return None
+
+
+def _proven(gain: Gain | None, settings: DiagnosisSettings) -> bool:
+    """Whether held-out experiments show that an effect is there, and large enough for a finding."""
+    return gain is not None and gain.errors_away > settings.held_out_beyond_chance and gain.size >= settings.least_size
