@@ -5,12 +5,13 @@ from __future__ import annotations
 from functools import cache
 from os import PathLike
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.card import TIME, Card, read_card
-from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry
+from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry, TimeEntry
 from greybox_torch.data.checks import check_finite, check_length, check_time
 from greybox_torch.data.dataset import DataSet
 from greybox_torch.data.expression import Expression
@@ -102,10 +103,23 @@ def _time(
                 f"{path}: sample_time: {step:g} s makes times that are no numbers; expected seconds between samples"
             )
         return time, step
+    _check_unit_of_time(path, card.time, source, clock)
     time = source.columns[clock][start:stop]
     time = time if card.time.unit == "s" else time * card.time.seconds
     check_time(time, lambda sample: source.place(clock, start + sample))
     return time, float(np.median(np.diff(time)))
+
+
+def _check_unit_of_time(path: Path, time: TimeEntry, source: Source, clock: str) -> None:
+    """Raises UserError where the file says another unit of its time stamps than the card."""
+    found = source.unit(clock).strip("[]() ").replace("μ", "µ")
+    if found in get_args(TimeEntry.model_fields["unit"].annotation) and found.replace("µ", "u") != time.unit.replace(
+        "µ", "u"
+    ):
+        raise UserError(
+            f'{path}, time: {source.tables[0].path} has column "{clock}" in "{found}", the card says "{time.unit}"; '
+            f'expected time = {{ column = "{clock}", unit = "{found}" }}'
+        )
 
 
 def _signal(

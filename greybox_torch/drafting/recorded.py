@@ -38,6 +38,8 @@ def recorded(path: Path) -> Recorded:
     listing = columns_of(path)
     table, lost = _read(path, listing.names)
     lengths = [len(values) for values in table.columns.values()]
+    if not lengths and listing.names:
+        read_table(path, listing.names[:1])  # says what is wrong with it
     if not lengths:
         raise UserError(
             f"{path}: no column of numbers among {', '.join(listing.names) or 'nothing'}; expected a recording"

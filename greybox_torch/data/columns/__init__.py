@@ -22,6 +22,7 @@ _LISTERS: dict[str, Callable[[Path], Listing]] = {
     ".txt": text_columns,
     ".dat": text_columns,
     ".asc": text_columns,
+    ".lvm": text_columns,
     ".mat": matlab_columns,
     ".npz": npz_columns,
     ".parquet": parquet_columns,

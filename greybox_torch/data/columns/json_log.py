@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from greybox_torch.data.columns.listing import Listing
+from greybox_torch.data.columns.listing import Listing, is_sample
+from greybox_torch.data.readers.json_log import by_index
 from greybox_torch.errors import UserError
 from greybox_torch.reading import read_text
 
@@ -22,7 +23,7 @@ def json_columns(path: Path) -> Listing:
         return _of_records(path, content[:_LOOKED_AT])
     if not isinstance(content, dict):
         raise UserError(f"{path}: holds neither an object nor a list; expected arrays by name, or a list of records")
-    return Listing.of_parts(path, iter(content.items()))
+    return Listing.of_parts(path, ((name, by_index(value)) for name, value in content.items()))
 
 
 def json_lines_columns(path: Path) -> Listing:
@@ -52,6 +53,6 @@ def _members(record: Mapping[str, Any], prefix: str) -> list[str]:
     for name, value in record.items():
         if isinstance(value, Mapping):
             found += _members(value, f"{prefix}{name}.")
-        elif isinstance(value, bool | int | float):
+        elif value is not None and is_sample(value):
             found.append(prefix + name)
     return found

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from greybox_torch.data.readers.time_stamps import is_time_stamp
+
 MOST_COLUMNS = 400
 """Most columns that are listed of a file."""
 
@@ -47,16 +49,33 @@ def walk(name: str, value: Any) -> Iterator[tuple[str, float | None]]:
             yield from walk(f"{name}.{key}", inner)
     elif isinstance(value, bool | int | float):
         yield name, float(value)
-    elif isinstance(value, list) and value and all(isinstance(v, bool | int | float | None) for v in value):
+    elif isinstance(value, list) and value and all(is_sample(v) for v in value):
         yield name, None
+    elif isinstance(value, list) and (shape := _shape(value)):
+        yield from of_shape(name, shape)
     elif isinstance(value, list) and value and all(isinstance(v, Mapping | list) for v in value[:50]):
         for k, inner in enumerate(value[:50]):
             yield from walk(f"{name}[{k}]", inner)
     elif isinstance(value, np.ndarray) and value.dtype.kind == "O":
         for k, inner in enumerate(value.ravel(order="F")[:50]):
             yield from walk(f"{name}[{k}]", inner)
-    elif isinstance(value, np.ndarray) and value.dtype.kind in "fiub":
-        yield from of_shape(name, value.shape, float(value.flat[0]) if value.size == 1 else None)
+    elif isinstance(value, np.ndarray) and value.dtype.kind in "fiubmM":
+        yield from of_shape(
+            name, value.shape, float(value.flat[0]) if value.size == 1 and value.dtype.kind in "fiub" else None
+        )
+
+
+def is_sample(value: Any) -> bool:
+    """Whether a value of JSON may be a sample: a number, a missing one, or a time stamp."""
+    return isinstance(value, bool | int | float | None) or (isinstance(value, str) and is_time_stamp(value))
+
+
+def _shape(value: list[Any]) -> tuple[int, int] | None:
+    """Rows and columns of a list of lists of numbers, all of one length."""
+    if not value or not all(isinstance(row, list) and len(row) == len(value[0]) for row in value):
+        return None
+    numbers = all(isinstance(cell, bool | int | float | None) for row in value for cell in row)
+    return (len(value), len(value[0])) if numbers else None
 
 
 def of_shape(name: str, shape: tuple[int, ...], number: float | None = None) -> Iterator[tuple[str, float | None]]:

@@ -24,10 +24,10 @@ def npz_columns(path: Path) -> Listing:
                 version = np.lib.format.read_magic(file)
                 read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
                 shape, _, dtype = read(file)
-                if dtype.kind not in "fiub":
+                if dtype.kind not in "fiubmM":
                     continue
                 number = None
-                if math.prod(shape) == 1:
+                if math.prod(shape) == 1 and dtype.kind in "fiub":
                     number = float(np.frombuffer(file.read(dtype.itemsize), dtype)[0])
             for column, found in of_shape(member.removesuffix(".npy"), shape, number):
                 if found is None:

@@ -6,7 +6,9 @@ from itertools import islice
 from pathlib import Path
 
 from greybox_torch.data.columns.listing import MOST_COLUMNS, Listing
-from greybox_torch.data.readers.text_layout import DELIMITERS, HEAD, cells_of, encoding_of, is_number
+from greybox_torch.data.readers.text_layout import HEAD, encoding_of
+from greybox_torch.data.readers.text_rows import DELIMITERS, cells_of, is_number, uncommented
+from greybox_torch.data.readers.time_stamps import is_time_stamp
 from greybox_torch.errors import UserError
 
 
@@ -28,27 +30,36 @@ def text_columns(path: Path) -> Listing:
 def _block(head: list[str], delimiter: str) -> tuple[list[list[str]], int, int, float] | None:
     """Cells of all lines, the first line of samples, how many cells it has, and what share of them are numbers.
 
-    None where no two such lines follow each other. A column of text beside the numbers is no hindrance.
+    The longest run of such lines is meant: about the recording there are often some lines of a name and a number. None where no two of them
+    follow each other. A column of text beside the numbers is no hindrance.
     """
     rows = [cells_of(line, delimiter) for line in head]
     shares = [_share(row, delimiter) for row in rows]
+    runs: dict[int, int] = {}  # lengths by first line
+    first = 0
     for k, (row, share) in enumerate(zip(rows, shares, strict=True)):
-        last = k + 1 == len(rows)
-        if share >= 0.5 and (last or (shares[k + 1] >= 0.5 and len(rows[k + 1]) == len(row))):
-            return rows, k, len(row), share
-    return None
+        first = first if k and share >= 0.5 and shares[k - 1] >= 0.5 and len(rows[k - 1]) == len(row) else k
+        if share >= 0.5:
+            runs[first] = k + 1 - first
+    start = max(runs, key=runs.__getitem__, default=None)
+    if start is None or (runs[start] < 2 and start + 1 < len(rows)):
+        return None
+    return rows, start, len(rows[start]), shares[start]
 
 
 def _share(row: list[str], delimiter: str) -> float:
-    """What share of the cells that are not empty are numbers."""
+    """What share of the cells that are not empty are numbers or time stamps."""
     filled = [cell for cell in row if cell]
-    return sum(is_number(cell, delimiter) for cell in filled) / len(filled) if filled else 0.0
+    known = sum(is_number(cell, delimiter) or is_time_stamp(cell) for cell in filled)
+    return known / len(filled) if filled else 0.0
 
 
 def _names(rows: list[list[str]], first: int, width: int) -> list[str]:
     """The line above the samples with a different name for every cell; of two such lines the upper, since the lower has the units."""
-    above = [row for row in rows[max(0, first - 2) : first] if _is_heading(row, width)]
-    for row in above:
+    above = rows[max(0, first - 2) : first]
+    if above and uncommented(above[-1]) != above[-1]:
+        above = above[-1:]  # of comments, the last
+    for row in (names for names in map(uncommented, above) if _is_heading(names, width)):
         names = [name for name in row[:width] if name]
         if len(set(names)) == len(names):
             return names

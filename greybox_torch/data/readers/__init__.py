@@ -44,6 +44,7 @@ READERS: dict[str, Reader] = {
     ".txt": read_csv,
     ".dat": read_csv,
     ".asc": read_csv,
+    ".lvm": read_csv,
 }
 
 

@@ -17,7 +17,9 @@ from typing import TextIO
 import numpy as np
 
 from greybox_torch.data.readers.table import Table
-from greybox_torch.data.readers.text_layout import Layout, UnreadableRow, encoding_of, layout_of
+from greybox_torch.data.readers.text_layout import Layout, encoding_of, layout_of
+from greybox_torch.data.readers.text_rows import UnreadableRow
+from greybox_torch.data.readers.time_stamps import TimeStamps
 from greybox_torch.errors import UserError
 
 
@@ -37,12 +39,25 @@ def read_csv(path: Path, columns: Collection[str]) -> Table:
 def _read_samples(path: Path, file: TextIO, layout: Layout) -> Table:
     lines = array("q")
     values = {column: array("d") for column in layout.positions}
+    stamps = {column: TimeStamps() for column in layout.stamps}
     places = [(column, position, values[column].append) for column, position in layout.positions.items()]
     for line, row in _samples(path, file, layout):
         lines.append(line)
         for column, position, append in places:
-            append(_number(path, line, column, row[position].strip(), layout.decimal))
-    return Table(path, {column: np.array(samples) for column, samples in values.items()}, lines, layout.units)
+            cell = row[position].strip()
+            if column in stamps:
+                append(_seconds(path, line, column, cell, stamps[column]))
+            else:
+                append(_number(path, line, column, cell, layout.decimal))
+    units = layout.units | dict.fromkeys(stamps, "s")
+    return Table(path, {column: np.array(samples) for column, samples in values.items()}, lines, units)
+
+
+def _seconds(path: Path, line: int, column: str, cell: str, stamps: TimeStamps) -> float:
+    try:
+        return stamps.seconds(cell) if cell else float("nan")
+    except ValueError as error:
+        raise UserError(f'{path}, line {line}, column "{column}": found "{cell:.60}": {error}') from None
 
 
 def _number(path: Path, line: int, column: str, cell: str, decimal: str) -> float:

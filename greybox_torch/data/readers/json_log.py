@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from greybox_torch.data.readers.column import Field, Step, inside, root_of, steps_of
 from greybox_torch.data.readers.table import NoSuchColumn, Table, as_vector, require
+from greybox_torch.data.readers.time_stamps import TimeStamps, is_time_stamp
 from greybox_torch.errors import UserError
 from greybox_torch.reading import read_text
 
@@ -36,7 +37,7 @@ def read_json(path: Path, columns: Collection[str]) -> Table:
         root = root_of(column, content)
         require(path, [column] if root not in content else [], list(content))
         place = f'{path}, column "{column}"'
-        found = content[root] if column == root else inside(place, content[root], steps_of(column)[1:])
+        found = by_index(content[root] if column == root else inside(place, content[root], steps_of(column)[1:]))
         vectors[column] = as_vector(path, column, _numbers(place, found))
     return Table(path, vectors)
 
@@ -53,6 +54,13 @@ def read_json_lines(path: Path, columns: Collection[str]) -> Table:
             raise UserError(f"{path}, line {line}: not JSON: {_said(error)}; expected one record a line") from None
         lines.append(line)
     return _from_records(path, records, columns, lines)
+
+
+def by_index(value: Any) -> Any:
+    """A column whose samples stand by their index, {"0": 1.5, "1": 1.7}, as pandas writes it, as a list; anything else as it is."""
+    if isinstance(value, dict) and value and list(value) == [str(k) for k in range(len(value))]:
+        return list(value.values())
+    return value
 
 
 def _from_records(path: Path, records: list[Any], columns: Collection[str], lines: list[int] | None) -> Table:
@@ -98,10 +106,18 @@ def _numbers(place: str, values: Any, lines: list[int] | None = None) -> NDArray
 
 
 def _each(place: str, values: list[Any], lines: list[int] | None) -> Iterator[float]:
+    stamps = TimeStamps()
+    as_times = is_time_stamp(next((v for v in values if isinstance(v, str)), ""))
     for k, value in enumerate(values):
         if value is None:
             yield float("nan")
             continue
+        if as_times and isinstance(value, str):
+            try:
+                yield stamps.seconds(value)
+                continue
+            except ValueError:
+                pass
         if isinstance(value, bool | int | float):
             try:
                 yield float(value)

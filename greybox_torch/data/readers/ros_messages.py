@@ -18,8 +18,8 @@ NEEDED = "pip install 'greybox_torch[robot]'"
 class Decoder:
     """Decodes the messages of one topic. What that needs is made at the first, as most topics of a log are never asked for.
 
-    ``kind`` is their type, such as "sensor_msgs/msg/JointState"; ``encoding`` is "cdr" (ROS 2), "ros1" or "json"; ``definition`` is of the type
-    in ``language`` ("ros2msg", "ros2idl", "ros1msg"), empty where the log has none: then it is one of ROS itself.
+    ``kind`` is their type, such as "sensor_msgs/msg/JointState"; ``encoding`` is "cdr" (ROS 2), "ros1" or "json"; ``definition`` is of the
+    type in ``language`` ("ros2msg", "ros2idl", "ros1msg"), empty where the log has none: then it is one of ROS itself.
     """
 
     path: Path

@@ -82,6 +82,9 @@ def as_vector(path: Path, column: str, values: NDArray) -> NDArray[np.float64]:
 
     Raises UserError for any other shape, and for text, complex numbers, structures and whatever else is no number.
     """
+    if values.dtype.kind in "mM":  # times and durations, in seconds
+        missing, values = np.isnat(values), values.astype(f"{values.dtype.kind}8[ns]").astype(np.int64) * 1e-9
+        values = np.where(missing, np.nan, values)
     if values.dtype.kind not in "fiub":
         what = "a structure" if values.dtype.names else KINDS.get(values.dtype.kind, str(values.dtype))
         raise UserError(f'{path}, column "{column}": holds {what}; expected real numbers')

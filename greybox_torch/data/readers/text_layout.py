@@ -6,18 +6,18 @@ one of a file, whether or not it has a line of names.
 
 from __future__ import annotations
 
-import csv
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 from typing import TextIO
 
 from greybox_torch.data.readers.table import require
+from greybox_torch.data.readers.text_rows import COMMENTS, DELIMITERS, is_number, rows_of, uncommented
+from greybox_torch.data.readers.time_stamps import is_time_stamp
 from greybox_torch.errors import UserError
 
-DELIMITERS = (",", ";", "\t", "|", " ")
 HEAD = 300  # lines among which the line of names stands
 _LONGEST_LINE = 2**20
 _POSITION = re.compile(r"#([1-9]\d{0,5})")
@@ -30,7 +30,8 @@ class Layout:
     """Where things stand in a text file.
 
     `first` is the number of lines before the samples; `width` how many cells a line of samples has at least; `positions` where each column
-    stands; `decimal` "." or ","; `units` of the columns, where the file has a line of them; `names_line` counts from 1, 0 without names.
+    stands; `decimal` "." or ","; `units` of the columns, where the file has a line of them; `stamps` are the columns of dates or times of
+    day; `names_line` counts from 1, 0 without names.
     """
 
     delimiter: str
@@ -40,12 +41,13 @@ class Layout:
     width: int
     positions: dict[str, int]
     units: dict[str, str] = field(default_factory=dict)
+    stamps: frozenset[str] = frozenset()
 
     def rows(self, file: TextIO) -> Iterator[tuple[int, list[str]]]:
         """Line and cells of everything behind the heading; a line of a cell with line breaks is its last. Raises csv.Error."""
         for _ in islice(file, self.first):
             pass
-        return _rows(file, self.delimiter, self.first)
+        return rows_of(file, self.delimiter, self.first)
 
 
 def encoding_of(path: Path) -> str:
@@ -83,9 +85,15 @@ def layout_of(path: Path, file: TextIO, columns: Collection[str]) -> Layout:
     delimiter, line, names = found
     _check_once(path, line, wanted, names)
     positions = {column: numbered[column] if column in numbered else names.index(column) for column in columns}
-    width = len(names) if line else max(positions.values()) + 1
-    after = [row for _, row in _rows(iter(head[line:]), delimiter, line, strict=False)]
+    after = [row for _, row in rows_of(iter(head[line:]), delimiter, line, strict=False)]
     units = _units(after[0], positions) if line and after else None
+    samples = after[units is not None :]
+    least = max(positions.values()) + 1
+    width = len(names) if line else least
+    if (
+        line and samples and delimiter != " "
+    ):  # the last columns may have a name and never a cell, as LabVIEW's comments
+        width = max(least, min(width, len(samples[0])))
     return Layout(
         delimiter=delimiter,
         decimal=_decimal(delimiter, after, positions),
@@ -94,15 +102,22 @@ def layout_of(path: Path, file: TextIO, columns: Collection[str]) -> Layout:
         width=width,
         positions=positions,
         units=units or {},
+        stamps=frozenset(column for column, p in positions.items() if is_time_stamp(_first(samples, p))),
     )
+
+
+def _first(rows: list[list[str]], position: int) -> str:
+    """The first cell that is not empty at a position."""
+    return next((row[position].strip() for row in rows if position < len(row) and row[position].strip()), "")
 
 
 def _named(head: list[str], wanted: list[str], numbered: dict[str, int]) -> tuple[str, int, list[str]] | None:
     """Delimiter, number and cells of the first line that names all columns; of several delimiters the one that gives most cells."""
     best: tuple[str, int, list[str]] | None = None
     for delimiter in DELIMITERS:
-        for line, row in _rows(iter(head), delimiter, 0, strict=False):
+        for line, row in rows_of(iter(head), delimiter, 0, strict=False):
             names = [name.strip() for name in row]
+            names = names if set(wanted) <= set(names) and names[0] not in COMMENTS else uncommented(names)
             if set(wanted) <= set(names) and all(k < len(names) for k in numbered.values()):
                 rank = (line, delimiter == " ", -len(names))
                 if best is None or rank < (best[1], best[0] == " ", -len(best[2])):
@@ -116,7 +131,7 @@ def _numbered(head: list[str], numbered: dict[str, int]) -> tuple[str, int, list
     best: tuple[str, int, list[str]] | None = None
     for delimiter in DELIMITERS:
         before = _before_numbers(head, delimiter, numbered)
-        row = next((row for _, row in _rows(iter(head[before:]), delimiter, before, strict=False)), [])
+        row = next((row for _, row in rows_of(iter(head[before:]), delimiter, before, strict=False)), [])
         cells = [cell.strip() for cell in row]
         fits = bool(cells) and all(k < len(cells) for k in numbered.values())
         whole = all(is_number(cell, delimiter) for cell in cells)
@@ -128,35 +143,23 @@ def _numbered(head: list[str], numbered: dict[str, int]) -> tuple[str, int, list
 def _before_numbers(head: list[str], delimiter: str, positions: dict[str, int]) -> int:
     """How many lines stand before the first whose cells are numbers at the positions."""
     for k, text in enumerate(head):
-        row = next((row for _, row in _rows(iter([text]), delimiter, k, strict=False)), [])
+        row = next((row for _, row in rows_of(iter([text]), delimiter, k, strict=False)), [])
         cells = [row[p].strip() for p in positions.values() if p < len(row)]
         if len(cells) == len(positions) and any(cells) and all(is_number(cell, delimiter) for cell in cells):
             return k
     return len(head)
 
 
-def cells_of(line: str, delimiter: str) -> list[str]:
-    """The cells of one line; none of a line that cannot be taken apart."""
-    return next(([cell.strip() for cell in row] for _, row in _rows(iter([line]), delimiter, 0, strict=False)), [])
-
-
-def is_number(cell: str, delimiter: str) -> bool:
-    """Whether a cell holds a number, perhaps with a decimal comma, or is empty."""
-    try:
-        float((cell if delimiter == "," else cell.replace(",", ".", 1)) or "nan")
-    except ValueError:
-        return False
-    return True
-
-
 def _likely_names(head: list[str], wanted: list[str]) -> list[str]:
     """For a message: the line that names most of the columns, else the first, split where it gives most cells."""
-    rows = [[cell.strip() for cell in row] for d in DELIMITERS[:4] for _, row in _rows(iter(head), d, 0, strict=False)]
+    rows = [
+        [cell.strip() for cell in row] for d in DELIMITERS[:4] for _, row in rows_of(iter(head), d, 0, strict=False)
+    ]
     named = max(rows, key=lambda row: len(set(wanted) & set(row)), default=[])
     if set(wanted) & set(named):
         return named
     first = [
-        [cell.strip() for cell in row] for d in DELIMITERS[:4] for _, row in _rows(iter(head[:1]), d, 0, strict=False)
+        [cell.strip() for cell in row] for d in DELIMITERS[:4] for _, row in rows_of(iter(head[:1]), d, 0, strict=False)
     ]
     return max(first, key=len, default=[])
 
@@ -183,50 +186,3 @@ def _decimal(delimiter: str, rows: list[list[str]], positions: dict[str, int]) -
         return "."
     cells = [row[p].strip() for row in rows for p in positions.values() if p < len(row)]
     return "," if any("," in cell and is_number(cell, delimiter) for cell in cells) else "."
-
-
-def _rows(lines: Iterable[str], delimiter: str, before: int, *, strict: bool = True) -> Iterator[tuple[int, list[str]]]:
-    """Line number and cells of each row; runs of spaces separate where the delimiter is a space."""
-    if delimiter == " ":
-        yield from ((before + k, line.split()) for k, line in enumerate(lines, start=1))
-        return
-    taken: list[str] = []
-    rows = csv.reader(_kept(lines, taken), delimiter=delimiter, skipinitialspace=delimiter != "\t")
-    last = 0
-    while True:
-        try:
-            row = next(rows)
-            if strict and len(taken) > 1:  # a cell with line breaks, or a quotation mark that is never closed
-                list(csv.reader(taken, delimiter=delimiter, skipinitialspace=delimiter != "\t", strict=True))
-        except StopIteration:
-            return
-        except csv.Error as error:
-            if not strict:
-                return
-            raise UnreadableRow(before + last + 1, _said(error)) from None
-        taken.clear()
-        last = rows.line_num
-        yield before + last, row
-
-
-def _kept(lines: Iterable[str], taken: list[str]) -> Iterator[str]:
-    for line in lines:
-        taken.append(line)
-        yield line
-
-
-class UnreadableRow(Exception):
-    """A row that begins in `line` cannot be taken apart."""
-
-    def __init__(self, line: int, why: str) -> None:
-        super().__init__(why)
-        self.line = line
-
-
-def _said(error: csv.Error) -> str:
-    text = str(error)
-    if "field larger" in text:
-        return "a cell of more than 131072 characters, or a quotation mark that is opened here and not closed"
-    if "unexpected end" in text:
-        return "a quotation mark is opened here and not closed"
-    return text

@@ -147,7 +147,6 @@ def test_scalar_in_npz_is_refused(tmp_path: Path) -> None:
     [
         (np.array(["a", "b"]), "text"),
         (np.array([1j, 2j]), "complex numbers"),
-        (np.array(["2026-01-01"], dtype="datetime64[s]"), "datetime64"),
         (np.array([object()]), "Object arrays"),
     ],
 )
