@@ -28,7 +28,7 @@ class Kind:
 
 KINDS: Mapping[str, Kind] = {
     "coulomb": Kind("DryCoulomb", "level", 0.08, (("rotor", "coulomb_friction"), ("rotor", "stribeck_friction"))),
-    "drag": Kind("QuadraticDrag", "c", 2e-3, (("rotor", "quadratic_drag"),)),
+    "drag": Kind("QuadraticDrag", "c", 3e-3, (("rotor", "quadratic_drag"),)),
     "dead zone": Kind("ActuatorDeadzone", "half_width", 0.1, (("actuator", "actuator_deadzone"),)),
 }
 

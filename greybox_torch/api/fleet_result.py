@@ -19,6 +19,7 @@ from greybox_torch.fleets.journal import JOURNAL, line
 from greybox_torch.fleets.page import ANSWER_WORDS, FAILURE_WORDS, PAGE, render_fleet
 from greybox_torch.fleets.parquet import TABLE, parquet
 from greybox_torch.fleets.row import Row
+from greybox_torch.fleets.suggested_beliefs import SuggestedBeliefs, suggested_beliefs
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
 
@@ -70,6 +71,11 @@ class FleetResult(Result):
         """What machines with the same effect have in common, and which stand out."""
         return groups(self.table)
 
+    @cached_property
+    def suggested_beliefs(self) -> tuple[SuggestedBeliefs, ...]:
+        """What the fleet says beforehand of further machines, by model: tables `[beliefs]` for their cards."""
+        return suggested_beliefs(self.table)
+
     @property
     def changes(self) -> list[dict[str, Any]]:
         """A row for every change of a machine over time."""
@@ -95,6 +101,7 @@ class FleetResult(Result):
             "machines": self.rows,
             "changes": self.changes,
             "common": [group.as_json() for group in self.common],
+            "beliefs": [one.as_json() for one in self.suggested_beliefs],
             "page": str(folder / PAGE),
         }
 
@@ -107,9 +114,12 @@ class FleetResult(Result):
 
     def files(self, folder: Path) -> dict[Path, str | bytes]:
         return {
-            folder / PAGE: render_fleet(self.table, self.common, self.histories, waiting=self.waiting),
+            folder / PAGE: render_fleet(
+                self.table, self.common, self.histories, suggested=self.suggested_beliefs, waiting=self.waiting
+            ),
             folder / TABLE: parquet(self.table),
             folder / JOURNAL: "".join(line(row) for row in self.table),
+            **{folder / one.file: one.toml() for one in self.suggested_beliefs},
         }
 
     def plot(self) -> Figure:
@@ -153,7 +163,11 @@ class FleetResult(Result):
             for group in self.common
             for row, _, residual in group.outliers
         ]
-        return [*failed, *changed, *outlying]
+        known = [
+            f"{one.file}: what {one.of} machines of {one.model} were found with, as [beliefs] for the cards of further ones."
+            for one in self.suggested_beliefs
+        ]
+        return [*failed, *changed, *outlying, *known]
 
 
 def _cells(row: Row) -> list[str | float]:

@@ -65,20 +65,20 @@ class Group:
 
 def groups(rows: Iterable[Row]) -> tuple[Group, ...]:
     """Of every effect that enough machines show with a deviation, the most frequent first. Of each machine its latest recording counts."""
-    latest = _latest(row for row in rows if row.answer not in ("failed", "unfinished"))
+    last = latest(row for row in rows if row.answer not in ("failed", "unfinished"))
     together: dict[tuple[str, str, str], list[Row]] = {}
-    for row in latest:
+    for row in last:
         if row.key_parameter and row.value is not None and row.std is not None and math.isfinite(row.value * row.std):
             together.setdefault((row.model, row.key_parameter, row.unit), []).append(row)
     found = [
-        Group(*key, tuple(own), sum(row.model == key[0] for row in latest), _estimate(own))
+        Group(*key, tuple(own), sum(row.model == key[0] for row in last), _estimate(own))
         for key, own in together.items()
         if len(own) >= FEWEST
     ]
     return tuple(sorted(found, key=lambda group: -len(group.rows)))
 
 
-def _latest(rows: Iterable[Row]) -> list[Row]:
+def latest(rows: Iterable[Row]) -> list[Row]:
     """The row of each machine with the last date; the last one where there are no dates."""
     by_machine: dict[str, Row] = {}
     for row in rows:

@@ -14,6 +14,7 @@ from greybox_torch.fleets.charts import change_sentences, history_chart
 from greybox_torch.fleets.history import History
 from greybox_torch.fleets.in_common import Group
 from greybox_torch.fleets.row import Row
+from greybox_torch.fleets.suggested_beliefs import SuggestedBeliefs
 from greybox_torch.report import text
 from greybox_torch.report.chart.panel import Chart
 
@@ -66,10 +67,18 @@ class Course:
     chart: Chart
 
 
-def render_fleet(rows: Sequence[Row], common: Sequence[Group], courses: Sequence[History], *, waiting: int = 0) -> str:
+def render_fleet(
+    rows: Sequence[Row],
+    common: Sequence[Group],
+    courses: Sequence[History],
+    *,
+    suggested: Sequence[SuggestedBeliefs] = (),
+    waiting: int = 0,
+) -> str:
     """The page as HTML text.
 
     Args:
+        suggested: what is said of in the files beside the page.
         waiting: data sets that no worker has had yet, where the run was stopped.
     """
     counts = Counter(row.answer for row in rows)
@@ -86,6 +95,7 @@ def render_fleet(rows: Sequence[Row], common: Sequence[Group], courses: Sequence
         dated=any(row.recorded for row in rows),
         waiting=waiting,
         groups=[_group(group) for group in common],
+        suggested=suggested,
         courses=drawn,
         standing_out=_standing_out(drawn, common),
         more_courses=max(0, len(courses) - MOST_HISTORIES),
