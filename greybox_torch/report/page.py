@@ -20,7 +20,8 @@ def render_page(verdict: Verdict, about: About) -> str:
     environment = _environment()
     printed = [_printed(environment, name, verdict, about) for name in SECTIONS]
     page = environment.get_template("page.html.j2")
-    return page.render(title=f"{verdict.dataset}: diagnosis", sections=printed, version=about.version)
+    live = any("data-lines=" in section for section in printed)
+    return page.render(live=live, title=f"{verdict.dataset}: diagnosis", sections=printed, version=about.version)
 
 
 def _printed(environment: Environment, name: str, verdict: Verdict, about: About) -> str:

@@ -2,11 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from greybox_torch.report.chart.marks import Mark
 from greybox_torch.report.chart.scale import Scale, Tick
+
+
+@dataclass(frozen=True)
+class Live:
+    """How a panel is drawn anew over another stretch of time: by series of its marks, the ``names`` of what the chart's samples have.
+
+    The vertical axis follows what is shown within ``clip``; ``detail`` is the stretch that is shaded, in s.
+    """
+
+    names: Mapping[str, str]
+    clip: tuple[float, float]
+    detail: tuple[float, float]
+
+    @property
+    def lines(self) -> str:
+        return " ".join(f"{series}:{name}" for series, name in self.names.items())
 
 
 @dataclass(frozen=True)
@@ -23,6 +39,7 @@ class Panel:
     title: str = ""
     zero: bool = False
     """Whether the line at zero is drawn."""
+    live: Live | None = None
 
     @property
     def x_ticks(self) -> tuple[Tick, ...]:
@@ -30,7 +47,12 @@ class Panel:
 
     @property
     def y_ticks(self) -> tuple[Tick, ...]:
-        return self.y.ticks({"tall": 6, "medium": 4, "low": 3}[self.size])
+        return self.y.ticks(self.most_ticks)
+
+    @property
+    def most_ticks(self) -> int:
+        """Of the vertical axis, or one more."""
+        return {"tall": 6, "medium": 4, "low": 3}[self.size]
 
     @property
     def zero_line(self) -> float | None:
@@ -55,6 +77,8 @@ class Chart:
     columns: tuple[tuple[Panel, ...], ...]
     caption: str
     legend: tuple[Key, ...] = ()
+    samples: str = ""
+    """What a reader can look closer at, as JSON; empty where a chart stays as it is."""
 
 
 def stacked(panels: Sequence[Panel], caption: str, legend: Sequence[Key] = ()) -> Chart:

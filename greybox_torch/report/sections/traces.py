@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
-from greybox_torch.diagnosis.verdict import Trace, Verdict
+from greybox_torch.diagnosis.verdict import InputTrace, Trace, Verdict
 from greybox_torch.estimate.metrics import root_mean_square
 from greybox_torch.report import text
 from greybox_torch.report.chart.marks import Mark, line, span
-from greybox_torch.report.chart.panel import Chart, Key, Panel
+from greybox_torch.report.chart.panel import Chart, Key, Live, Panel
+from greybox_torch.report.chart.samples import Samples, share_of_each
 from greybox_torch.report.chart.scale import Scale, linear
 
 MOST_CHARTS = 12
 """Charts on one page; with more experiments, those whose error was largest are drawn."""
+
+MOST_INPUTS = 2
+"""Inputs that are drawn beneath an experiment's first output."""
 
 DETAIL = 0.05
 """Share of the record that the detail shows."""
@@ -42,13 +48,30 @@ class Traces:
         if not shown:
             return None
         worst = sorted(shown, key=lambda t: -_relative_error(t))[:MOST_CHARTS]
+        drawn = [t for t in shown if any(t is w for w in worst)]
         several = len({t.output for t in shown}) > 1
+        mismatch, numbers = bool(verdict.effects), list(dict.fromkeys(t.experiment for t in drawn))
+        inputs = [_inputs(verdict, t) if t is _first(drawn, t.experiment) else () for t in drawn]
+        most = share_of_each(len(drawn), 1 + 2 * len(series(drawn[0], mismatch)) + max(map(len, inputs)))
         charts = [
-            Named(t.experiment + (f": {text.words(t.output)}" if several else ""), _chart(t, bool(verdict.effects)))
-            for t in shown
-            if any(t is w for w in worst)
+            Named(
+                t.experiment + (f": {text.words(t.output)}" if several else ""),
+                _chart(t, mismatch, own, numbers.index(t.experiment), most),
+            )
+            for t, own in zip(drawn, inputs, strict=True)
         ]
         return cls(tuple(charts), len(shown) - len(charts))
+
+
+def _first(traces: Sequence[Trace], experiment: str) -> Trace:
+    """The first trace of an experiment, which has its inputs beneath it."""
+    return next(t for t in traces if t.experiment == experiment)
+
+
+def _inputs(verdict: Verdict, trace: Trace) -> tuple[InputTrace, ...]:
+    """The first inputs of a trace's experiment."""
+    own = (i for i in verdict.inputs if i.experiment == trace.experiment and len(i.time) == len(trace.time))
+    return tuple(islice(own, MOST_INPUTS))
 
 
 def validation_traces(verdict: Verdict) -> list[Trace]:
@@ -74,41 +97,91 @@ def _relative_error(trace: Trace) -> float:
     return error if np.isfinite(error) else np.inf
 
 
-def _chart(trace: Trace, mismatch: bool) -> Chart:
-    whole, detail = slice(None), _worst(trace)
-    runs = series(trace, mismatch)
+@dataclass(frozen=True)
+class _Stretch:
+    """A part of one output's record, with the axis and the shade that its panels share; ``closer`` where a reader can look closer."""
+
+    trace: Trace
+    runs: dict[str, np.ndarray]
+    part: slice
+    x: Scale
+    shade: tuple[Mark, ...]
+    detail: tuple[float, float]
+    closer: bool
+
+    @property
+    def time(self) -> np.ndarray:
+        return self.trace.time[self.part]
+
+    @property
+    def reach(self) -> float:
+        low, high = _extent(self.trace)
+        return high - low
+
+    def live(self, names: dict[str, str], low: float, high: float) -> Live | None:
+        return Live(names, (low, high), self.detail) if self.closer else None
+
+
+def _chart(trace: Trace, mismatch: bool, inputs: Sequence[InputTrace], experiment: int, most: int) -> Chart:
+    runs, worst = series(trace, mismatch), _worst(trace)
+    detail = float(trace.time[worst][0]), float(trace.time[worst][-1])
     columns = []
-    for part, title in ((whole, "whole record"), (detail, "detail where the error was largest")):
-        x = linear(trace.time[part], room=0.0)
-        shade = (
-            (span(x, float(trace.time[detail][0]), float(trace.time[detail][-1]), "detail"),) if part is whole else ()
-        )
-        columns.append((_signal(trace, runs, part, x, title, shade), _error(trace, runs, part, x, shade)))
+    for part, title in ((slice(None), "whole record"), (worst, "detail where the error was largest")):
+        x, closer = linear(trace.time[part], room=0.0), part is not worst
+        shade = (span(x, *detail, "detail"),) if closer else ()
+        here = _Stretch(trace, runs, part, x, shade, detail, closer)
+        last = len(inputs) == 0
+        panels = [_signal(here, title), _error(here, last=last)]
+        panels += [_input(here, one, k, last=k == len(inputs) - 1) for k, one in enumerate(inputs)]
+        columns.append(tuple(panels))
     what = text.first_capital(text.words(trace.output))
-    caption = f"{what} measured and simulated, and the error between them: {_told(trace, runs, whole)}."
-    return Chart(tuple(columns), caption, (Key("measured", "measured"), *keys(mismatch)))
+    caption = f"{what} measured and simulated, and the error between them: {_told(trace, runs, slice(None))}."
+    samples = Samples(experiment, trace.time, _carried(trace, runs, inputs)).text(most)
+    return Chart(tuple(columns), caption, (Key("measured", "measured"), *keys(mismatch)), samples)
 
 
-def _signal(
-    trace: Trace, runs: dict[str, np.ndarray], part: slice, x: Scale, title: str, shade: tuple[Mark, ...]
-) -> Panel:
-    time, (low, high) = trace.time[part], _extent(trace)
-    reach = high - low
-    y = linear(trace.measured[part], *(np.clip(v[part], low - 0.3 * reach, high + 0.3 * reach) for v in runs.values()))
-    marks = [line(x, y, time, trace.measured[part], "measured")]
-    marks += [line(x, y, time, values[part], name) for name, values in runs.items()]
+def _carried(trace: Trace, runs: dict[str, np.ndarray], inputs: Sequence[InputTrace]) -> dict[str, np.ndarray]:
+    """What a reader can look closer at, by name; a simulation that runs away is cut where axes do not follow."""
+    low, high = _extent(trace)
+    room = 3.0 * (high - low)
+    held = {name: np.clip(values, low - room, high + room) for name, values in runs.items()}
+    errors = {f"error_{name}": trace.measured - values for name, values in held.items()}
+    return {"measured": trace.measured, **held, **errors, **{f"input_{k}": i.values for k, i in enumerate(inputs)}}
+
+
+def _signal(here: _Stretch, title: str) -> Panel:
+    trace, part, (low, high) = here.trace, here.part, _extent(here.trace)
+    ends = low - 0.3 * here.reach, high + 0.3 * here.reach
+    y = linear(trace.measured[part], *(np.clip(v[part], *ends) for v in here.runs.values()))
+    marks = [line(here.x, y, here.time, trace.measured[part], "measured")]
+    marks += [line(here.x, y, here.time, values[part], name) for name, values in here.runs.items()]
     alt = f"{trace.experiment}, {title}: {text.words(trace.output)} measured and simulated over time."
-    return Panel(x, y, "", text.axis(trace.output, trace.unit), (*shade, *marks), alt, "tall", title)
+    live = here.live({"measured": "measured", **{name: name for name in here.runs}}, *ends)
+    return Panel(
+        here.x, y, "", text.axis(trace.output, trace.unit), (*here.shade, *marks), alt, "tall", title, live=live
+    )
 
 
-def _error(trace: Trace, runs: dict[str, np.ndarray], part: slice, x: Scale, shade: tuple[Mark, ...]) -> Panel:
-    time, (low, high) = trace.time[part], _extent(trace)
-    reach = 1.2 * (high - low)
-    pieces = {name: trace.measured[part] - values[part] for name, values in runs.items()}
+def _error(here: _Stretch, *, last: bool) -> Panel:
+    trace, part, reach = here.trace, here.part, 1.2 * here.reach
+    pieces = {name: trace.measured[part] - values[part] for name, values in here.runs.items()}
     y = linear(*(np.clip(error, -reach, reach) for error in pieces.values()), np.zeros(1))
-    marks = [line(x, y, time, error, name) for name, error in pieces.items()]
-    alt = f"{trace.experiment}: error over time, {_told(trace, runs, part)}."
-    return Panel(x, y, "time [s]", text.axis("error", trace.unit), (*shade, *marks), alt, "medium", zero=True)
+    marks = [line(here.x, y, here.time, error, name) for name, error in pieces.items()]
+    alt = f"{trace.experiment}: error over time, {_told(trace, here.runs, part)}."
+    live = here.live({name: f"error_{name}" for name in here.runs}, -reach, reach)
+    label = "time [s]" if last else ""
+    axis = text.axis("error", trace.unit)
+    return Panel(here.x, y, label, axis, (*here.shade, *marks), alt, "medium", zero=True, live=live)
+
+
+def _input(here: _Stretch, one: InputTrace, number: int, *, last: bool) -> Panel:
+    values = one.values[here.part]
+    y = linear(values)
+    marks = (*here.shade, line(here.x, y, here.time, values, "input"))
+    alt = f"{here.trace.experiment}: the input {text.words(one.input)} over time."
+    live = here.live({"input": f"input_{number}"}, float(np.nanmin(one.values)), float(np.nanmax(one.values)))
+    label = "time [s]" if last else ""
+    return Panel(here.x, y, label, text.axis(one.input, one.unit), marks, alt, "low", live=live)
 
 
 def _told(trace: Trace, runs: dict[str, np.ndarray], part: slice) -> str:

@@ -1,0 +1,140 @@
+"""The traces: what is drawn, and that a reader can look closer in a browser, with all channels of an experiment together."""
+
+from __future__ import annotations
+
+import html as escapes
+import re
+import shutil
+import subprocess
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.verdict import InputTrace, Verdict
+from greybox_torch.report.about import About
+from greybox_torch.report.page import render_page
+from greybox_torch.report.sections.traces import MOST_INPUTS, Traces
+
+BROWSER = next(
+    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
+)
+
+
+def with_inputs(verdict: Verdict, count: int = 1) -> Verdict:
+    """With voltages in every experiment, the k-th a sine of k + 1 Hz."""
+    experiments = {t.experiment: t.time for t in verdict.traces}
+    inputs = [
+        InputTrace(experiment, f"voltage_{k}", "V", time, np.sin(2 * np.pi * (k + 1) * time))
+        for experiment, time in experiments.items()
+        for k in range(count)
+    ]
+    return replace(verdict, inputs=tuple(inputs))
+
+
+def drawn(verdict: Verdict) -> Traces:
+    found = Traces.of(verdict)
+    assert found is not None
+    return found
+
+
+def test_inputs_stand_beneath_the_first_output(with_traces: Callable[..., Verdict]) -> None:
+    verdict = with_traces(("A", "validation", 1.0), ("B", "validation", 1.0))
+    verdict = replace(verdict, traces=(*verdict.traces, replace(verdict.traces[0], output="angle")))
+    first, second, third = (one.chart.columns for one in drawn(with_inputs(verdict, 3)).charts)
+    labels = [[panel.y_label for panel in columns[0]] for columns in (first, second, third)]
+    assert [label.split(" [")[0] for label in labels[0]] == ["motor speed", "error", "voltage 0", "voltage 1"]
+    assert len(labels[0]) == len(labels[1]) == 2 + MOST_INPUTS and len(labels[2]) == 2
+    assert [panel.x_label for panel in first[0]] == ["", "", "", "time [s]"]
+    assert [panel.x_label for panel in third[0]] == ["", "time [s]"]
+
+
+def test_only_the_whole_record_can_be_looked_closer_at(with_traces: Callable[..., Verdict]) -> None:
+    (one,) = drawn(with_inputs(with_traces(("A", "validation", 1.0)))).charts
+    whole, detail = one.chart.columns
+    assert [panel.live.lines for panel in whole if panel.live] == [
+        "measured:measured before:before after:after",
+        "before:error_before after:error_after",
+        "input:input_0",
+    ]
+    assert all(panel.live is None for panel in detail)
+
+
+def test_a_million_samples(with_traces: Callable[..., Verdict], about: About) -> None:
+    verdict = with_inputs(with_traces(("A", "validation", 1.0, 1_000_000)))
+    assert len(render_page(verdict, about)) < 2_500_000
+
+
+def test_a_run_that_overflows_leaves_no_trace_of_it(with_traces: Callable[..., Verdict], about: About) -> None:
+    verdict = with_traces(("A", "validation", 1.0))
+    wild = np.where(verdict.traces[0].time > 1.0, np.inf, verdict.traces[0].refit)
+    assert (
+        "Infinity"
+        not in render_page(replace(verdict, traces=(replace(verdict.traces[0], refit=wild),)), about).split("<script>")[
+            0
+        ]
+    )
+
+
+def paths(panel: str) -> list[str]:
+    """What is drawn in a panel."""
+    return re.findall(r' d="([^"]*)"', panel)
+
+
+STEPS = """
+<script>
+const plot = document.querySelector(".panel[data-lines] .plot"), box = plot.getBoundingClientRect(), told = [];
+const note = () => told.push([...document.querySelectorAll(".zoom output")].map((o) => o.textContent).join("|"));
+const press = (name) => document.querySelector(`.zoom button[aria-label="${name}"]`).click();
+const at = (kind, share) => plot.dispatchEvent(new PointerEvent(kind, { clientX: box.left + share * box.width, button: 0 }));
+at("pointerdown", 0.25); at("pointermove", 0.5); at("pointerup", 0.75); note();
+press("Closer"); note();
+press("Later"); note();
+press("Farther"); note();
+press("Whole record"); note();
+press("Closer"); plot.dispatchEvent(new MouseEvent("dblclick")); note();
+at("pointerdown", 0.5); at("pointerup", 0.501); note();
+location.hash = "#time=0,0.3,0.6";
+setTimeout(() => {
+  note();
+  document.title = told.join(" / ");
+}, 200);
+</script>
+"""
+
+
+@pytest.mark.skipif(BROWSER is None, reason="no Chromium on this machine")
+def test_in_a_browser(with_traces: Callable[..., Verdict], about: About, tmp_path: Path) -> None:
+    """Dragged, moved by buttons, set back, and by the address: two outputs of one experiment together, another one not."""
+    verdict = with_traces(("A", "validation", 1.0), ("B", "validation", 0.9))
+    verdict = replace(verdict, traces=(*verdict.traces, replace(verdict.traces[0], output="angle")))
+    page = tmp_path / "report.html"
+    still = render_page(with_inputs(verdict), about)
+    page.write_text(still.replace("</body>", f"{STEPS}</body>"), encoding="utf-8")
+    options = ["--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--virtual-time-budget=5000"]
+    run = subprocess.run(
+        [str(BROWSER), *options, f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom", page.as_uri()],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120,
+    )
+    assert "CONSOLE" not in run.stderr, run.stderr
+    title = re.search(r"<title>(.*?)</title>", run.stdout)
+    assert title is not None
+    told = [one.split("|") for one in escapes.unescape(title[1]).split(" / ")]
+    assert all(first == third and second == "" for first, second, third in told)
+    stretches = [tuple(map(float, first.removesuffix(" s").split(" to "))) if first else None for first, *_ in told]
+    # 2.999 s: a quarter to three quarters of it, half of that, half of it later, twice as long; the whole three times; the address
+    shares = [(0.25, 0.75), (0.375, 0.625), (0.5, 0.75), (0.375, 0.875), None, None, None, (0.3 / 2.999, 0.6 / 2.999)]
+    for found, share in zip(stretches, shares, strict=True):
+        assert found == (None if share is None else pytest.approx((2.999 * share[0], 2.999 * share[1]), abs=1e-3))
+    panels = re.findall(r'<div class="panel \w+" data-lines.*?</svg>', run.stdout, re.DOTALL)
+    before = re.findall(r'<div class="panel \w+" data-lines.*?</svg>', still, re.DOTALL)
+    moved = [paths(p) != paths(q) for p, q in zip(panels, before, strict=True)]
+    assert moved == [True] * 3 + [False] * 3 + [True] * 2
+    measured = re.search(r'class="line measured" d="M(-?\d+) ', panels[0])
+    assert measured is not None and -100 < int(measured[1]) <= 0  # one sample before the stretch
+    assert panels[0].count("L") > 250  # 0.3 s, a sample a millisecond
