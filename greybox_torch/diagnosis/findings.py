@@ -14,21 +14,19 @@ from functools import partial
 
 from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, TimeIsUp, until
-from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
 from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
+from greybox_torch.diagnosis.confirm.holding import Judged, holding
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.promotion import promote_validation, serves
-from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains, take_back_weakest
-from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
+from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains
 from greybox_torch.diagnosis.hypothesis.final import Final, finish, from_longest_windows
 from greybox_torch.diagnosis.schedule import Schedule
-from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
+from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.plain_model import fit_plain_model, weighted_by_noise
 from greybox_torch.diagnosis.select.search import search
 from greybox_torch.diagnosis.select.state import SearchState
-from greybox_torch.diagnosis.settings import DiagnosisSettings
-from greybox_torch.diagnosis.stopping import best_so_far, or_else, result_of
+from greybox_torch.diagnosis.stopping import best_so_far, or_else
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.problem import all_starts_free, make_problem
@@ -174,10 +172,6 @@ def _finished(study: Study, state: SearchState, deadline: Deadline) -> tuple[tup
         return or_else(fits, as_they_are)
 
 
-Judged = tuple[SearchState, Mapping[str, Gain], Judgement, tuple[str, ...], bool]
-"""What is left of a state, its gains, its free runs, what a reader has to know of it, and whether there was time to judge it."""
-
-
 def _judged(
     study: Study,
     free_runs: FreeRuns,
@@ -201,43 +195,4 @@ def _judged(
         return state.at(state.plain), {}, judged.without_effects(), (), False
 
     with until(deadline):
-        return or_else(lambda: _holding(study, state, others, gains, judged), nothing)[0]
-
-
-def _holding(
-    study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], judged: Judgement
-) -> Judged:
-    told: tuple[str, ...] = ()
-    while state.effects and ((empty := _empty(study, state, judged.augmented, gains)) or not judged.holds):
-        if not state.compared_without:
-            state = result_of(drop_superfluous(study, state))
-        if empty is not None and empty in state.prefixes:
-            state = result_of(drop(study, state, empty))
-        else:
-            before, state = state, take_back_weakest(study, state, gains)
-            told += said_of_windows(before, state, gains, judged, study.settings)
-        if not state.effects:
-            return state, {}, judged.without_effects(), told, True
-        # What one of several accounts for, others may take over.
-        gains = held_out_gains(state, others) if others is not None else {}
-        judged = judged.having(finish(state.current, study.settings, study.budget))
-    return state, gains, judged, told, True
-
-
-def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[str, Gain]) -> str | None:
-    """An effect whose parameters, fitted to whole records, say nothing about the machine.
-
-    Deviations are asked only where held-out experiments do not show by themselves that zero is not as good: of two amplitudes that trade
-    for one another, as the stiffness and the damping of a hard stop, neither may be determined.
-    """
-    values, deviations = augmented.values(), augmented.deviations()
-    for e in state.effects:
-        proven = not e.mechanism.essential and _proven(gains.get(e.prefix), study.settings)
-        if degenerate(e, study.surroundings, values, {} if proven else deviations) is not None:
-            return e.prefix
-    return None
-
-
-def _proven(gain: Gain | None, settings: DiagnosisSettings) -> bool:
-    """Whether held-out experiments show that an effect is there, and large enough for a finding."""
-    return gain is not None and gain.errors_away > settings.held_out_beyond_chance and gain.size >= settings.least_size
+        return or_else(lambda: holding(study, state, others, gains, judged), nothing)[0]

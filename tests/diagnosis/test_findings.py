@@ -9,13 +9,8 @@ import pytest
 
 from greybox_torch.deadline import Deadline, TimeIsUp
 from greybox_torch.diagnosis import findings
-from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.findings import Findings, find_with_more
 from greybox_torch.diagnosis.select.state import SearchState
-from greybox_torch.diagnosis.settings import DiagnosisSettings
-from greybox_torch.mechanisms.forces import EndStop
-from greybox_torch.mechanisms.friction import StribeckFriction
-from greybox_torch.mechanisms.mechanism import Range, Surroundings
 
 
 @pytest.fixture
@@ -70,28 +65,6 @@ def test_what_one_more_experiment_does_not_better_is_not_searched_a_third_time(m
         monkeypatch.setattr(findings, name, step)
     assert find_with_more(found, stub(), stub(), stub()).state is found.state
     assert len(searches) == 1
-
-
-def a_stop(stub: Any, found: Gain | None, law: Any = EndStop) -> Any:
-    """What is known of a hard stop whose stiffness and damping trade for one another."""
-    around = Surroundings({"position": Range(-1.0, 1.0, 0.5), "speed": Range(-2.0, 2.0, 1.0)}, {}, "N m", 1e-3)
-    effect = stub(prefix="link.law", port="link", mechanism=law())
-    values = {p.name: p.value if p.fixed else 0.5 for p in law().parameters(around)}
-    named = {f"link.law.{n}": v for n, v in values.items()}
-    final = stub(values=lambda: named, deviations=lambda: dict.fromkeys(named, 50.0))
-    study = stub(surroundings={"link": around}, settings=DiagnosisSettings())
-    return findings._empty(study, stub(effects=(effect,)), final, {} if found is None else {"link.law": found})
-
-
-def test_what_held_out_experiments_prove_is_not_empty_whatever_trades_for_what(stub) -> None:
-    """Seen: a stop that removed 99.9 % of the error on three held-out experiments was taken back, as its stiffness was 93 ± 3700."""
-    assert a_stop(stub, Gain(0.999, 0.0005, size=0.999)) is None
-    assert a_stop(stub, None) == "link.law"
-    assert a_stop(stub, Gain(0.01, 0.02, size=0.01)) == "link.law"
-
-
-def test_a_law_without_what_makes_it_that_law_is_empty_however_much_it_gains(stub) -> None:
-    assert a_stop(stub, Gain(0.999, 0.0005, size=0.999), StribeckFriction) == "link.law"
 
 
 def test_a_second_search_that_was_cut_short_and_serves_no_better_leaves_the_first_incomplete(

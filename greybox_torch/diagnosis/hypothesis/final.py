@@ -84,6 +84,13 @@ def from_longest_windows(hypothesis: Hypothesis) -> Final:
     return Final(from_windows(hypothesis.fits[-1]), None)
 
 
+def as_windows_have_it(hypothesis: Hypothesis) -> Final:
+    """The values of the longest windows, with their uncertainty on whole records, where those can be simulated from there."""
+    run = whole_runs(hypothesis, [from_windows(hypothesis.fits[-1])])[0]
+    known = run.normals(run.start) is not None
+    return Final(run.at(run.start), uncertainty(run, run.start) if known else None)
+
+
 def _descended(run: FreeRun, start: np.ndarray, settings: Settings) -> Optimum[None] | None:
     return minimise(run.quadratic, start, *run.bounds, settings=settings, admissible=run.admissible)
 

@@ -1,0 +1,78 @@
+"""Effects hold if free runs of the validation experiments come out no worse with them; those that do not are taken back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
+from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
+from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.confirm.take_back import held_out_gains, take_back_weakest
+from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
+from greybox_torch.diagnosis.hypothesis.final import Final, as_windows_have_it, finish
+from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.diagnosis.stopping import result_of
+from greybox_torch.diagnosis.study import Study
+
+Judged = tuple[SearchState, Mapping[str, Gain], Judgement, tuple[str, ...], bool]
+"""What is left of a state, its gains, its free runs, what a reader has to know of it, and whether there was time to judge it."""
+
+WINDOWS_STAND = (
+    "Parameters are those of windows with start states of their own: fitted to whole records, the model came out worse on the validation "
+    "experiments, as a free run that drifts bends the parameters to its drift."
+)
+
+
+def holding(
+    study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], judged: Judgement
+) -> Judged:
+    """What is left of a state once every effect that free runs do not bear out is taken back, the weakest first.
+
+    Where the values that whole records led to do not hold, those of the windows may.
+    """
+    told: tuple[str, ...] = ()
+    while state.effects:
+        empty = _empty(study, state, judged.augmented, gains)
+        if empty is None and judged.holds:
+            break
+        by_windows = judged.having(as_windows_have_it(state.current))
+        if empty is None and _stands(study, state, by_windows, gains):
+            return state, gains, by_windows, (*told, WINDOWS_STAND), True
+        if not state.compared_without:
+            state = result_of(drop_superfluous(study, state))
+        if empty is not None and empty in state.prefixes:
+            state = result_of(drop(study, state, empty))
+        else:
+            before, state = state, take_back_weakest(study, state, gains)
+            told += said_of_windows(before, state, gains, judged, study.settings)
+        if not state.effects:
+            return state, {}, judged.without_effects(), told, True
+        # What one of several accounts for, others may take over.
+        gains = held_out_gains(state, others) if others is not None else {}
+        judged = judged.having(finish(state.current, study.settings, study.budget))
+    return state, gains, judged, told, True
+
+
+def _stands(study: Study, state: SearchState, judged: Judgement, gains: Mapping[str, Gain]) -> bool:
+    return judged.holds and _empty(study, state, judged.augmented, gains) is None
+
+
+def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[str, Gain]) -> str | None:
+    """An effect whose parameters, fitted to whole records, say nothing about the machine.
+
+    Deviations are asked only where held-out experiments do not show by themselves that zero is not as good: of two amplitudes that trade
+    for one another, as the stiffness and the damping of a hard stop, neither may be determined.
+    """
+    values, deviations = augmented.values(), augmented.deviations()
+    for e in state.effects:
+        proven = not e.mechanism.essential and _proven(gains.get(e.prefix), study.settings)
+        if degenerate(e, study.surroundings, values, {} if proven else deviations) is not None:
+            return e.prefix
+    return None
+
+
+def _proven(gain: Gain | None, settings: DiagnosisSettings) -> bool:
+    """Whether held-out experiments show that an effect is there, and large enough for a finding."""
+    return gain is not None and gain.errors_away > settings.held_out_beyond_chance and gain.size >= settings.least_size
