@@ -7,6 +7,7 @@ was killed meanwhile: a worker, the scheduler or the command itself.
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -18,7 +19,9 @@ from greybox_torch.fleets.row import Row
 from greybox_torch.reading import read_text
 
 ROW = "fleet_row.json"
-RESULTS = ("verdict.json", "report.html", "model.json", "model.safetensors")
+RESULTS = ("verdict.json", "report.html", "model.json", "model.safetensors", "hypotheses.json")
+RIVALS = "hypotheses"
+"""The folder of the rivals' checkpoints, where there are any."""
 
 
 def stored(job: Job, fingerprint: str) -> Row | None:
@@ -44,4 +47,5 @@ def store_failure(job: Job, row: Row) -> None:
     for name in RESULTS:
         with suppress(OSError):
             (job.folder / name).unlink()
+    shutil.rmtree(job.folder / RIVALS, ignore_errors=True)
     write_text(job.folder / ROW, json_text(row.as_json()))

@@ -86,7 +86,8 @@ def test_a_row_of_another_form_is_none(job: Job, text: str) -> None:
 
 
 def test_a_failure_leaves_no_earlier_verdict_beside_it(job: Job) -> None:
-    store(job, Row("pump", str(job.card), "nothing", fingerprint="abc"), results(job))
+    rival = job.folder / "hypotheses" / "rival.json"
+    store(job, Row("pump", str(job.card), "nothing", fingerprint="abc"), {**results(job), rival: "{}"})
     store_failure(job, Row("pump", str(job.card), "failed", failure="input", fingerprint="abc"))
     assert [path.name for path in job.folder.iterdir()] == [ROW]
     assert stored(job, "abc") is None
