@@ -12,7 +12,10 @@ import torch
 from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
 from greybox_torch.estimate.precision import PRECISIONS
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.check import check_equations
+from greybox_torch.model.once_per_model import once_per_model
 from greybox_torch.systems import BUILT_IN, load_model
 
 Settings = TypeVar("Settings")
@@ -23,14 +26,26 @@ def check_model(model: Any) -> GreyBoxModel:
 
     Raises:
         ArgumentError: neither of them.
+        UserError: its equations cannot be computed.
     """
     held = model if isinstance(model, GreyBoxModel) else getattr(model, "model", None)
     if isinstance(held, GreyBoxModel):
+        if not isinstance(held, AugmentedModel):
+            _sound_equations(held)
         return held
     if isinstance(model, type) and issubclass(model, GreyBoxModel):
         name = model.__name__
         raise ArgumentError("model", Kind(f"the class {name}"), f"expected an object of it: {name}()")
     raise ArgumentError("model", Kind.of(model), "expected a model, or the result of fit or diagnose")
+
+
+@once_per_model
+def _sound_equations(model: GreyBoxModel) -> None:
+    """Raises UserError where the equations cannot be computed, once for each model."""
+    try:
+        check_equations(model)
+    except UserError as error:
+        raise UserError(f"model {model.title}: {error}") from None
 
 
 def named_model(card: Path, data: DataSet, name: str | None = None) -> GreyBoxModel:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from greybox_torch.checking.code import untraceable
 from greybox_torch.checking.declarations import missing_methods, no_ports, port_signals, unusable_names
 from greybox_torch.checking.effects import not_finite, without_effect
-from greybox_torch.checking.equations import changes, compiled, fails
+from greybox_torch.checking.equations import compiled, fails
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.checking.influence import Influence, influence
 from greybox_torch.checking.names import declared_names, left_out, unknown_names
@@ -73,7 +73,7 @@ def _run(
     graph, uncompiled = (None, []) if wrong else compiled(model, source)
     if any(f.level == "error" for f in (*wrong, *uncompiled)):
         return Examination(made, model, in_order([*found, *(code or [*wrong, *uncompiled])]))
-    found += [*uncompiled, *changes(model, source)]
+    found += uncompiled
     if graph is not None:
         found += misfits(model, graph, source)
     points = points_of(model)

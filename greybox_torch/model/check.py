@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import traceback
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import torch
 
@@ -17,30 +19,51 @@ NEEDS_A_VALUE = (
 )
 
 
+BATCHES = ((3,), (2, 4))
+"""Samples side by side; windows and directions are two dimensions of a batch."""
+
+
 def check_equations(model: GreyBoxModel) -> None:
-    """Evaluates the model's rates and outputs on a small batch of zeros.
+    """Evaluates the model's rates and outputs on small batches: zeros, and ones in another shape.
 
     Raises:
-        UserError: ``derivative()`` or ``output()`` raises, branches on a signal, or does not return what the model declares.
+        UserError: ``derivative()`` or ``output()`` raises, branches on a signal, does not return what the model declares, changes what it
+            is given, or returns something else the second time.
     """
-    batch = 3
-    x = torch.zeros(len(model.states), batch, dtype=torch.float64)
-    u = torch.zeros(len(model.inputs), batch, dtype=torch.float64)
     with torch.no_grad():
         values = model.physical()
-        p = Signals("parameter", {name: value.expand(batch) for name, value in values.items()})
-        for function in (model.rates, model.measured):
-            try:
-                result = function(x, u, p)
-            except UserError:
-                raise
-            except Exception as error:
-                raise UserError(explain(model, error)) from None
-            if result.shape[1:] != (batch,):
-                raise UserError(
-                    f"the equations of {model.title} return values of shape {tuple(result.shape[1:])} for signals of shape ({batch},); "
-                    "expected one number for each sample"
-                )
+        for batch, level in zip(BATCHES, (0.0, 1.0), strict=True):
+            x, u = (torch.full((len(of), *batch), level, dtype=torch.float64) for of in (model.states, model.inputs))
+            p = Signals("parameter", {name: value.expand(batch) for name, value in values.items()})
+            for function in (model.rates, model.measured):
+                first, second = (_evaluated(model, function, x, u, p) for _ in range(2))
+                if first.shape[1:] != batch:
+                    raise UserError(
+                        f"the equations of {model.title} return values of shape {tuple(first.shape[1:])} for signals of shape {batch}; "
+                        "expected one number for each sample"
+                    )
+                if not torch.equal(torch.nan_to_num(first), torch.nan_to_num(second)):
+                    raise UserError(
+                        f"the equations of {model.title} give other values when they are called again with the same; "
+                        "expected equations of x, u, p and port alone: no random numbers, no memory in self"
+                    )
+
+
+def _evaluated(model: GreyBoxModel, function: Callable[..., torch.Tensor], *given: Any) -> torch.Tensor:
+    x, u, p = given
+    before = [tensor._version for tensor in (x, u, *p.values())]
+    try:
+        found = function(x, u, p)
+    except UserError:
+        raise
+    except Exception as error:
+        raise UserError(explain(model, error)) from None
+    if [tensor._version for tensor in (x, u, *p.values())] != before:
+        raise UserError(
+            f"the equations of {model.title} change the signals that they are given (an operation in place, such as `+=` or `.add_()`); "
+            "write a = a + b instead"
+        )
+    return found
 
 
 def explain(model: GreyBoxModel, error: Exception) -> str:

@@ -204,5 +204,10 @@ def _stacked(values: Mapping[str, Any], names: list[str], like: torch.Tensor, wh
     if missing or extra:
         found = ", ".join(values) or "nothing"
         raise UserError(f"{where} returned {found}; expected {', '.join(names)}")
+    complex_ones = [
+        n for n in names if isinstance(values[n], complex) or (torch.is_tensor(values[n]) and values[n].is_complex())
+    ]
+    if complex_ones:
+        raise UserError(f"{where} returned complex numbers for {complex_ones[0]}; expected real ones")
     rows = [torch.as_tensor(values[n], dtype=like.dtype, device=like.device) for n in names]
     return torch.stack(torch.broadcast_tensors(*rows, like.select(0, 0))[:-1])

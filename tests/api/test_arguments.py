@@ -44,6 +44,26 @@ def test_arguments_at_fault(data: gt.DataSet, call: Callable[[Any, Any], Any], m
     assert str(caught.value).startswith(message)
 
 
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda x: x.speed.add_(1.0), "model Sly: the equations of Sly change the signals that they are given"),
+        (lambda x: 1j * x.speed, "model Sly: Sly.derivative() returned complex numbers for speed; expected real ones"),
+        (lambda x: 1 / 0, "model Sly: test_arguments.py, line"),
+    ],
+)
+def test_a_model_whose_equations_cannot_be_trusted(
+    data: gt.DataSet, change: Callable[[Any], Any], message: str
+) -> None:
+    class Sly(Motor):
+        def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+            return {"speed": change(x) + port.rotor}
+
+    with pytest.raises(gt.UserError) as caught:
+        gt.simulate(Sly(), data)
+    assert str(caught.value).startswith(message)
+
+
 def test_nothing_is_half_saved(folder: Path, data: gt.DataSet) -> None:
     (folder / "saved" / "residuals.png").mkdir(parents=True)
     with pytest.raises(gt.UserError, match=r"residuals.png: cannot be written: it is a folder"):

@@ -33,6 +33,11 @@ FAULTS = [
     (RETURN, 'return {"speed": x.position}', "'position'"),
     (RETURN, 'return {"speed": p.mass}', "'mass'"),
     (RETURN, 'return {"speed": port.gear}', "'gear'"),
+    (RETURN, "v = x.speed\n        v += 1.0\n        " + RETURN, "change the signals that they are given"),
+    (RETURN, "u.voltage.mul_(2.0)\n        " + RETURN, "write a = a + b instead"),
+    (RETURN, RETURN.replace("/ p.J}", "/ p.J * 1j}"), "Motor.derivative() returned complex numbers for speed"),
+    (RETURN, RETURN.replace("/ p.J}", "/ p.J + __import__('torch').rand(())}"), "no random numbers"),
+    ("return {\"speed\": x.speed}", "return {\"speed\": __import__('torch').zeros(3)}", "Motor raised RuntimeError: The size of tensor"),
     (RETURN, 'return {"speed": float(x.speed)}', "need the value of a signal"),
     (RETURN, 'return {"speed": x.speed if x.speed > 0 else -x.speed}', "need the value of a signal"),
 ]  # fmt: skip
