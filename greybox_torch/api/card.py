@@ -80,7 +80,7 @@ class CardResult(DraftedFile):
             console.print(Text(f"To be filled in: {line}", style="yellow"), soft_wrap=True)
 
     def plot(self) -> Figure:
-        """Every channel that was found, over time (over samples where no time was found), as the files hold it."""
+        """Every channel that was found, as the files hold it: over time where the sample time is known, else over samples."""
         from greybox_torch.report.channels import plot_channels
 
         found = {draft.name: draft.column for draft in self.draft.channels if draft.column is not None}
@@ -93,7 +93,8 @@ class CardResult(DraftedFile):
             for file in self.draft.files
             if all(column in file.columns for column in found.values())
         ]
-        return plot_channels(DataSet(recordings, name=self.path.parent.name or "recordings", held_out_by_default=False))
+        along = "sample" if self.draft.clock.sample_time is None else "time [s]"
+        return plot_channels(DataSet(recordings, name=f"For {self.path.name}", held_out_by_default=False), along)
 
     def _repr_html_(self) -> str:
         told = [notebook.sentence(f"To be filled in: {line}", "found") for line in self.open]

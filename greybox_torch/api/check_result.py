@@ -131,7 +131,7 @@ class CheckResult(Result):
                 row["kind"],
                 row["name"],
                 row["unit"],
-                "" if row["value"] is None else f"{row['value']:.5g}",
+                "" if row["value"] is None else float(row["value"]),
                 "not known" if row["moves"] is None else ", ".join(row["moves"]) or "nothing",
             ]
             for row in self.rows

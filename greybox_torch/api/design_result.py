@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 SCHEMA = "greybox-design/1"
 INPUT, FIGURE, CARD, RECORDED = "design.csv", "design.png", "next.toml", "recorded.csv"
 WANTED = 0.95
+HARDLY_ANY = 0.01
+"""Part of a recording below which its length is not told: evidence grows with time on the whole, not period by period."""
+
 VISIBLE = DiagnosisSettings().visible_divergence
 """Nats below which two hypotheses cannot be told apart, as in a diagnosis."""
 
@@ -108,6 +111,8 @@ class DesignResult(Result):
             f"{self.seconds:.3g} s of {kinds} are expected to bring the right one of {len(self.names)} hypotheses to a probability of "
             f"{self.expected.after:.2f}"
         )
+        if self.needed < HARDLY_ANY * self.seconds:
+            return f"{told}; for {WANTED:.2f} a small part of it would do."
         return f"{told}; for {WANTED:.2f} it takes {self.needed:.2g} s." if np.isfinite(self.needed) else f"{told}."
 
     def __repr__(self) -> str:

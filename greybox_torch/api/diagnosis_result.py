@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from rich.console import Console
@@ -54,6 +54,9 @@ class FoundParameter:
 @dataclass(frozen=True, eq=False, repr=False)
 class DiagnosisResult(Result):
     """What is missing from a model, and the model with it. ``found`` is the verdict with its attachments as the search gave them."""
+
+    stage: ClassVar[str] = "augmented"
+    """What scores call the model."""
 
     data: DataSet
     given: GreyBoxModel

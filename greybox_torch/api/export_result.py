@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _COLUMNS = ["kind", "name", "unit", "value", "description"]
+DIGITS = 6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -60,7 +61,7 @@ class ExportResult(Result):
         console.print(
             Text(f"{self.exported.title} as {self.to}, steps of at most {self.exported.step:g} s"), soft_wrap=True
         )
-        print_table(console, _COLUMNS, self._table(), prose=["description"])
+        print_table(console, _COLUMNS, self._table(), prose=["description"], digits=DIGITS)
 
     def files(self, folder: Path) -> dict[Path, str | bytes]:
         return {folder / name: content for name, content in self.contents.items()}
@@ -70,7 +71,7 @@ class ExportResult(Result):
         return _influence(self.model)
 
     def _repr_html_(self) -> str:
-        return notebook.page(repr(self)[1:-1], notebook.table(_COLUMNS, self._table()))
+        return notebook.page(repr(self)[1:-1], notebook.table(_COLUMNS, self._table(), DIGITS))
 
     def _table(self) -> list[list[str | float]]:
         return [
@@ -78,7 +79,7 @@ class ExportResult(Result):
                 row["kind"],
                 row["name"],
                 row["unit"],
-                "" if row["kind"] in ("input", "output") else f"{row['value']:.6g}",
+                "" if row["kind"] in ("input", "output") else float(row["value"]),
                 row["description"],
             ]
             for row in self.rows
@@ -132,7 +133,7 @@ class SnippetResult(Result):
     def _repr_html_(self) -> str:
         rows = [[one.effect, one.why] for one in self.snippet.unsaid]
         return notebook.page(
-            repr(self)[1:-1], notebook.sentence(self.snippet.text), notebook.table(["effect", "not said"], rows)
+            repr(self)[1:-1], notebook.verbatim(self.snippet.text), notebook.table(["effect", "not said"], rows)
         )
 
 

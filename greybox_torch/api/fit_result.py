@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rich.console import Console
 from rich.text import Text
@@ -45,6 +45,9 @@ class FitResult(EstimatedModel):
     ("refit"); ``profiles`` the profile likelihoods that were asked for, ``undetermined`` what the data leave open as far as the start
     values told; ``seconds`` how long it took.
     """
+
+    stage: ClassVar[str] = "refit"
+    """What scores call the model."""
 
     data: DataSet
     estimation: Estimation

@@ -139,6 +139,6 @@ def inspect(data: DataSet, model: GreyBoxModel | str | None = None) -> Inspectio
 
 
 def _extent(recording: Recording) -> str:
-    """Where the samples are from, and how long they take."""
-    file = "" if recording.source is None else f"{recording.source.name}, "
-    return f"{file}rows = {list(recording.rows)}, {recording.time[-1] - recording.time[0]:.6g} s"
+    """Where the samples are from, where that is a file, and how long they take."""
+    file = "" if recording.source is None else f"{recording.source.name}, rows = {list(recording.rows)}, "
+    return f"{file}{recording.time[-1] - recording.time[0]:.6g} s"

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from rich.console import Console
@@ -46,6 +46,9 @@ class TrainingResult(EstimatedModel):
     are the free runs on all experiments: with the values before ("start"), of the physics alone ("refit"), of the hybrid ("augmented"),
     and of the model with a law in the network's place ("named"), where one does as well.
     """
+
+    stage: ClassVar[str] = "augmented"
+    """What scores call the model."""
 
     data: DataSet
     given: GreyBoxModel

@@ -31,8 +31,7 @@ class Points:
     def signals(self, model: GreyBoxModel) -> tuple[Signals, Signals, Signals, Signals]:
         """The points by name, as the equations are handed them."""
         return (
-            Signals("state", {s.name: self.x[i] for i, s in enumerate(model.states)}),
-            Signals("input", {s.name: self.u[i] for i, s in enumerate(model.inputs)}),
+            *model.named_signals(self.x, self.u),
             Signals("parameter", {q.name: self.p[i] for i, q in enumerate(model.declared_parameters)}),
             Signals("port", ports_of(model, self.f)),
         )

@@ -55,7 +55,7 @@ def best_so_far(
 
 
 def or_else(work: Callable[[], State], otherwise: Callable[[], State]) -> tuple[State, bool]:
-    """What ``work`` gives or, where Ctrl-C stops it, what ``otherwise`` gives; whether it was not stopped."""
+    """What ``work`` gives or, where the deadline or Ctrl-C stops it, what ``otherwise`` gives; whether it was not stopped."""
     try:
         return work(), True
     except (TimeIsUp, KeyboardInterrupt):

@@ -163,9 +163,7 @@ class MotionEquations:
         return np.stack(columns, axis=1)
 
     def _states_and_inputs(self) -> tuple[Signals, Signals]:
-        model = self.problem.model
-        x = Signals("state", {s.name: self.states[i] for i, s in enumerate(model.states)})
-        return x, Signals("input", {s.name: self.inputs[i] for i, s in enumerate(model.inputs)})
+        return self.problem.model.named_signals(self.states, self.inputs)
 
     def _with(self, free: np.ndarray) -> Signals:
         numbers = self.problem.values_by_name

@@ -28,16 +28,12 @@ def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, poin
         if n_u
         else torch.ones(0, dtype=torch.float64)
     )
-    values = problem.values_by_name
-    p = Signals(
-        "parameter", {q.name: torch.tensor(values[q.name], dtype=torch.float64) for q in model.declared_parameters}
-    )
     names = [s.name for s in model.states]
     index = port.deflection if isinstance(port.deflection, str) else None
     works = {i: True for i in range(n_x) if index is None or names[i] == index}
     signs: dict[int, float] = {}
     draws = torch.randn(points, n_x + n_u, dtype=torch.float64, generator=generator).T
-    slopes = _slopes(model, port, draws[:n_x], scale_u[:, None] * draws[n_x:], p)
+    slopes = _slopes(model, port, draws[:n_x], scale_u[:, None] * draws[n_x:], problem.parameter_tensors)
     for slope, by_state, by_force in zip(*(s.unbind(-1) for s in slopes), strict=True):
         for i in works:
             change = by_state[:, i]
@@ -58,8 +54,7 @@ def _slopes(
     """
     # Reverse mode, all points at once: torch.func would import torch's compiler, two seconds.
     x, force = x.clone().requires_grad_(), torch.zeros(x.shape[1], dtype=torch.float64, requires_grad=True)
-    xs = Signals("state", {s.name: x.select(0, i) for i, s in enumerate(model.states)})
-    us = Signals("input", {s.name: u.select(0, i) for i, s in enumerate(model.inputs)})
+    xs, us = model.named_signals(x, u)
     deflection = xs[port.deflection] if isinstance(port.deflection, str) else port.deflection(xs, us, p)
     forces = Signals("port", {q.name: force if q.name == port.name else force.new_zeros(()) for q in model.all_ports})
     rates = model.derivative(xs, us, p, forces)

@@ -21,12 +21,8 @@ def survey(model: GreyBoxModel, problem: Problem, simulator: Simulator) -> dict[
 
 def surroundings_along(model: GreyBoxModel, problem: Problem, states: np.ndarray) -> dict[str, Surroundings]:
     """Ranges of the signals around every port of ``model``, along states (N, n_x or more) at the samples of the problem's records."""
-    x = Signals("state", {s.name: torch.as_tensor(states[:, i]) for i, s in enumerate(model.states)})
-    u = Signals("input", {s.name: torch.as_tensor(problem.records.u[i]) for i, s in enumerate(model.inputs)})
-    values = problem.values_by_name
-    p = Signals(
-        "parameter", {q.name: torch.tensor(values[q.name], dtype=torch.float64) for q in model.declared_parameters}
-    )
+    x, u = model.named_signals(torch.as_tensor(states.T), torch.as_tensor(problem.records.u))
+    p = problem.parameter_tensors
     times = np.concatenate([problem.records.time(e) for e in range(len(problem.records.first))])
     return {port.name: _around(model, port, x, u, p, times, problem) for port in model.all_ports}
 

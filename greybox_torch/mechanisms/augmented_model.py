@@ -128,8 +128,7 @@ class AugmentedModel(GreyBoxModel):
     def begun(self, states: np.ndarray, records: Any, samples: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Start states (W, n_x) with the memories that begin as their surroundings say."""
         names = [s.name for s in self.states]
-        x = Signals("state", {n: torch.as_tensor(states[:, i]) for i, n in enumerate(names)})
-        u = Signals("input", {s.name: torch.as_tensor(records.u[i, samples]) for i, s in enumerate(self.inputs)})
+        x, u = self.named_signals(torch.as_tensor(states.T), torch.as_tensor(records.u[:, samples]))
         pairs = zip(self.declared_parameters, values, strict=True)
         p = Signals("parameter", {q.name: torch.tensor(float(v), dtype=torch.float64) for q, v in pairs})
         own = len(self.base.states), len(self.base.declared_parameters)

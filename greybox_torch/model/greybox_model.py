@@ -151,7 +151,7 @@ class GreyBoxModel(torch.nn.Module):
 
     def rates(self, x: torch.Tensor, u: torch.Tensor, p: Any) -> torch.Tensor:
         """The right-hand side on stacked tensors: x (n_x, *batch), u (n_u, *batch) -> (n_x, *batch)."""
-        xs, us = self._named(x, u)
+        xs, us = self.named_signals(x, u)
         none = x.new_zeros(()).expand(x.shape[1:])
         ports = Signals("port", {port.name: none for port in self.all_ports})
         rates = self.derivative(xs, us, _spread(p, x), ports)
@@ -159,10 +159,11 @@ class GreyBoxModel(torch.nn.Module):
 
     def measured(self, x: torch.Tensor, u: torch.Tensor, p: Any) -> torch.Tensor:
         """The outputs on stacked tensors: x (n_x, *batch), u (n_u, *batch) -> (n_y, *batch)."""
-        xs, us = self._named(x, u)
+        xs, us = self.named_signals(x, u)
         return _stacked(self.output(xs, us, _spread(p, x)), [o.name for o in self.outputs], x, f"{self.title}.output()")
 
-    def _named(self, x: torch.Tensor, u: torch.Tensor) -> tuple[Signals, Signals]:
+    def named_signals(self, x: torch.Tensor, u: torch.Tensor) -> tuple[Signals, Signals]:
+        """States and inputs by name, from stacked tensors: x (n_x or more, *batch), u (n_u or more, *batch)."""
         # select: an index in brackets makes torch import its distributed tensors when x is traced, half a second
         xs = Signals("state", {s.name: x.select(0, i) for i, s in enumerate(self.states)})
         us = Signals("input", {s.name: u.select(0, i) for i, s in enumerate(self.inputs)})

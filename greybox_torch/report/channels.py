@@ -16,12 +16,15 @@ _MOST_COLUMNS = 3
 _MOST_CHANNELS = 24
 
 
-def plot_channels(data: DataSet) -> Figure:
+def plot_channels(data: DataSet, along: str = "time [s]") -> Figure:
     """An experiment a column, a channel a row; after three experiments the columns go on in another band of rows.
 
     The channels of an experiment share the time axis, in seconds. A channel has the same vertical axis, in its unit,
     in all experiments. Of very many channels or experiments the figure shows the first, and says so. Missing samples leave a gap in
     the curve and a red mark at the foot of it.
+
+    Args:
+        along: the label of the horizontal axis.
     """
     channels = list(data.channels.values())[:_MOST_CHANNELS]
     recordings = data.recordings[: max(MOST_PANELS // len(channels), 1)]
@@ -52,7 +55,7 @@ def plot_channels(data: DataSet) -> Figure:
                     axes.set_ylabel(with_unit(channel.name, channel.unit))
             if top is not None:
                 top.set_title(f"{fill(recording.name, 40)} ({recording.role})", fontsize=10)
-            axes.set_xlabel("time [s]")
+            axes.set_xlabel(along)
     return figure
 
 

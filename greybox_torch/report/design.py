@@ -43,19 +43,24 @@ def plot_design(
                 axis.plot(time, values, linewidth=1.0, label=label)
             axis.set_ylabel(with_unit(name, units.get(name, "")))
             if several:
-                axis.legend(loc="upper right", fontsize="small")
-                _distances(
-                    next(panels), time, name, [runs[label] for label in labels], units.get(name, ""), level[name]
-                )
+                _legend_above(axis)
+                _distances(next(panels), time, [runs[label] for label in labels], units.get(name, ""), level[name])
         axes[-1].set_xlabel("time [s]")
     return figure
 
 
-def _distances(axis: Axes, time: np.ndarray, name: str, runs: Sequence[np.ndarray], unit: str, level: float) -> None:
+def _distances(axis: Axes, time: np.ndarray, runs: Sequence[np.ndarray], unit: str, level: float) -> None:
     """The other hypotheses minus the first one, over a band of one error each way."""
     axis.axhspan(-level, level, color="0.85", label="error of the recordings so far, ±1 rms")
     axis.plot([], [])  # the first hypothesis has the first colour
     for values in runs[1:]:
         axis.plot(time, values - runs[0], linewidth=1.0)
-    axis.set_ylabel(with_unit(f"{name}: difference", unit))
-    axis.legend(loc="upper right", fontsize="small")
+    axis.set_ylabel(with_unit("difference", unit))
+    _legend_above(axis)
+
+
+def _legend_above(axis: Axes) -> None:
+    """The legend over the panel, where it hides nothing."""
+    axis.legend(
+        loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, fontsize="small", frameon=False, borderaxespad=0.2
+    )

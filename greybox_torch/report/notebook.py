@@ -26,6 +26,7 @@ _STYLE = """\
 .greybox th.number, .greybox td.number { text-align: right; white-space: pre; }
 .greybox th.number { white-space: pre-line; }
 .greybox tbody tr + tr td { border-top: 1px solid rgba(128, 128, 128, 0.2); }
+.greybox pre { white-space: pre-wrap; margin: 0.4em 0; }
 .greybox img { display: block; max-width: 100%; height: auto; background: white; margin: 0.4em 0; }
 """
 

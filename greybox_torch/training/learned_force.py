@@ -65,9 +65,8 @@ def visited_signals(found: Trained) -> dict[str, np.ndarray]:
     spans = [records.span(e) for e in range(len(records.lengths))]
     index = np.concatenate([np.arange(span.start, span.stop) for span in spans])
     kept = slice(None, None, max(1, -(-len(index) // MOST_SAMPLES)))
-    x = Signals("state", {s.name: torch.as_tensor(states[kept, i]) for i, s in enumerate(model.states)})
-    u = Signals("input", {s.name: torch.as_tensor(records.u[i, index[kept]]) for i, s in enumerate(model.inputs)})
-    local = model.local_signals(found.hybrid.network, x, u, _parameters(found))
+    x, u = model.named_signals(torch.as_tensor(states[kept].T), torch.as_tensor(records.u[:, index[kept]]))
+    local = model.local_signals(found.hybrid.network, x, u, found.result.problem.parameter_tensors)
     shape = index[kept].shape
     return {n: np.broadcast_to(np.asarray(local[n], dtype=float), shape) for n in found.hybrid.network.mechanism.needs}
 
@@ -77,7 +76,7 @@ def force_at(found: Trained, signals: Mapping[str, np.ndarray]) -> tuple[np.ndar
     model, network = found.result.problem.model, found.hybrid.network
     assert isinstance(model, AugmentedModel)
     local = {name: torch.tensor(np.ascontiguousarray(value)) for name, value in signals.items()}
-    values, names = dict(_parameters(found)), _network_names(found)
+    values, names = dict(found.result.problem.parameter_tensors), _network_names(found)
 
     def force(own: torch.Tensor) -> torch.Tensor:
         p = Signals("parameter", {**values, **dict(zip(names, own.unbind(), strict=True))})
@@ -134,8 +133,3 @@ def _covariances(found: Trained) -> tuple[np.ndarray, ...]:
 def _network_names(found: Trained) -> list[str]:
     start = f"{found.hybrid.network.prefix}."
     return [name for name in found.result.problem.free_names if name.startswith(start)]
-
-
-def _parameters(found: Trained) -> Signals:
-    pairs = zip(found.result.problem.names, found.result.problem.values, strict=True)
-    return Signals("parameter", {name: torch.tensor(float(value), dtype=torch.float64) for name, value in pairs})

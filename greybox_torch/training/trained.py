@@ -9,7 +9,6 @@ import torch
 
 from greybox_torch.estimate.fit import Estimation
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.model import Signals
 from greybox_torch.training.curriculum import Curriculum
 from greybox_torch.training.hybrid import Hybrid
 from greybox_torch.training.physics import Physics
@@ -67,7 +66,5 @@ class Trained:
         """The network's own force at given local signals (arrays of one shape, in their units), in the unit of the port's force."""
         problem, network = self.result.problem, self.hybrid.network
         assert isinstance(problem.model, AugmentedModel)
-        pairs = zip(problem.names, problem.values, strict=True)
-        p = Signals("parameter", {name: torch.tensor(float(value), dtype=torch.float64) for name, value in pairs})
         local = {name: torch.as_tensor(np.asarray(value, dtype=float)) for name, value in signals.items()}
-        return problem.model.curve(network, local, p).detach().numpy()
+        return problem.model.curve(network, local, problem.parameter_tensors).detach().numpy()

@@ -101,6 +101,9 @@ def test_residuals_and_inspect(folder: Path, data: gt.DataSet) -> None:
     assert numbers(left.to_dict()) == numbers(told(folder, "residuals"))
     assert numbers(seen.to_dict()) == numbers(told(folder, "inspect"))
     assert left.scores[0]["whiteness"] > left.scores[0]["bound"]
+    assert repr(left).endswith("residuals of Motor, start>")
+    assert repr(gt.residuals(gt.fit(Motor(), data), data)).endswith("residuals of Motor, refit>")
+    assert "Sweep (validation): 5.99 s<" in seen._repr_html_()
     assert [row["channel"] for row in seen.rows[:2]] == ["voltage", "speed"]
     check_shown(left, folder / "left", {"residuals.png"})
     check_shown(seen, folder / "seen", {"channels.png"})

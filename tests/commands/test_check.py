@@ -68,7 +68,7 @@ def test_from_python(machines: Path) -> None:
     assert "1 note" in found.sentence
     assert gt.check(type(model)).to_json() == found.to_json()
     assert {(row["kind"], row["name"]): row["moves"] for row in found.rows}["state", "warmth"] == []
-    assert "warmth" in found._repr_html_()
+    assert "warmth" in found._repr_html_() and '<td class="number">' in found._repr_html_()
     assert len(found.plot().axes) == 1
     assert found.save("anywhere") == ()
     with pytest.raises(gt.UserError, match="expected a model, its class, or its name"):

@@ -133,7 +133,8 @@ def test_without_a_model_and_from_elsewhere(folder: Path) -> None:
     data = gt.load_dataset(folder / "cards" / "one.toml")
     assert list(data.channels) == ["motor_voltage", "channel_2_nd_speed", "thing"]
     assert data.channels["motor_voltage"].unit == "V"
-    assert len(gt.card(folder / "a.csv").plot().axes) == 3
+    drawn = gt.card(folder / "a.csv").plot().axes
+    assert len(drawn) == 3 and drawn[-1].get_xlabel() == "sample"
 
 
 def test_the_sample_time_may_be_given(folder: Path) -> None:

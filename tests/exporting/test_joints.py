@@ -137,7 +137,7 @@ def test_what_cannot_be_said_is_told(machines: Path, tmp_path: Path) -> None:
         told = json.loads(made.to_json(tmp_path))
         assert told["files"] == [str(file)]
         assert told["not_said"] == made.rows
-        assert "rotor.torque_ripple" in made._repr_html_()
+        assert "rotor.torque_ripple" in made._repr_html_() and "<pre>" in made._repr_html_()
 
 
 def test_a_tank_has_no_joints(machines: Path) -> None:

@@ -158,9 +158,8 @@ def _along(fitted: Hypothesis, attachment: Attachment, signal: str) -> np.ndarra
     """The signal at the port along the records (N,), as the states have it, changed by no other law."""
     fit, model = fitted.fits[0], fitted.model
     assert isinstance(model, AugmentedModel)
-    states, records = states_along(fit, fitted.simulator), fit.problem.driving_records
-    x = Signals("state", {s.name: torch.as_tensor(states[:, i]) for i, s in enumerate(model.states)})
-    u = Signals("input", {s.name: torch.as_tensor(records.u[i]) for i, s in enumerate(model.inputs)})
+    states = states_along(fit, fitted.simulator)
+    x, u = model.named_signals(torch.as_tensor(states.T), torch.as_tensor(fit.problem.driving_records.u))
     site, values = model.local.ports[attachment.port], fit.problem.parameter_tensors
     if signal in site.signals:
         found = value_of(site.signals[signal], x, u, values)

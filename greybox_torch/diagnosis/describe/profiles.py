@@ -13,7 +13,6 @@ from greybox_torch.estimate.window_fit import WindowFit, states_along
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.model import Signals
 from greybox_torch.simulation.simulator import Simulator
 
 BINS = 24
@@ -35,9 +34,7 @@ def local_signals(
 ) -> dict[str, np.ndarray]:
     """The signals that an effect depends on, along the estimation records (N,)."""
     problem, states = fit.problem, states_along(fit, simulator)
-    x = Signals("state", {s.name: torch.as_tensor(states[:, i]) for i, s in enumerate(model.states)})
-    records = problem.driving_records
-    u = Signals("input", {s.name: torch.as_tensor(records.u[i]) for i, s in enumerate(model.inputs)})
+    x, u = model.named_signals(torch.as_tensor(states.T), torch.as_tensor(problem.driving_records.u))
     local = model.local_signals(attachment, x, u, problem.parameter_tensors)
     return {n: np.broadcast_to(np.asarray(v, dtype=float), states.shape[:1]) for n, v in local.items()}
 

@@ -72,6 +72,7 @@ def finish(
     ended = _descended(run, point, budget.record_iterations)
     point = point if ended is None else ended.point
     if hypothesis.effects and noise_over_windows(hypothesis, settings):
+        # a run keeps where its stretches began: those fitted side by side are objects of their own
         weighed = coloured([replace(run, problem=run.at(point)), replace(runs[0])])
         if weighed is not None:
             run, fit = weighed
