@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import logging
+import os
 import sys
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext, suppress
 from typing import Any
 
 import typer
@@ -17,19 +19,32 @@ from greybox_torch.errors import ArgumentError, NumericalError, UserError
 
 
 class Commands(TyperGroup):
-    """Exit codes, in one place: 2 the user's input is at fault, 3 the numbers failed, 130 interrupted."""
+    """Exit codes, in one place: 2 the user's input is at fault, 3 the numbers failed, 130 interrupted.
+
+    Files are written by `greybox_torch.files`, with messages of its own, so an error of the system here is one of standard output.
+    """
 
     def invoke(self, ctx: Any) -> Any:
         given = [*ctx._protected_args, *ctx.args]
         try:
             with _libraries_silent(), json_alone() if "--json" in given else nullcontext():
-                return super().invoke(ctx)
+                done = super().invoke(ctx)
+            sys.stdout.flush()
+            return done
         except ArgumentError as error:
             raise _stop(f"error: {error.for_option()}", 2) from None
         except UserError as error:
             raise _stop(f"error: {error}", 2) from None
         except NumericalError as error:
             raise _stop(f"the numbers failed: {error}", 3) from None
+        except BrokenPipeError:  # `| head` has seen enough; results are in their files by then
+            _no_more_output()
+            raise typer.Exit(0) from None
+        except OSError as error:
+            if error.errno not in (errno.ENOSPC, errno.EIO, errno.EDQUOT):
+                raise
+            _no_more_output()
+            raise _stop(f"error: standard output: cannot be written: {error.strerror}", 2) from None
         except KeyboardInterrupt:
             raise _stop("interrupted", 130) from None
 
@@ -46,6 +61,12 @@ def _libraries_silent() -> Iterator[None]:
             yield
     finally:
         logging.getLogger().removeHandler(nowhere)
+
+
+def _no_more_output() -> None:
+    """What is still to be written to standard output, when Python ends at the latest, goes nowhere."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _stop(message: str, code: int) -> typer.Exit:

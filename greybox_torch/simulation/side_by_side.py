@@ -25,7 +25,8 @@ def cores() -> int:
     """Cores that the present thread may use: one within :func:`side_by_side`, else all (or what OMP_NUM_THREADS says)."""
     if getattr(_here, "beside_others", False):
         return 1
-    return max(1, int(os.environ.get("OMP_NUM_THREADS") or _of_the_machine()))
+    first = os.environ.get("OMP_NUM_THREADS", "").split(",")[0].strip()  # of nested threads, the outer ones
+    return int(first) if first.isdecimal() and int(first) else _of_the_machine()
 
 
 @lru_cache(maxsize=1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 
 import pytest
@@ -22,6 +23,16 @@ def test_work_within_work_has_one_core(monkeypatch: pytest.MonkeyPatch) -> None:
     assert side_by_side([cores, cores]) == [1, 1]
     names = side_by_side([lambda: side_by_side([threading.current_thread] * 3)] * 2)
     assert all(len({t.name for t in inner}) == 1 for inner in names), "no threads within threads"
+
+
+@pytest.mark.parametrize(
+    ("threads", "expected"), [("3", 3), ("4,2", 4), (" 2 ", 2), ("", None), ("all", None), ("0", None), ("-1", None)]
+)
+def test_any_words_of_openmp_give_a_number_of_cores(
+    monkeypatch: pytest.MonkeyPatch, threads: str, expected: int | None
+) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", threads)
+    assert cores() == (expected or os.cpu_count())
 
 
 def test_an_exception_goes_on_and_what_has_not_begun_is_left_undone(monkeypatch: pytest.MonkeyPatch) -> None:
