@@ -14,7 +14,7 @@ import typer
 from greybox_torch import __version__
 from greybox_torch.commands import after_diagnosis, first_steps, many_machines
 from greybox_torch.commands.exit_codes import Commands
-from greybox_torch.commands.option_types import DataSetFile, Device, Json, Model, Out, Precision, Seed, Settings
+from greybox_torch.commands.option_types import DataSetFile, Device, Json, Model, Out, Pdf, Precision, Seed, Settings
 from greybox_torch.commands.options import Options
 
 app = typer.Typer(
@@ -157,12 +157,13 @@ def diagnose(
     out: Out = None,
     seed: Seed = 0,
     device: Device = "cpu",
+    pdf: Pdf = False,
     json: Json = False,
 ) -> None:
     """Find the physics that is missing: where it acts, what it is, how sure that is, and the model with it."""
     from greybox_torch.commands import diagnose
 
-    diagnose.run(dataset, time_limit, Options(model, out, seed, device, json), settings)
+    diagnose.run(dataset, time_limit, Options(model, out, seed, device, json), settings, pdf=pdf)
 
 
 @app.command()
@@ -225,23 +226,6 @@ def train(
         ensemble=ensemble,
     )
     train.run(dataset, Options(model, out, seed, device, json), choices)
-
-
-@app.command()
-def demo(
-    settings: Settings = None,
-    model: Model = None,
-    out: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Where to write results.", show_default="results/demo")
-    ] = None,
-    seed: Seed = 0,
-    device: Device = "cpu",
-    json: Json = False,
-) -> None:
-    """Diagnose a small simulated arm with one concealed effect, which comes with the package."""
-    from greybox_torch.commands import demo
-
-    demo.run(Options(model, out, seed, device, json), settings)
 
 
 def main() -> None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from functools import cached_property
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -25,7 +26,7 @@ from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.pipeline import Diagnosis
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.problem import with_card
-from greybox_torch.files import json_text
+from greybox_torch.files import json_text, write_all
 from greybox_torch.mechanisms.stored import stored_effects
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
@@ -36,7 +37,7 @@ from greybox_torch.systems import model_reference
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-VERDICT, REPORT = "verdict.json", "report.html"
+VERDICT, REPORT, PRINTED = "verdict.json", "report.html", "report.pdf"
 
 
 @dataclass(frozen=True)
@@ -140,6 +141,27 @@ class DiagnosisResult(Result):
             **checkpoint_files(folder / MODEL, own),
             **hypothesis_files(folder, self, own),
         }
+
+    def save(self, folder: str | PathLike[str], *, pdf: bool = False) -> tuple[Path, ...]:
+        """Write what the command of the same name writes: all of its files or none. Returns their paths.
+
+        Args:
+            pdf: the report for print as well, report.pdf.
+
+        Raises:
+            UserError: the folder or a file cannot be written.
+
+        Example:
+            ``diagnose(Motor(), data).save("results", pdf=True)``
+        """
+        from greybox_torch.report.pdf.document import render_pdf
+
+        where = Path(folder)
+        contents = self.files(where)
+        if pdf:
+            contents[where / PRINTED] = render_pdf(self.verdict, self._about(where))
+        write_all(contents)
+        return tuple(contents)
 
     def plot(self, experiment: str | None = None) -> Figure:
         """Simulated by each model against measured, of all experiments or of one."""

@@ -9,6 +9,6 @@ from greybox_torch.commands.options import Options
 from greybox_torch.demo import DATASET
 
 
-def run(options: Options, settings: Path | None = None) -> None:
+def run(options: Options, settings: Path | None = None, *, pdf: bool = False) -> None:
     """Diagnoses a simulated arm with one concealed effect; results go to results/demo unless --out says otherwise."""
-    diagnose.run(DATASET, None, options, settings)
+    diagnose.run(DATASET, None, options, settings, pdf=pdf)

@@ -11,7 +11,9 @@ from greybox_torch.commands.task import load_task
 from greybox_torch.diagnosis.settings import settings_from_file, settings_from_mapping
 
 
-def run(dataset: Path, time_limit: float | None, options: Options, settings: Path | None = None) -> None:
+def run(
+    dataset: Path, time_limit: float | None, options: Options, settings: Path | None = None, *, pdf: bool = False
+) -> None:
     """Diagnoses, writes the verdict, the report and the augmented model (all or nothing), and prints what was found."""
     task = load_task(dataset, options)
     own = settings_from_mapping(task.data.diagnosis, task.data.place("[diagnosis]"))
@@ -28,4 +30,4 @@ def run(dataset: Path, time_limit: float | None, options: Options, settings: Pat
             budget=own[1],
             on_progress=hear,
         )
-    options.finish(found, task.folder)
+    options.finish(found, task.folder, found.save(task.folder, pdf=pdf))

@@ -1,4 +1,4 @@
-"""How the commands of the first steps are written on the command line: `new`, `card`, `check`."""
+"""How the commands of the first steps are written on the command line: `demo`, `new`, `card`, `check`."""
 
 from __future__ import annotations
 
@@ -7,14 +7,31 @@ from typing import Annotated
 
 import typer
 
-from greybox_torch.commands.option_types import Json, Model
+from greybox_torch.commands.option_types import Device, Json, Model, Pdf, Seed, Settings
 from greybox_torch.commands.options import Options
 
 
 def declare(app: typer.Typer) -> None:
     """Enter the commands into `app`."""
-    for command in (new, card, check):
+    for command in (demo, new, card, check):
         app.command()(command)
+
+
+def demo(
+    settings: Settings = None,
+    model: Model = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Where to write results.", show_default="results/demo")
+    ] = None,
+    seed: Seed = 0,
+    device: Device = "cpu",
+    pdf: Pdf = False,
+    json: Json = False,
+) -> None:
+    """Diagnose a small simulated arm with one concealed effect, which comes with the package."""
+    from greybox_torch.commands import demo
+
+    demo.run(Options(model, out, seed, device, json), settings, pdf=pdf)
 
 
 def new(

@@ -28,6 +28,7 @@ Settings = Annotated[
         metavar="FILE.toml", help="Thresholds and budgets of the search, by name; win over those on the card."
     ),
 ]
+Pdf = Annotated[bool, typer.Option("--pdf", help="The report as a document for print as well, report.pdf.")]
 Json = Annotated[
     bool, typer.Option("--json", help="The result as JSON on standard output, all else on standard error.")
 ]

@@ -55,9 +55,9 @@ class Options:
         own = "" if card.stem == USUAL else f"-{card.stem}"
         return Path("results") / f"{card.parent.name}{own}"
 
-    def finish(self, result: Result, folder: Path) -> None:
-        """Saves the result, all of it or nothing, and prints it."""
-        written = result.save(folder)
+    def finish(self, result: Result, folder: Path, written: Sequence[Path] | None = None) -> None:
+        """Saves the result, all of it or nothing, unless its files are ``written`` already, and prints it."""
+        written = result.save(folder) if written is None else written
         console = self.console()
         result.show(console)
         self.print_written(console, folder, _listed(folder, written))

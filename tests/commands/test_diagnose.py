@@ -13,6 +13,7 @@ import pytest
 from greybox_torch.checkpoint import load_checkpoint
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis import pipeline
+from greybox_torch.diagnosis.beliefs import NO_BELIEFS
 from greybox_torch.diagnosis.effect import Curve, Effect
 from greybox_torch.diagnosis.one_of import Alternative
 from greybox_torch.diagnosis.progress import Progress
@@ -115,12 +116,21 @@ def test_nothing_missing(motor_folder: Make, finding: Callable[..., dict[str, An
     assert (verdict["mismatch"], verdict["effects"]) == (False, [])
 
 
+def test_the_report_for_print(motor_folder: Make, finding: Callable[..., dict[str, Any]]) -> None:
+    finding(DEADZONE)
+    folder = motor_folder()
+    result = diagnose(folder, "--pdf")
+    assert result.exit_code == 0 and "report.pdf" in result.stdout
+    assert written(folder) == sorted([*FILES, "report.pdf"])
+    assert (folder / "out" / "report.pdf").read_bytes().startswith(b"%PDF-1.")
+
+
 def test_what_is_written(motor_folder: Make, finding: Callable[..., dict[str, Any]]) -> None:
     called = finding(DEADZONE)
     folder = motor_folder()
     result = diagnose(folder, "--json", "--seed", "5", "--time-limit", "30")
     assert result.exit_code == 0
-    assert called == {"seed": 5, "device": "cpu", "time_limit": 30.0}
+    assert called == {"seed": 5, "device": "cpu", "time_limit": 30.0, "beliefs": NO_BELIEFS}
     assert written(folder) == FILES
     text = (folder / "out" / "verdict.json").read_text()
     assert result.stdout == text
