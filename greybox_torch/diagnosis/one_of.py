@@ -15,6 +15,7 @@ class Alternative:
     probability: float
 
     def as_json(self) -> dict[str, Any]:
+        """Its entry under `alternatives` or `members`."""
         return {"port": self.port, "mechanism": self.mechanism, "probability": self.probability}
 
 
@@ -37,6 +38,7 @@ class OneOf:
         return f"{'the first' if named else spoken_at(first.mechanism, first.port)} {first.probability:.2f}"
 
     def as_json(self) -> dict[str, Any]:
+        """Its entry `one_of`."""
         return {
             "statement": self.statement,
             "probability": self.probability,

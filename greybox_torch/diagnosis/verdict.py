@@ -48,6 +48,7 @@ class NotTried:
         return tuple(told)
 
     def as_json(self) -> dict[str, Any]:
+        """Its entry `not_tried`."""
         return {
             "stages": list(self.stages),
             "candidates": [{"port": port, "mechanism": mechanism} for port, mechanism in self.candidates],

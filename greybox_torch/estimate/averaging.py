@@ -26,6 +26,7 @@ class Stretches:
 
     @property
     def count(self) -> int:
+        """How many stretches there are."""
         return len(self.index)
 
     def mean(self, signals: np.ndarray) -> np.ndarray:

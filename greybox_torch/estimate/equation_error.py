@@ -53,6 +53,7 @@ class EquationError:
 
     @property
     def problem(self) -> Problem:
+        """The problem at the present parameters."""
         return self.equations.problem
 
     @property

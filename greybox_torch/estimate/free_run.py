@@ -41,15 +41,18 @@ class FreeRun:
 
     @property
     def n_parameters(self) -> int:
+        """How many of the unknowns are parameters."""
         return int(self.problem.free.sum())
 
     @property
     def start(self) -> np.ndarray:
+        """The unknowns (d,) as the problem has them."""
         free_states = self.problem.initial[:, self.problem.initial_free]
         return np.concatenate([self.problem.values[self.problem.free], free_states.ravel()])
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper bounds (d,) of the unknowns; start states have none."""
         open_ended = np.full(len(self.start) - self.n_parameters, np.inf)
         low = np.concatenate([self.problem.lower[self.problem.free], -open_ended])
         return low, np.concatenate([self.problem.upper[self.problem.free], open_ended])
@@ -62,6 +65,7 @@ class FreeRun:
         return self.problem.with_values(values, initial)
 
     def admissible(self, z: np.ndarray) -> bool:
+        """Whether the model's joint constraints hold at ``z``."""
         return self.problem.admissible(self.at(z).values)
 
     def quadratic(self, z: np.ndarray) -> Quadratic[None] | None:

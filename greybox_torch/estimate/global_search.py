@@ -58,45 +58,46 @@ def look_around(
     Results are rough: they are where a local estimation should begin.
     """
     generator = np.random.default_rng(seed)
-    people = _followed(problem, simulator, _drawn(problem, starts, SPREAD, generator))
+    population = _followed(problem, simulator, _drawn(problem, starts, SPREAD, generator))
     fine = _whole(problem, simulator)
     for turn in range(1, TURNS + 1):
-        if not len(people):
+        if not len(population):
             return None
         if progress is not None:
-            progress(f"search from {starts} starts", turn, 2.0 * float(people.cost[0]) / fine.problem.samples)
+            progress(f"search from {starts} starts", turn, 2.0 * float(population.cost[0]) / fine.problem.samples)
         if turn == TURNS:
             break
-        fine = _whole(problem, simulator.with_substeps(max(FINER * simulator.substeps, _finer(fine, people))))
-        around = _drawn_anew(fine, people, _drawn(problem, SCREENED * starts, WIDE_SPREAD, generator), generator)
+        fine = _whole(problem, simulator.with_substeps(max(FINER * simulator.substeps, _finer(fine, population))))
+        around = _drawn_anew(fine, population, _drawn(problem, SCREENED * starts, WIDE_SPREAD, generator), generator)
         found = _sorted(improve(fine, _promising(fine, around, starts // 4), FINE_ITERATIONS))
-        if not len(found) or found.cost[0] > (1.0 - 1e-3) * people.cost[0]:
+        if not len(found) or found.cost[0] > (1.0 - 1e-3) * population.cost[0]:
             break
-        people = found
-    return problem.with_values(people.values[0], people.initial[0])
+        population = found
+    return problem.with_values(population.values[0], population.initial[0])
 
 
-def _followed(problem: Problem, simulator: Simulator, people: Population) -> Population:
-    """Where descents from ``people`` end, the distinct ones, best first."""
+def _followed(problem: Problem, simulator: Simulator, population: Population) -> Population:
+    """Where descents from ``population`` end, the distinct ones, best first."""
     part = _beginning(problem.driving_records, ROUGH_SHARE, ROUGH_SAMPLES)
     rough = Members(replace(problem, records=part), part, simulator)
-    people = _distinct(rough, improve(rough, people, ROUGH_ITERATIONS))
-    if not len(people):
-        return people
-    return _sorted(improve(_whole(problem, simulator), people, FINE_ITERATIONS))
+    population = _distinct(rough, improve(rough, population, ROUGH_ITERATIONS))
+    if not len(population):
+        return population
+    return _sorted(improve(_whole(problem, simulator), population, FINE_ITERATIONS))
 
 
-def _sorted(people: Population) -> Population:
+def _sorted(population: Population) -> Population:
     """Those that simulate, best first."""
-    return people.members(np.argsort(people.cost)[: int(np.isfinite(people.cost).sum())])
+    return population.selected(np.argsort(population.cost)[: int(np.isfinite(population.cost).sum())])
 
 
-def _promising(members: Members, people: Population, most: int) -> Population:
+def _promising(members: Members, population: Population, most: int) -> Population:
     """Those whose simulation is nearest to the measurement as they are."""
     parts = [
-        members.costs(people.members(part)) for part in np.array_split(np.arange(len(people)), -(-len(people) // 256))
+        members.costs(population.selected(part))
+        for part in np.array_split(np.arange(len(population)), -(-len(population) // 256))
     ]
-    return _sorted(Population(people.values, people.initial, np.concatenate(parts))).members(slice(most))
+    return _sorted(Population(population.values, population.initial, np.concatenate(parts))).selected(slice(most))
 
 
 def _whole(problem: Problem, simulator: Simulator) -> Members:
@@ -104,9 +105,9 @@ def _whole(problem: Problem, simulator: Simulator) -> Members:
     return Members(replace(problem, records=part), part, simulator)
 
 
-def _finer(members: Members, people: Population) -> int:
-    """Sub-steps that the best of ``people`` needs: a place must not be good for the errors of its integration."""
-    needed = choose_substeps(members.records, members.simulator.stepper, people.values[0], people.initial[0])
+def _finer(members: Members, population: Population) -> int:
+    """Sub-steps that the best of ``population`` needs: a place must not be good for the errors of its integration."""
+    needed = choose_substeps(members.records, members.simulator.stepper, population.values[0], population.initial[0])
     return min(FINEST, max(members.simulator.substeps, needed or FINEST))
 
 
@@ -124,12 +125,14 @@ def _drawn(problem: Problem, count: int, spread: float, generator: np.random.Gen
     return Population(values, np.repeat(problem.initial[None], len(values), axis=0), np.full(len(values), np.inf))
 
 
-def _drawn_anew(members: Members, people: Population, drawn: Population, generator: np.random.Generator) -> Population:
-    """The best of ``people`` with what does not matter there as in ``drawn``, and the rest almost as it is.
+def _drawn_anew(
+    members: Members, population: Population, drawn: Population, generator: np.random.Generator
+) -> Population:
+    """The best of ``population`` with what does not matter there as in ``drawn``, and the rest almost as it is.
 
     Where a friction level is zero, the shape of that friction has no slope: the place is a plateau in those directions, not a valley.
     """
-    best = people.members(np.zeros(1, dtype=np.int64))
+    best = population.selected(np.zeros(1, dtype=np.int64))
     problem = members.problem
     cost, _, hessian = members.normals(best)
     idle = np.zeros(len(problem.values), dtype=bool)
@@ -151,20 +154,20 @@ def _idle(problem: Problem, values: np.ndarray, cost: float, hessian: np.ndarray
     return at_bound | (curvature * values[free] ** 2 * UNCERTAIN**2 < variance)
 
 
-def _distinct(members: Members, people: Population) -> Population:
+def _distinct(members: Members, population: Population) -> Population:
     """The best members, best first, of those that simulate different things."""
-    order = np.argsort(people.cost)[: int(np.isfinite(people.cost).sum())]
+    order = np.argsort(population.cost)[: int(np.isfinite(population.cost).sum())]
     if not len(order):
-        return people.members(order)
-    outputs = members.outputs(people.members(order))
+        return population.selected(order)
+    outputs = members.outputs(population.selected(order))
     chosen: list[int] = []
-    for k, cost in enumerate(people.cost[order]):
+    for k, cost in enumerate(population.cost[order]):
         limit = DISTINCT**2 * 2.0 * cost
         if all(float(((outputs[k] - outputs[j]) ** 2).sum()) > limit for j in chosen):
             chosen.append(k)
         if len(chosen) == SURVIVORS:
             break
-    return people.members(order[chosen])
+    return population.selected(order[chosen])
 
 
 def _beginning(records: Records, share: float, most: int) -> Records:

@@ -32,6 +32,7 @@ class Information:
 
     @property
     def precision(self) -> str:
+        """Of the simulation: "double" or "single"."""
         return self.run.simulator.options.precision
 
     @property

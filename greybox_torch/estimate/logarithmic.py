@@ -22,6 +22,7 @@ class Scale:
 
     @staticmethod
     def of(point: np.ndarray, lower: np.ndarray) -> Scale:
+        """As a start ``point`` (d,) and the lower bounds (d,) have it."""
         return Scale((lower >= 0.0) & (point > 0.0))
 
     def seen(self, point: np.ndarray) -> np.ndarray:
@@ -30,6 +31,7 @@ class Scale:
             return np.where(self.logarithmic, np.log(np.where(self.logarithmic, point, 1.0)), point)
 
     def meant(self, seen: np.ndarray) -> np.ndarray:
+        """The unknowns (d,) back from what is seen of them."""
         return np.where(self.logarithmic, np.exp(np.where(self.logarithmic, np.minimum(seen, LARGEST), 0.0)), seen)
 
     def slopes(self, point: np.ndarray) -> np.ndarray:

@@ -26,7 +26,8 @@ class Population:
     def __len__(self) -> int:
         return len(self.values)
 
-    def members(self, which: np.ndarray | slice) -> Population:
+    def selected(self, which: np.ndarray | slice) -> Population:
+        """Some of them, by a mask, indices or a slice."""
         return Population(self.values[which], self.initial[which], self.cost[which])
 
 
@@ -40,40 +41,42 @@ class Members:
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper bounds (d,) of the unknowns; start states have none."""
         free, open_ended = self.problem.free, np.full(len(self.records.first) * len(self.problem.free_states), np.inf)
         low = np.concatenate([self.problem.lower[free], -open_ended])
         return low, np.concatenate([self.problem.upper[free], open_ended])
 
-    def unknowns(self, people: Population) -> np.ndarray:
-        states = people.initial[:, :, self.problem.initial_free].reshape(len(people), -1)
-        return np.concatenate([people.values[:, self.problem.free], states], axis=1)
+    def unknowns(self, population: Population) -> np.ndarray:
+        """The unknowns (M, d) of a population."""
+        states = population.initial[:, :, self.problem.initial_free].reshape(len(population), -1)
+        return np.concatenate([population.values[:, self.problem.free], states], axis=1)
 
-    def at(self, people: Population, z: np.ndarray) -> Population:
+    def at(self, population: Population, z: np.ndarray) -> Population:
         """The population with its unknowns set to ``z`` (M, d); costs are not known yet."""
-        values, initial, n_p = people.values.copy(), people.initial.copy(), int(self.problem.free.sum())
+        values, initial, n_p = population.values.copy(), population.initial.copy(), int(self.problem.free.sum())
         values[:, self.problem.free] = z[:, :n_p]
         initial[:, :, self.problem.initial_free] = z[:, n_p:].reshape(*initial.shape[:2], -1)
         return Population(values, initial, np.full(len(values), np.inf))
 
-    def outputs(self, people: Population) -> np.ndarray:
+    def outputs(self, population: Population) -> np.ndarray:
         """Weighted outputs (M, E·K·n_y) of the free runs, zero where a sample is missing or beyond the end of an experiment."""
-        rows, starts = self._lanes(people)
-        y = self.simulator.run(self.records, Pass(self._windows(len(people)), rows, starts)).y
+        rows, starts = self._lanes(population)
+        y = self.simulator.run(self.records, Pass(self._windows(len(population)), rows, starts)).y
         recorded, known = self._recorded()
-        y = np.where(known, y.reshape(len(people), *recorded.shape), 0.0) * self.problem.weights
-        return y.reshape(len(people), -1)
+        y = np.where(known, y.reshape(len(population), *recorded.shape), 0.0) * self.problem.weights
+        return y.reshape(len(population), -1)
 
-    def costs(self, people: Population) -> np.ndarray:
+    def costs(self, population: Population) -> np.ndarray:
         """Costs (M,) alone, which are quicker to come by; not finite where a run is not."""
         recorded, known = self._recorded()
         target = (np.where(known, recorded, 0.0) * self.problem.weights).ravel()
         with np.errstate(all="ignore"):
-            return 0.5 * ((self.outputs(people) - target) ** 2).sum(axis=1)
+            return 0.5 * ((self.outputs(population) - target) ** 2).sum(axis=1)
 
-    def normals(self, people: Population) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def normals(self, population: Population) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Costs (M,), gradients (M, d) and Gauss-Newton matrices (M, d, d); cost infinite where a run is not finite or not admissible."""
-        rows, starts = self._lanes(people)
-        count, experiments = people.initial.shape[:2]
+        rows, starts = self._lanes(population)
+        count, experiments = population.initial.shape[:2]
         states, n_p = self.problem.free_states, int(self.problem.free.sum())
         directions = np.zeros((len(rows), len(states), starts.shape[1]))
         directions[:, np.arange(len(states)), states] = 1.0
@@ -99,7 +102,7 @@ class Members:
                 gradient[:, index] -= normal[:, e, :-1, -1]
                 cost += 0.5 * normal[:, e, -1, -1]
         sound = np.isfinite(run.normal).all(axis=(1, 2)).reshape(count, experiments).all(axis=1)
-        sound &= self.problem.all_admissible(people.values)
+        sound &= self.problem.all_admissible(population.values)
         return np.where(sound, cost, np.inf), gradient, hessian
 
     def _recorded(self) -> tuple[np.ndarray, np.ndarray]:
@@ -109,9 +112,11 @@ class Members:
         recorded = np.moveaxis(self.records.y[:, np.minimum(index, windows.last[:, None])], 0, -1)
         return recorded, (index <= windows.last[:, None])[..., None] & ~np.isnan(recorded)
 
-    def _lanes(self, people: Population) -> tuple[np.ndarray, np.ndarray]:
-        experiments = people.initial.shape[1]
-        return np.repeat(people.values, experiments, axis=0), people.initial.reshape(len(people) * experiments, -1)
+    def _lanes(self, population: Population) -> tuple[np.ndarray, np.ndarray]:
+        experiments = population.initial.shape[1]
+        return np.repeat(population.values, experiments, axis=0), population.initial.reshape(
+            len(population) * experiments, -1
+        )
 
     def _windows(self, count: int) -> Windows:
         return Windows(
@@ -119,31 +124,31 @@ class Members:
         )
 
 
-def improve(members: Members, people: Population, iterations: int) -> Population:
-    """``people`` after some Levenberg-Marquardt iterations each; a step that fails or does not pay is rejected for its member alone."""
-    cost, gradient, hessian = members.normals(people)
-    people = Population(people.values, people.initial, cost)
+def improve(members: Members, population: Population, iterations: int) -> Population:
+    """``population`` after some Levenberg-Marquardt iterations each; a step that fails or does not pay is rejected for its member alone."""
+    cost, gradient, hessian = members.normals(population)
+    population = Population(population.values, population.initial, cost)
     low, high = members.bounds
-    damping, growth = np.full(len(people), 1e-2), np.full(len(people), 2.0)
+    damping, growth = np.full(len(population), 1e-2), np.full(len(population), 2.0)
     for _ in range(iterations):
-        z = members.unknowns(people)
-        step = _steps(z, np.isfinite(people.cost), gradient, hessian, damping, low, high)
-        trial = members.at(people, np.clip(z + step, low, high))
+        z = members.unknowns(population)
+        step = _steps(z, np.isfinite(population.cost), gradient, hessian, damping, low, high)
+        trial = members.at(population, np.clip(z + step, low, high))
         there = members.normals(trial)
         with np.errstate(invalid="ignore"):  # of members that were lost from the start
             taken = members.unknowns(trial) - z
-        better = there[0] < people.cost
-        gain = _gain(people.cost, there[0], gradient, hessian, taken)
-        people = Population(
-            np.where(better[:, None], trial.values, people.values),
-            np.where(better[:, None, None], trial.initial, people.initial),
-            np.where(better, there[0], people.cost),
+        better = there[0] < population.cost
+        gain = _gain(population.cost, there[0], gradient, hessian, taken)
+        population = Population(
+            np.where(better[:, None], trial.values, population.values),
+            np.where(better[:, None, None], trial.initial, population.initial),
+            np.where(better, there[0], population.cost),
         )
         gradient = np.where(better[:, None], there[1], gradient)
         hessian = np.where(better[:, None, None], there[2], hessian)
         damping = np.where(better, damping * np.clip(1.0 - (2.0 * gain - 1.0) ** 3, 0.1, 2.0), damping * growth)
         damping, growth = np.clip(damping, 1e-9, 1e12), np.where(better, 2.0, np.minimum(growth * 2.0, 1e6))
-    return people
+    return population
 
 
 def _steps(

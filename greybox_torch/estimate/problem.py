@@ -42,6 +42,7 @@ class Problem:
 
     @property
     def free_names(self) -> tuple[str, ...]:
+        """Names of the parameters that are estimated."""
         return tuple(n for n, f in zip(self.names, self.free, strict=True) if f)
 
     @property
@@ -70,6 +71,7 @@ class Problem:
         return np.flatnonzero(self.initial_free)
 
     def with_values(self, values: np.ndarray, initial: np.ndarray | None = None) -> Problem:
+        """With other parameter values (n_p,) and, where given, other start states (E, n_x)."""
         return replace(self, values=values, initial=self.initial if initial is None else initial)
 
     def admissible(self, values: np.ndarray) -> bool:

@@ -167,6 +167,7 @@ class _Way:
         return minimise(run.quadratic, best, lower, upper, settings=self.settings, admissible=run.admissible)
 
     def rise(self, at: Optimum[None]) -> float:
+        """By how much the sum of squares is larger there than at the estimate, in units of ``scale``."""
         return (2 * at.model.cost - self.base) / self.scale
 
     def walked(self, here: Optimum[None] | None, width: float, bound: float) -> list[tuple[float, float]]:

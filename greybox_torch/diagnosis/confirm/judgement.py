@@ -39,10 +39,12 @@ class Judgement:
         return replace(self, augmented=augmented, with_effects=self.free_runs.of(augmented))
 
     def without_effects(self) -> Judgement:
+        """With the plain refit in the place of the model with effects."""
         return replace(self, augmented=self.plain, with_effects=self.refit)
 
     @property
     def start(self) -> Comparison:
+        """The model at the card's values."""
         return self.free_runs.start
 
     @property
@@ -57,10 +59,12 @@ class Judgement:
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
+        """All experiments, in the order of the card."""
         return self.free_runs.recordings
 
     @property
     def settings(self) -> DiagnosisSettings:
+        """What is decided by."""
         return self.free_runs.settings
 
     @property
@@ -102,9 +106,11 @@ class Judgement:
         return _share_left(*beyond), float(times[worst]), self.recordings[worst].name
 
     def comparisons(self, effects: bool) -> dict[str, Comparison]:
+        """The models by the names that a verdict gives them; without ``effects`` the recommended one is the plain refit."""
         return {"start": self.start, "refit": self.refit, "augmented": self.with_effects if effects else self.refit}
 
     def traces(self, effects: bool) -> tuple[Trace, ...]:
+        """Every output of every experiment over time, measured and simulated by each of the models."""
         last = self.with_effects if effects else self.refit
         result = []
         for e, recording in enumerate(self.recordings):

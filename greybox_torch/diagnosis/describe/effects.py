@@ -14,6 +14,7 @@ from greybox_torch.diagnosis.describe.law_over_data import over_data
 from greybox_torch.diagnosis.describe.profiles import explained_energy, local_signals, most_of, profile
 from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
+from greybox_torch.diagnosis.one_of import Alternative
 from greybox_torch.diagnosis.select.posterior import by_comparison, for_all_that_is_left, shared
 from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
@@ -74,15 +75,8 @@ def _effect(
     gain: Gain | None,
 ) -> Effect:
     taken = state.step_of(attachment.prefix)
-    if taken is None or taken.taken is None:
-        without = state.without.get(attachment.prefix, state.plain)
-        probability, alternatives = by_comparison(without, state.current, study.settings), ()
-    else:
-        probability, alternatives = shared(taken.taken, taken.ranked, study.settings, study.beliefs, taken.led)
+    probability, alternatives = _probability(study, state, attachment, taken)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
-    if not isinstance(attachment.mechanism, Unknown):
-        share = remaining_share(state.plain, state.current, study.settings)
-        probability = for_all_that_is_left(probability, share, state.current, study.settings)
     profiles = _profiles(study, state, model, attachment, site)
     timelines = () if gain is None else gain.timelines
     mechanism = attachment.mechanism
@@ -105,6 +99,21 @@ def _effect(
         timelines=timelines,
         one_of=members,
     )
+
+
+def _probability(
+    study: Study, state: SearchState, attachment: Attachment, taken: SelectionStep | None
+) -> tuple[float, tuple[Alternative, ...]]:
+    """The probability of an effect and of its alternatives; of a law less where much of the mismatch is left with all of them."""
+    if taken is None or taken.taken is None:
+        without = state.without.get(attachment.prefix, state.plain)
+        probability, alternatives = by_comparison(without, state.current, study.settings), ()
+    else:
+        probability, alternatives = shared(taken.taken, taken.ranked, study.settings, study.beliefs, taken.led)
+    if isinstance(attachment.mechanism, Unknown):
+        return probability, alternatives
+    share = remaining_share(state.plain, state.current, study.settings)
+    return for_all_that_is_left(probability, share, state.current, study.settings), alternatives
 
 
 def ceiling_share(done: SelectionStep) -> float | None:

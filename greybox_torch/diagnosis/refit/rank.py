@@ -37,6 +37,7 @@ class RankedCandidate:
 
     @property
     def unknown(self) -> bool:
+        """Whether the newest effect is a free curve rather than a law."""
         return self.candidate.unknown
 
     @property

@@ -36,6 +36,7 @@ class Projection:
 
     @staticmethod
     def of(view: EquationError) -> Projection:
+        """Of a view at its present parameters, their weak holds among the rows."""
         errors, slopes = view.linearised
         held = np.hstack([slopes, np.diag(np.sqrt(view.hold))])
         size = np.sqrt((held**2).sum(axis=1))

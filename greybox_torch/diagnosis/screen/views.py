@@ -31,6 +31,7 @@ class Views:
     each: tuple[EquationError, ...]
 
     def of_form(self, inverse: bool) -> list[EquationError]:
+        """Those in the inverse form (forces from motion), or those in the direct one (rates from forces), short stretches first."""
         return [view for view in self.each if view.inverse is inverse]
 
     @property
