@@ -94,7 +94,9 @@ def load_checkpoint(path: str | PathLike[str]) -> Checkpoint:
     for half, other in ((tensors, card), (card, tensors)):
         if not _is_there(half):
             what = f"its other half {other} is there" if _is_there(other) else "nor is its other half"
-            raise UserError(f"checkpoint {half}: no such file ({what}); expected {tensors.name} and {card.name}")
+            inside = Path(path) / "model"
+            hint = f"; the folder has one, {inside}" if _is_there(inside.with_suffix(".json")) else ""
+            raise UserError(f"checkpoint {half}: no such file ({what}); expected {tensors.name} and {card.name}{hint}")
     content = read_checkpoint_card(card)
     return Checkpoint(
         values=_values(tensors, card, content),

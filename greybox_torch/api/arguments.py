@@ -21,8 +21,10 @@ from greybox_torch.systems import BUILT_IN, load_model
 Settings = TypeVar("Settings")
 
 
-def check_model(model: Any) -> GreyBoxModel:
+def check_model(model: Any, *, runs: bool = True) -> GreyBoxModel:
     """The model that was given itself, or as the result of a fit or a diagnosis.
+
+    ``runs`` says whether its equations are to be computed, and not its declarations alone read.
 
     Raises:
         ArgumentError: neither of them.
@@ -30,7 +32,7 @@ def check_model(model: Any) -> GreyBoxModel:
     """
     held = model if isinstance(model, GreyBoxModel) else getattr(model, "model", None)
     if isinstance(held, GreyBoxModel):
-        if not isinstance(held, AugmentedModel):
+        if runs and not isinstance(held, AugmentedModel):
             _sound_equations(held)
         return held
     if isinstance(model, type) and issubclass(model, GreyBoxModel):

@@ -147,7 +147,7 @@ def _model(model: GreyBoxModel | str | None, folder: Path) -> tuple[GreyBoxModel
     from greybox_torch.api.arguments import check_model
     from greybox_torch.systems import load_model, model_reference
 
-    given = load_model(model) if isinstance(model, str) else check_model(model)
+    given = load_model(model) if isinstance(model, str) else check_model(model, runs=False)
     file, colon, name = model_reference(given).rpartition(":")
     if not file.endswith(".py"):
         return given, f"{file}{colon}{name}"

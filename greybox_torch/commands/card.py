@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -17,5 +18,5 @@ def run(files: Sequence[Path], sample_time: float | None, options: Options) -> N
     (written,) = drafted.save()
     console = options.console()
     drafted.show(console)
-    console.print(Text(f"Written to {written}. Next: greybox inspect {written}"), soft_wrap=True)
+    console.print(Text(f"Written to {written}. Next: greybox inspect {shlex.quote(str(written))}"), soft_wrap=True)
     options.print_json(drafted.to_json())

@@ -8,12 +8,15 @@ from greybox_torch.api.design import design
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.progress import stages
 from greybox_torch.commands.task import check_folder
+from greybox_torch.errors import UserError
 
 FOLDER = "design"
 
 
 def run(results: Path, precision: str | None, seconds: float | None, options: Options) -> None:
     """Designs the input, writes it with a figure and a card (all or nothing), and prints what it is expected to tell."""
+    if not results.is_dir():
+        raise UserError(f"{results}: no such folder; expected results of greybox diagnose")
     folder = options.out if options.out is not None else results / FOLDER
     check_folder(folder)
     with stages("designing the next recording") as progress:

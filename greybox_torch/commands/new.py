@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+
 from rich.text import Text
 
 from greybox_torch.api.new import new
@@ -14,5 +16,6 @@ def run(name: str, like: str, options: Options) -> None:
     made.save()
     console = options.console()
     made.show(console)
-    console.print(Text(f"Written to {made.path}. Next: change it, then greybox check {made.reference}"), soft_wrap=True)
+    told = f"Written to {made.path}. Next: change it, then greybox check {shlex.quote(made.reference)}"
+    console.print(Text(told), soft_wrap=True)
     options.print_json(made.to_json())

@@ -67,7 +67,11 @@ class Options:
         """What people read is printed here: standard output, or standard error where --json has taken the former."""
         from rich.console import Console
 
-        return Console(stderr=self.json, highlight=False)
+        class Output(Console):
+            def on_broken_pipe(self) -> None:
+                raise  # rich would end with 1; see `Commands`
+
+        return Output(stderr=self.json, highlight=False)
 
     def print_written(self, console: Console, folder: Path, names: list[str]) -> None:
         """Says where the files are."""

@@ -5,7 +5,9 @@
 
 from __future__ import annotations
 
+import shlex
 from collections import Counter
+from contextlib import suppress
 from datetime import date
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -14,9 +16,11 @@ from pydantic import Field, PlainValidator, ValidationError, field_validator, mo
 
 from greybox_torch.data.card_channels import ChannelEntry, Entry, ExperimentEntry, Finite, Text, TimeEntry, printable
 from greybox_torch.data.card_errors import describe
+from greybox_torch.data.readers import READERS
 from greybox_torch.errors import UserError, did_you_mean, quoted
 from greybox_torch.reading import read_toml
 
+USUAL = "dataset.toml"
 TIME = "time"  # in an experiment's `columns`, the key that renames the column of time stamps
 
 
@@ -151,8 +155,23 @@ class Card(Entry):
         return self
 
 
+def _what_else(path: Path) -> str:
+    """What stands there where it is often named in the place of a card: its folder, a recording, a name that is not quite right."""
+    if path.is_dir() and (path / USUAL).is_file():
+        return f"is a folder; expected the card in it, {path / USUAL}"
+    if path.suffix.lower() in READERS and path.is_file():
+        return f"is a recording; expected a data card, {USUAL} (`greybox card {shlex.quote(str(path))}` writes one)"
+    if not (path.exists() or path.is_symlink()) and path.parent.is_dir():
+        hint = did_you_mean(str(path), map(str, path.parent.glob("*.toml")))
+        return f"no such file{hint}; expected a data card, {USUAL}" if hint else ""
+    return ""
+
+
 def read_card(path: Path) -> Card:
     """The card at `path`. Raises UserError, with one message, for a file or a field that is wrong."""
+    with suppress(OSError, ValueError):  # of names that no file can have, which reading says
+        if found := _what_else(path):
+            raise UserError(f"{path}: {found}")
     content = read_toml(path, "a data card, dataset.toml")
     try:
         return Card.model_validate(content)

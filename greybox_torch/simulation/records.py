@@ -93,10 +93,10 @@ def check_channels(dataset: DataSet, model: GreyBoxModel) -> None:
             )
         unit = dataset.channels[name].unit
         if unit and signal.unit and _plain(unit) != _plain(signal.unit):
+            advice = f'expected unit = "{signal.unit}" with file_unit = "{unit}", or with a scale, to convert the values of the file'
             raise UserError(
-                f"{dataset.place('[channels]')} {name}: unit is '{unit}', model {model.title} expects '{signal.unit}' "
-                f"({'convert the values' if dataset.path is None else 'give `scale` to convert the values of the file'}, "
-                "and give the model's unit)"
+                f"{dataset.place('[channels]')} {name}: unit is '{unit}', model {model.title} expects '{signal.unit}'; "
+                f"{'expected values and unit of the model' if dataset.path is None else advice}"
             )
     for name in dataset.channels:
         if name not in declared:

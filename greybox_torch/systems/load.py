@@ -50,6 +50,8 @@ def model_class(name: str) -> type[GreyBoxModel]:
         return BUILT_IN[name]
     file, separator, class_name = name.rpartition(":")
     if not separator or not file.endswith(".py"):
+        if name.endswith(".py") and Path(name).is_file():
+            raise UserError(f"model '{name}' is a file; expected the class in it as well, such as {name}:Motor")
         known = ", ".join(BUILT_IN)
         raise UserError(
             f"model '{name}' is unknown; expected a built-in system ({known}) or a file and class such as my_motor.py:Motor"

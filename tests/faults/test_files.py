@@ -7,7 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
+from greybox_torch.cli import app
 from tests.faults.conftest import CSV
 
 Answer = Callable[..., str]
@@ -99,7 +101,33 @@ def test_what_is_no_file(spoilt: Path, answer: Answer, name: str, expected: str)
 COMMANDS = [
     (["inspect", "nowhere.toml"], "nowhere.toml: no such file"),
     (["inspect", "nowhere.toml"], "expected a data card"),
-    (["inspect", "."], "Is a directory"),
+    (["inspect", "."], "is a folder; expected the card in it, dataset.toml"),
+    (["inspect", ".."], "Is a directory"),
+    (["fit", "datset.toml"], 'no such file (did you mean "dataset.toml"?)'),
+    (
+        ["diagnose", "a.csv"],
+        "a.csv: is a recording; expected a data card, dataset.toml (`greybox card a.csv` writes one)",
+    ),
+    (["diagnose", "my_motor.py"], "my_motor.py: not valid TOML"),
+    (
+        ["fit", "dataset.toml", "--model", "my_motor.py"],
+        "is a file; expected the class in it as well, such as my_motor.py:Motor",
+    ),
+    (["fit", "dataset.toml", "--model", "my_motor.py:motor"], "class 'motor' is not defined; it defines Motor"),
+    (["fit", "dataset.toml", "--profile", "j"], 'did you mean "J"?'),
+    (["diagnose", "dataset.toml", "--time-limit", "1min"], "--time-limit"),
+    (["diagnose", "dataset.toml", "--settings", "s.toml"], "s.toml: no such file; expected settings of a diagnosis"),
+    (["compare", "dataset.toml", "dataset.toml"], "checkpoint dataset.toml.safetensors: no such file"),
+    (["design", "results"], "results: no such folder; expected results of greybox diagnose"),
+    (["design", "dataset.toml"], "dataset.toml: no such folder; expected results of greybox diagnose"),
+    (["export", "results", "--to", "c"], "checkpoint results.safetensors: no such file"),
+    (["fleet", "nothing"], "nothing: no such folder or file; expected a folder of data sets, a pattern, or a card"),
+    (["fleet", ".", "--workers", "0"], "--workers"),
+    (["train", "dataset.toml", "--signals", "speed;load"], "speed;load"),
+    (["card"], "Missing argument"),
+    (["card", "dataset.toml"], 'no reader for files ending in ".toml"'),
+    (["card", "b.csv"], 'b.csv: no such file (did you mean "a.csv"?)'),
+    (["diagnos", "dataset.toml"], "No such command"),
     (["inspect", "a\0b.toml"], "embedded null byte"),
     (["inspect", "x" * 400], "File name too long"),
     (["inspect", "dataset.toml", "--model", "nowhere.py:Motor"], "nowhere.py: no such file"),
@@ -133,3 +161,21 @@ COMMANDS = [
 )
 def test_command_line(answer: Answer, arguments: list[str], message: str) -> None:
     answer(*arguments, message=message)
+
+
+FIRST_STEPS = [
+    (["new", "my_motor"], "my_motor.py: is there already and is not overwritten"),
+    (["new", "drive", "--like", "moter"], 'did you mean "motor"?'),
+    (["card", "a.csv"], "dataset.toml: is there already and is not overwritten"),
+    (["check", "a.csv"], "model 'a.csv' is unknown; expected a built-in system (robot_arm) or a file and class"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "message"), FIRST_STEPS, ids=[" ".join(c[0]) for c in FIRST_STEPS])
+def test_first_steps(spoilt: Path, monkeypatch: pytest.MonkeyPatch, arguments: list[str], message: str) -> None:
+    """These commands write beside the files, so nothing is said of a folder for results."""
+    monkeypatch.chdir(spoilt)
+    before = {file: file.read_bytes() for file in spoilt.iterdir()}
+    done = CliRunner().invoke(app, arguments)
+    assert done.exit_code == 2 and message in " ".join(done.stderr.split())
+    assert {file: file.read_bytes() for file in spoilt.iterdir()} == before

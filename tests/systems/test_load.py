@@ -29,7 +29,11 @@ def test_file_and_class(machines: Path) -> None:
             "robot_leg",
             r"model 'robot_leg' is unknown; expected a built-in system \(robot_arm.*\) or a file and class",
         ),
-        (MOTOR, "my_motor.py", "model 'my_motor.py' is unknown"),
+        (
+            MOTOR,
+            "my_motor.py",
+            "model 'my_motor.py' is a file; expected the class in it as well, such as my_motor.py:Motor",
+        ),
         (MOTOR, "nowhere.py:Motor", "model file nowhere.py: no such file"),
         (MOTOR, "my_motor.py:Engine", "class 'Engine' is not defined; it defines Motor"),
         (MOTOR, "my_motor.py:Body", "class 'Body' is not a GreyBoxModel; it defines Motor"),
