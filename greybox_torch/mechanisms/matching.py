@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import torch
-from scipy.optimize import least_squares
 
 from greybox_torch.linear_algebra import least_squares as linear_least_squares
 from greybox_torch.mechanisms.library import LIBRARY
@@ -100,6 +99,8 @@ def _shape_trials(
     input that acts. So a part of the curve that is proportional to φ(u) is left open; where a gain is all that there is to explain,
     the law counts for nothing.
     """
+    from scipy.optimize import least_squares  # a fifth of a second to import, which only some diagnoses need
+
     free = [p for p in law.parameters(around) if not p.fixed]
     low, high = np.array([p.bounds for p in free]).T
     root = np.sqrt(weight)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import torch
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.verdict import Trace
@@ -143,7 +143,7 @@ def _up_to(signal: np.ndarray, reach: float) -> np.ndarray:
 def _largest(correlation: Correlation, lags: np.ndarray, tests: int, chance: float) -> Largest:
     """The largest of some lags, with a bound for the largest of all lags of so many tests (Bonferroni)."""
     values = np.abs(correlation.values[lags])
-    wider = norm.isf(chance / 2 / (tests * max(len(values), 1))) / NORMAL_99
+    wider = -ndtri(chance / 2 / (tests * max(len(values), 1))) / NORMAL_99
     return Largest(float(values.max(initial=0.0)), float(wider * correlation.bound))
 
 
