@@ -25,6 +25,9 @@ HALF_BAND = 0.03
 SPARE = 8
 """Lines at least that an estimate has beyond its unknowns."""
 
+HANN = 0.375
+"""Mean square of the window."""
+
 FLAT = 1e-12
 """Smallest curvature, beside the largest."""
 
@@ -36,7 +39,7 @@ HIGHEST = 0.45
 class Response:
     """From n_u inputs to n_y outputs at F frequencies (Hz): the complex response ``gain`` (n_y, n_u, F), and the variance (n_y, n_u, F) of
     its distance from the true one in the complex plane. ``inputs`` (n_u, F) and ``outputs`` (n_y, F) are the signals' power around a
-    frequency, a line of the transform, with the transforms divided by the root of the number of samples.
+    frequency, a line of the transform divided by the root of the number of samples, behind a window of Hann.
     """
 
     frequency: np.ndarray
@@ -48,11 +51,15 @@ class Response:
 
 @dataclass(frozen=True)
 class _Lines:
-    """Fourier transforms of inputs (n_u, K) and outputs (n_y, K) of one record at its frequencies (K,) in Hz, above zero."""
+    """Fourier transforms of inputs (n_u, K) and outputs (n_y, K) of one record at its frequencies (K,) in Hz, above zero.
+
+    ``power`` (n_u + n_y, K), of both behind a window: without it, what is strong at low frequencies would leak into the others.
+    """
 
     frequency: np.ndarray
     u: np.ndarray
     y: np.ndarray
+    power: np.ndarray
 
 
 def frequency_response(
@@ -82,8 +89,11 @@ def _lines(u: np.ndarray, y: np.ndarray, sample_time: float) -> _Lines:
     size = u.shape[1]
     scale = 1.0 / np.sqrt(size)
     both = np.concatenate([u, y])
-    spectrum = np.fft.rfft(both - both.mean(axis=1, keepdims=True), axis=1)[:, 1:] * scale
-    return _Lines(np.fft.rfftfreq(size, sample_time)[1:], spectrum[: len(u)], spectrum[len(u) :])
+    both = both - both.mean(axis=1, keepdims=True)
+    spectrum = np.fft.rfft(both, axis=1)[:, 1:] * scale
+    windowed = np.fft.rfft(both * np.hanning(size), axis=1)[:, 1:] * scale
+    power = np.abs(windowed) ** 2 / HANN
+    return _Lines(np.fft.rfftfreq(size, sample_time)[1:], spectrum[: len(u)], spectrum[len(u) :], power)
 
 
 def _grid(low: float, high: float, per_decade: int) -> np.ndarray:
@@ -95,7 +105,7 @@ def _grid(low: float, high: float, per_decade: int) -> np.ndarray:
 def _estimate(lines: Sequence[_Lines], frequency: float, least: float, n_u: int) -> tuple[np.ndarray, ...] | None:
     """Response and variance (n_y, n_u), and powers (n_u,) and (n_y,), at one frequency; None where there are too few lines around it."""
     half, powers = max(least, HALF_BAND * frequency), np.arange(ORDER + 1)[:, None]
-    blocks, given, wanted = [], [], []
+    blocks, wanted, power = [], [], []
     for one in lines:
         first, last = np.searchsorted(one.frequency, [frequency - half, frequency + half])
         if last - first <= 2 * (ORDER + 1):
@@ -103,7 +113,7 @@ def _estimate(lines: Sequence[_Lines], frequency: float, least: float, n_u: int)
         away = (one.frequency[first:last] - frequency) / half
         shape = away[None, :] ** powers
         blocks.append((np.concatenate([row * shape for row in one.u[:, first:last]]), shape))
-        given.append(one.u[:, first:last])
+        power.append(one.power[:, first:last])
         wanted.append(one.y[:, first:last])
     unknowns = (ORDER + 1) * (n_u + len(blocks))
     count = sum(shape.shape[1] for _, shape in blocks)
@@ -116,8 +126,8 @@ def _estimate(lines: Sequence[_Lines], frequency: float, least: float, n_u: int)
         matrix[rows, : (ORDER + 1) * n_u] = response.T
         matrix[rows, own : own + ORDER + 1] = transient.T
         at = rows.stop
-    powers_of = (np.mean(np.abs(np.concatenate(part, axis=1)) ** 2, axis=1) for part in (given, wanted))
-    return (*_solved(matrix, np.concatenate(wanted, axis=1).T, n_u), *powers_of)
+    mean = np.mean(np.concatenate(power, axis=1), axis=1)
+    return (*_solved(matrix, np.concatenate(wanted, axis=1).T, n_u), mean[:n_u], mean[n_u:])
 
 
 def _solved(matrix: np.ndarray, wanted: np.ndarray, n_u: int) -> tuple[np.ndarray, np.ndarray]:

@@ -78,6 +78,16 @@ def test_frequencies_without_input_power() -> None:
     assert (uncertain[within] < 0.05).all()
 
 
+def test_power_without_leakage() -> None:
+    """A slow drift a thousand times as large as the rest leaves the power at high frequencies what it is."""
+    time = STEP * np.arange(8000)
+    u = RNG.normal(size=8000)
+    found = frequency_response([(u + 1000.0 * time / time[-1])[None]], [u[None]], STEP)
+    assert found is not None
+    high = found.frequency > 10.0
+    assert np.mean(found.inputs[0][high]) == pytest.approx(1.0, rel=0.15)
+
+
 @pytest.mark.parametrize("samples", [0, 1, 8, 18])
 def test_a_record_too_short(samples: int) -> None:
     u = RNG.normal(size=(1, samples))

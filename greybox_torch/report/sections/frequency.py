@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from greybox_torch.diagnosis.describe.residual_tests import input_answers
+from greybox_torch.diagnosis.describe.residual_tests import excited_band, input_answers
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.verdict import InputTrace, Trace, Verdict
 from greybox_torch.estimate.frequency_response import Response, frequency_response
@@ -60,7 +60,9 @@ def responses(verdict: Verdict, effect: Effect) -> Responses | None:
         return None
     free = [one for one in there if not _under_feedback(one, verdict.settings.chance)]
     found = _estimated(free or there)
-    charts = [] if found is None else _charts(free or there, found, effect, feedback=not free)
+    charts = (
+        [] if found is None else _charts(free or there, found, effect, _feedback(there, verdict) if not free else None)
+    )
     if not charts:
         told = "No frequency response is drawn: the inputs excite too few frequencies for one that stands out of its uncertainty."
         return Responses((), told)
@@ -99,6 +101,18 @@ def _under_feedback(one: Recorded, chance: float) -> bool:
     return any(input_answers(e, i.values, chance / (len(errors) * len(one.inputs))) for e in errors for i in one.inputs)
 
 
+def _feedback(recorded: Sequence[Recorded], verdict: Verdict) -> dict[str, float]:
+    """By input, the frequency (Hz) beyond which hardly anything is in it but the controller's answer to noise and distortion: there an
+    estimate shows the inverse of the controller.
+    """
+    share = verdict.settings.excited_share
+    every = ((i.input, excited_band(_whole(i.values), one.step, share)) for one in recorded for i in one.inputs)
+    bands: dict[str, float] = {}
+    for name, band in every:
+        bands[name] = max(bands.get(name, 0.0), band)
+    return bands
+
+
 def _estimated(recorded: Sequence[Recorded]) -> Response | None:
     """From all inputs to every output as measured, before and after, and to what the model after leaves of it, in this order."""
     inputs = [np.stack([_whole(i.values) for i in one.inputs]) for one in recorded]
@@ -119,8 +133,14 @@ def _whole(values: np.ndarray) -> np.ndarray:
     return np.interp(np.arange(len(values)), known, values[known]) if known.size else np.zeros(len(values))
 
 
-def _charts(recorded: Sequence[Recorded], found: Response, effect: Effect, *, feedback: bool) -> list[Chart]:
-    """Of the pairs that the effect concerns, those that stand out; the best determined first."""
+def _charts(
+    recorded: Sequence[Recorded], found: Response, effect: Effect, band: Mapping[str, float] | None
+) -> list[Chart]:
+    """Of the pairs that the effect concerns, those that stand out; the best determined first.
+
+    Args:
+        band: under feedback, by input the frequency in Hz up to which it is excited from outside.
+    """
     kind, _, of = effect.port.partition(".")
     drawn = []
     for j, one in enumerate(recorded[0].inputs):
@@ -129,10 +149,12 @@ def _charts(recorded: Sequence[Recorded], found: Response, effect: Effect, *, fe
                 kind == "sensor" and of not in ("", trace.output)
             ):
                 continue
-            radius = REGION * np.sqrt(found.variance[4 * i, j]) + (_bent(found, i, j) if feedback else 0.0)
+            radius = REGION * np.sqrt(found.variance[4 * i, j])
+            if band is not None:
+                radius = np.where(found.frequency <= band[one.input], radius + _bent(found, i, j), np.inf)
             pair = _clear(found.frequency, found.gain[4 * i : 4 * i + 3, j], radius)
             if pair is not None:
-                drawn.append((len(pair.frequency), bode(pair, one, trace, len(recorded), feedback=feedback)))
+                drawn.append((len(pair.frequency), bode(pair, one, trace, len(recorded), feedback=band is not None)))
     return [chart for _, chart in sorted(drawn, key=lambda d: -d[0])]
 
 

@@ -124,7 +124,7 @@ def test_numbers_of_the_headline_stand_apart(
     first = printed(replace(verdict, scores=scores)).figures[0]
     first.dpi = 288.0
     renderer = FigureCanvasAgg(first).get_renderer()
-    numbers = [text for text in first.texts if "→" in text.get_text() and text.get_weight() == "bold"]
+    numbers = [text for text in first.texts if "→" in text.get_text() and text.get_fontweight() == "bold"]
     assert len(numbers) == 3
     for one, other in pairwise(number.get_window_extent(renderer) for number in numbers):
         assert one.x1 < other.x0

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from greybox_torch.diagnosis.describe.residual_tests import excited_band
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.verdict import InputTrace, Trace, Verdict
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.report.about import About
@@ -83,6 +85,21 @@ def test_under_feedback_the_region_is_wider() -> None:
     free, closed = (shown(lagged(feedback=f)).charts[0] for f in (False, True))
     assert "recorded under feedback" in closed.caption and "recorded under feedback" not in free.caption
     assert _percent(closed.caption, "region is ") > 1.3 * _percent(free.caption, "region is ")
+
+
+def test_under_feedback_it_ends_with_the_excited_band() -> None:
+    """Beyond it the input is the controller's answer to what the output does there, distortion of the machine included."""
+    verdict = lagged(feedback=True)
+    (drive,), (trace,) = verdict.inputs, verdict.traces
+    slow = lfilter([0.05], [1.0, -0.95], drive.values)
+    drive = replace(
+        drive, values=np.asarray(slow) - 20.0 * np.concatenate([[0.0], (trace.measured - trace.augmented)[:-1]])
+    )
+    verdict = replace(verdict, inputs=(drive,))
+    band = excited_band(drive.values, STEP, verdict.settings.excited_share)
+    wide = replace(verdict, settings=DiagnosisSettings(excited_share=0.9999))
+    ends = [shown(v).charts[0].columns[0][0].x.high for v in (verdict, wide)]
+    assert ends[0] <= band and ends[0] <= ends[1]
 
 
 @pytest.mark.parametrize("samples", [30, 8000])
