@@ -6,7 +6,9 @@ import ctypes
 import hashlib
 import importlib.util
 import os
+import shlex
 import shutil
+import stat
 import subprocess
 import sys
 import tempfile
@@ -27,27 +29,46 @@ FLAGS = (
 )
 
 
+COMPILER_SECONDS = 300
+"""The largest programs take 10 s, and the package ziglang as much as 50 s the first time."""
+
+TRIAL = 'extern "C" int works() { return 1; }\n'
+"""What a compiler is tried with."""
+
 ZIG = (sys.executable, "-m", "ziglang", "c++")
 """The compiler that comes as a Python package."""
 
 
 def compiler() -> tuple[str, ...] | None:
-    """How the C++ compiler is called: ``$CXX``, else g++, else clang++, else that of the package ziglang.
+    """How the C++ compiler is called: ``$CXX`` (perhaps with options, as in "g++ -m64"), else g++, else clang++, else that of ziglang.
 
     None where there is none of them, or with ``GREYBOX_COMPILER=off``.
     """
     if os.environ.get("GREYBOX_COMPILER", "") == "off":
         return None
-    for name in (os.environ.get("CXX", ""), "g++", "clang++"):
-        found = shutil.which(name) if name else None
+    for words in (_words(os.environ.get("CXX", "")), ["g++"], ["clang++"]):
+        found = shutil.which(words[0]) if words else None
         if found is not None:
-            return (found,)
+            return (found, *words[1:])
     return ZIG if importlib.util.find_spec("ziglang") is not None else None
 
 
+def _words(command: str) -> list[str]:
+    try:
+        return shlex.split(command)
+    except ValueError:  # a quotation mark that is not closed
+        return []
+
+
 def check_compiler(what: str) -> None:
-    """Raises UserError, with the line that installs one, where there is no compiler for ``what``, which would take hours without."""
-    if compiler() is None:
+    """Raises UserError where there is no compiler for ``what``, which would take hours without, or one that does not work."""
+    program = compiler()
+    if program is not None and library(TRIAL) is None:
+        raise UserError(
+            f"{what} needs a C++ compiler: `{shlex.join(program)}` makes no library that can be loaded; "
+            "expected one that works, named by $CXX"
+        )
+    if program is None:
         off = "; GREYBOX_COMPILER is off" if os.environ.get("GREYBOX_COMPILER", "") == "off" else ""
         raise UserError(
             f"{what} needs a C++ compiler: found neither $CXX nor g++ nor clang++ nor the package ziglang{off}; "
@@ -67,9 +88,11 @@ def library(source: str) -> ctypes.CDLL | None:
     program = compiler()
     if program is None:
         return None
+    folder = cache_folder()
+    _check_own(folder)
     key = hashlib.sha256("\0".join([source, *program, *FLAGS, _processor()]).encode()).hexdigest()[:32]
-    file = cache_folder() / f"{key}.so"
-    if not file.exists() and not _compile(program, source, file):
+    file = folder / f"{key}.so"
+    if not _is_own(file) and not _compile(program, source, file):
         return None
     try:
         return ctypes.CDLL(str(file))
@@ -78,9 +101,27 @@ def library(source: str) -> ctypes.CDLL | None:
         return ctypes.CDLL(str(file)) if _compile(program, source, file) else None
 
 
+def _check_own(folder: Path) -> None:
+    """Makes the cache folder, for this user alone. Raises UserError where others could put a library there, which would then be run."""
+    folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+    if not _is_own(folder):
+        raise UserError(
+            f"{folder}: compiled code is kept there, and other users may write to it; "
+            "expected a folder of your own, named by $GREYBOX_CACHE"
+        )
+
+
+def _is_own(path: Path) -> bool:
+    """Whether it is there, belongs to this user or to the system, and not everybody may write to it."""
+    try:
+        found = path.stat()
+    except OSError:
+        return False
+    return os.name != "posix" or (found.st_uid in (os.getuid(), 0) and not found.st_mode & stat.S_IWOTH)
+
+
 def _compile(program: tuple[str, ...], source: str, file: Path) -> bool:
     """Compile with vector mathematics and threads where they are to be had, plainer where they are not (ziglang has neither)."""
-    file.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=file.parent) as folder:
         text = Path(folder) / "stepper.cpp"
         text.write_text(source)
@@ -88,8 +129,19 @@ def _compile(program: tuple[str, ...], source: str, file: Path) -> bool:
         for extra in [[]] if program == ZIG else (["-DVECTOR_MATH", "-fopenmp"], ["-fopenmp"], []):
             libraries = ["-lmvec", "-lm"] if "-DVECTOR_MATH" in extra else ["-lm"]
             command = [*program, *FLAGS, *extra, str(text), "-o", str(made), *libraries]
-            done = subprocess.run(command, capture_output=True, text=True, check=False)
+            try:
+                done = subprocess.run(
+                    command, capture_output=True, check=False, timeout=COMPILER_SECONDS, stdin=subprocess.DEVNULL
+                )
+            except subprocess.TimeoutExpired:
+                raise UserError(
+                    f"the C++ compiler `{shlex.join(program)}` did not end within {COMPILER_SECONDS} s; "
+                    "expected one that works, named by $CXX"
+                ) from None
+            except OSError:  # named as a program, and of another system
+                return False
             if done.returncode == 0 and _loads(made):
+                made.chmod(0o700)
                 made.replace(file)
                 return True
     return False
