@@ -32,7 +32,7 @@ def main(arguments: list[str] | None = None) -> int:
     chosen = _parsed(arguments)
     out: Path = chosen.out
     shutil.rmtree(out, ignore_errors=True)
-    planned = draw_fleet(chosen.machines, chosen.recordings, chosen.seed)
+    planned = draw_fleet(chosen.machines, chosen.recordings, chosen.seed)[: chosen.first]
     cards = write_fleet(planned, out / "data", samples=chosen.samples, seed=chosen.seed)
     (out / "key.json").write_text(json.dumps([machine.as_json() for machine in planned], indent=1))
     measured = {"about": header(), "choices": {k: v for k, v in vars(chosen).items() if k != "out"}}
@@ -65,6 +65,7 @@ def _tell(text: str) -> None:
 def _parsed(arguments: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--machines", type=int, default=64)
+    parser.add_argument("--first", type=int, help="so many of them alone are recorded")
     parser.add_argument("--recordings", type=int, default=10, help="of each machine")
     parser.add_argument("--samples", type=int, default=300, help="of each of the two experiments of a recording")
     parser.add_argument("--workers", type=int, default=2)

@@ -43,7 +43,8 @@ def page(measured: Mapping[str, Any]) -> str:
         for g in measured["growth"]
     ]
     stages = [[name, f"{value:.3f}"] for name, value in done["stages"].items()]
-    drawn = f"{choices['machines']} machines with {choices['recordings']} recordings of 2 × {choices['samples']} samples each"
+    of = "" if choices["first"] is None else f"the first {choices['first']} of "
+    drawn = f"{of}{choices['machines']} machines with {choices['recordings']} recordings of 2 × {choices['samples']} samples each"
     head = (
         f"Commit {about['commit']}, {about['date']}, {about['processor']}, {about['cores']} cores. {drawn}, "
         f"{choices['workers']} workers, seed {choices['seed']}."

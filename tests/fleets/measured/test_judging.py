@@ -62,7 +62,7 @@ def test_verdicts_are_compared_but_for_time() -> None:
 def test_the_page() -> None:
     measured = {
         "about": {"commit": "abc", "date": "2026-11-21", "processor": "P", "cores": "2"},
-        "choices": {"machines": 2, "recordings": 8, "samples": 300, "workers": 2, "seed": 0},
+        "choices": {"machines": 2, "first": None, "recordings": 8, "samples": 300, "workers": 2, "seed": 0},
         "judged": judged([APPEARS, QUIET], result(changes=())),
         "interrupted": {
             "data_sets": 16,
