@@ -89,6 +89,10 @@ def export(
         raise ArgumentError("to", to, f"expected one of {', '.join(KINDS)}{did_you_mean(str(to), KINDS)}")
     given = check_model(model)
     if to in SNIPPETS:
+        if step is not None:
+            raise ArgumentError(
+                "step", step, f"{to} has attributes alone, the steps are its simulator's; expected none"
+            )
         return SnippetResult(given, to, SNIPPETS[to](given, identifier_of(given, name)))
     hold = "zoh"
     if data is not None:

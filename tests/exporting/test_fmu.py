@@ -145,7 +145,7 @@ def started(file: Path) -> Iterator[tuple[Any, dict[str, int]]]:
 
 
 def test_agrees_on_recordings(recorded: Machine, tmp_path: Path) -> None:
-    """At the times of the samples, which FMPy's own loop does not take."""
+    """At the times of the samples, which FMPy's own loop does not take; the first 5000 of them."""
     recording = recorded.data.recordings[0]
     for edition, file in fmus_of(recorded, tmp_path).items():
         with started(file) as (fmu, places):
@@ -155,7 +155,7 @@ def test_agrees_on_recordings(recorded: Machine, tmp_path: Path) -> None:
             outputs = [places[o.name] for o in recorded.model.outputs]
             put(states, recorded.start)
             found = []
-            for k, u in enumerate(recorded.inputs.tolist()):
+            for k, u in enumerate(recorded.inputs[:5000].tolist()):
                 put(inputs, u)
                 found.append(got(outputs))
                 if k + 1 < len(recording.time):

@@ -140,6 +140,11 @@ def test_what_cannot_be_said_is_told(machines: Path, tmp_path: Path) -> None:
         assert "rotor.torque_ripple" in made._repr_html_() and "<pre>" in made._repr_html_()
 
 
+def test_steps_are_those_of_the_simulator(machines: Path) -> None:
+    with pytest.raises(gt.UserError, match=r"step: found 0\.001, mjcf has attributes alone"):
+        gt.export(rotor(machines, {("rotor", "viscous_friction"): {"c": 0.1}}), to="mjcf", step=1e-3)
+
+
 def test_a_tank_has_no_joints(machines: Path) -> None:
     around = Surroundings({"level": Range(0.0, 1.0, 0.5)}, {"level": "m"}, "m^3/s", 1.0)
     plain = gt.load_model(f"{machines / 'small.py'}:Tank")
