@@ -82,6 +82,20 @@ class InputTrace:
 
 
 @dataclass(frozen=True)
+class Estimate:
+    """A free parameter of the model, in ``unit``: as the card has it, re-estimated, and with the effects (None where there are none).
+
+    Standard deviations are None where they are not known.
+    """
+
+    name: str
+    unit: str
+    start: float
+    refit: tuple[float, float | None]
+    augmented: tuple[float, float | None] | None
+
+
+@dataclass(frozen=True)
 class Verdict:
     """Everything that a diagnosis found.
 
@@ -112,6 +126,7 @@ class Verdict:
     """By what it was decided, and with ``budget`` how much was computed for it."""
     budget: SearchBudget = SearchBudget()
     not_tried: NotTried = NotTried()
+    parameters: tuple[Estimate, ...] = field(repr=False, default=())
     beliefs: Beliefs = NO_BELIEFS
     """What was known beforehand."""
 

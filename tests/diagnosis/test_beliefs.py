@@ -101,6 +101,9 @@ def test_a_lag_is_placed_where_it_is_believed_to_be(motor_data, motor, side: str
     assert effect.probability / other.probability == pytest.approx(9.0, rel=0.3)
     assert effect.one_of is not None and effect.one_of.probability > 0.9
     assert not any(port == "rotor" for port, _ in hypotheses(found))
+    (b, j), verdict = sorted(found.verdict.parameters, key=lambda p: p.name, reverse=True)[:2], found.verdict
+    assert {p.name for p in verdict.parameters} == {"J", "b"} and b.augmented is not None
+    assert b.augmented[0] == found.parameters["b"].value and (b.augmented[1] or 0.0) > 0.0 and j.unit == "kg m^2"
     assert found.to_dict()["beliefs"] == {f"{side}/*": 0.9, "rotor/*": 0.0}
     assert any("what is believed beforehand decides" in s for s in found.verdict.evidence) == (side == "actuator")
 

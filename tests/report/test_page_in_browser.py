@@ -15,7 +15,7 @@ import pytest
 from greybox_torch.diagnosis.beliefs import Beliefs
 from greybox_torch.diagnosis.effect import FreeCurve
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
-from greybox_torch.diagnosis.verdict import InputTrace, Verdict
+from greybox_torch.diagnosis.verdict import Estimate, InputTrace, Verdict
 from greybox_torch.report.about import About
 from greybox_torch.report.page import render_page
 
@@ -50,7 +50,9 @@ def full(verdict: Verdict) -> Verdict:
         one_of = OneOf("about 1.1 ms pass between motor_torque_of_the_drive and measured motor_speed", 0.9, members)
         effects.append(replace(effect, curve=replace(effect.curve, free=free), one_of=one_of))
     beliefs = Beliefs({"gear_spring/position_dependent_friction": 0.3})
-    return replace(verdict, inputs=inputs, effects=tuple(effects), complete=False, beliefs=beliefs)
+    many = (123.456789, 0.000123)
+    own = Estimate("friction_coefficient", "N m s/rad", 0.00123, many, many if verdict.effects else None)
+    return replace(verdict, parameters=(own,), inputs=inputs, effects=tuple(effects), complete=False, beliefs=beliefs)
 
 
 @pytest.mark.skipif(BROWSER is None, reason="no Chromium on this machine")

@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.contradictions import worse_than_refit
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.hypothesis.noise import output_floors
 from greybox_torch.diagnosis.settings import DiagnosisSettings
-from greybox_torch.diagnosis.verdict import InputTrace, Trace
+from greybox_torch.diagnosis.verdict import Estimate, InputTrace, Trace
 from greybox_torch.estimate.comparison import Comparison, Score, fit_rows
 from greybox_torch.estimate.problem import Problem
 
@@ -133,6 +133,21 @@ class Judgement:
                 values = records.u[k, records.span(e)]
                 found.append(InputTrace(recording.name, one.name, one.unit, records.time(e), values))
         return tuple(found)
+
+    def parameters(self, effects: bool) -> tuple[Estimate, ...]:
+        """The free parameters of the model itself: as the card has them, re-estimated, and with the effects."""
+        units = {p.name: p.unit for p in self.problem.model.declared_parameters}
+        values = dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
+        estimates = [(f.values(), f.deviations()) for f in (self.plain, *((self.augmented,) if effects else ()))]
+
+        def of(name: str) -> Estimate:
+            both = [
+                (found[name], std if np.isfinite(std := deviations.get(name, np.nan)) else None)
+                for found, deviations in estimates
+            ]
+            return Estimate(name, units[name], values[name], both[0], both[1] if effects else None)
+
+        return tuple(of(name) for name in self.problem.free_names)
 
     def _times_noise(self, comparison: Comparison) -> np.ndarray:
         """Root mean square errors in units of the noise, by experiment (E,), over the outputs whose noise is known; NaN where none is."""

@@ -14,6 +14,7 @@ from greybox_torch.report.pdf.tables import draw_bars, draw_table
 from greybox_torch.report.sections.headline import Figure, Headline
 from greybox_torch.report.sections.limits import Limits
 from greybox_torch.report.sections.making import Making
+from greybox_torch.report.sections.parameters import Parameters
 from greybox_torch.report.sections.ranking import Ranking
 from greybox_torch.report.sections.remains import Remains
 from greybox_torch.report.sections.scores import Scores
@@ -30,6 +31,7 @@ def render_pdf(verdict: Verdict, about: About) -> bytes:
     _headline(sheets, Headline.of(verdict))
     _scores(sheets, Scores.of(verdict, about))
     draw_effects(sheets, verdict)
+    _parameters(sheets, Parameters.of(verdict))
     _remains(sheets, Remains.of(verdict))
     _limits(sheets, Limits.of(verdict))
     _traces(sheets, Traces.of(verdict))
@@ -107,6 +109,16 @@ def _scores(sheets: Sheets, told: Scores) -> None:
             8.0,
             colour=QUIET,
         )
+
+
+def _parameters(sheets: Sheets, told: Parameters | None) -> None:
+    if told is None:
+        return
+    sheets.title("The model's own parameters", 120.0)
+    sheets.text("All that are free, ± one standard deviation.", 8.0, colour=QUIET)
+    rows = [[(plain(row.symbol), row.unit), *((value, "") for value in row.values)] for row in told.rows]
+    share = 0.78 / len(told.columns)
+    draw_table(sheets, [("Parameter", ""), *told.columns], rows, [0.22, *[share] * len(told.columns)], bold_last=True)
 
 
 def _remains(sheets: Sheets, told: Remains | None) -> None:

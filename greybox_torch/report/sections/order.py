@@ -14,6 +14,7 @@ from greybox_torch.report.sections.evidence import Evidence
 from greybox_torch.report.sections.headline import Headline
 from greybox_torch.report.sections.limits import Limits
 from greybox_torch.report.sections.making import Making
+from greybox_torch.report.sections.parameters import Parameters
 from greybox_torch.report.sections.ranking import Ranking
 from greybox_torch.report.sections.remains import Remains
 from greybox_torch.report.sections.scores import Scores
@@ -28,6 +29,7 @@ SECTIONS: dict[str, MakeSection] = {
     "effects": lambda verdict, about: Effects.of(verdict),
     "evidence": lambda verdict, about: Evidence.of(verdict),
     "scores": Scores.of,
+    "parameters": lambda verdict, about: Parameters.of(verdict),
     "remains": lambda verdict, about: Remains.of(verdict),
     "limits": lambda verdict, about: Limits.of(verdict),
     "traces": lambda verdict, about: Traces.of(verdict),

@@ -1,0 +1,43 @@
+"""The model's own parameters, before and after: what a model that lacks something had bent them to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from greybox_torch.diagnosis.verdict import Estimate, Verdict
+from greybox_torch.report import text
+
+
+@dataclass(frozen=True)
+class Row:
+    """A parameter and its values, with their standard deviations where they were estimated."""
+
+    symbol: Markup
+    unit: str
+    values: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """``columns`` are the models: their names, and a few words on each."""
+
+    columns: tuple[tuple[str, str], ...]
+    rows: tuple[Row, ...]
+    template: str = "parameters.html.j2"
+
+    @classmethod
+    def of(cls, verdict: Verdict) -> Parameters | None:
+        if not verdict.parameters:
+            return None
+        columns = (("Start", "the card's values"), ("Refit", "re-estimated as it is"))
+        if verdict.effects:
+            columns = (*columns, ("Augmented", "with the effects"))
+        return cls(columns, tuple(map(_row, verdict.parameters)))
+
+
+def _row(found: Estimate) -> Row:
+    estimates = (found.refit, found.augmented) if found.augmented is not None else (found.refit,)
+    values = (text.number(found.start, 4), *(text.measured(*one) for one in estimates))
+    return Row(text.symbol(found.name), text.unit(found.unit), values)
