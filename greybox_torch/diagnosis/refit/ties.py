@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.significance import white_samples
-from greybox_torch.diagnosis.hypothesis.whole_records import coloured, from_windows, whole_runs
+from greybox_torch.diagnosis.refit.likelihood import cost_of
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 
@@ -35,14 +35,9 @@ def rank_by_likelihood(
     tied = [r for r in named if r.fitted.score < best.fitted.score + settings.score_tie][: budget.most_tied]
     if len({r.candidate.attachment.prefix for r in tied}) < 2:
         return list(ranked)
-    costs = [_cost(r) for r in tied]
+    costs = [cost_of(r.fitted) for r in tied]
     within = min(costs) + 0.5 * settings.score_tie * samples
     weighed = {id(r): replace(r, cost=cost) for r, cost in zip(tied, costs, strict=True) if cost <= within}
     price = 0.5 * float(np.log(samples))
     in_turn = iter(sorted(weighed.values(), key=lambda r: (r.cost or 0.0) + price * r.size))
     return [next(in_turn) if id(r) in weighed else r for r in ranked]
-
-
-def _cost(tied: RankedCandidate) -> float:
-    found = coloured(whole_runs(tied.fitted, [from_windows(tied.fitted.fits[-1])]))
-    return np.inf if found is None else found[1].cost

@@ -48,7 +48,7 @@ def names(found: list[RankedCandidate]) -> list[str]:
 
 
 def costing(monkeypatch, **costs: float) -> None:
-    monkeypatch.setattr(ties, "_cost", lambda r: costs[r.candidate.attachment.mechanism.name])
+    monkeypatch.setattr(ties, "cost_of", lambda fitted: costs[fitted.problem.free_names[0].split(".")[1]])
 
 
 @pytest.mark.parametrize(("gravity", "first"), [(98.0, "constant_bias"), (90.0, "gravity")])

@@ -1,0 +1,36 @@
+"""Hypotheses by the likelihood of whole records, with errors of whatever colour they have.
+
+Windows are few where an effect is slow or rare, and of few their mean is not sure. Where a hypothesis leaves white noise alone every sample
+counts: the likelihood says what windows cannot. What a slow disturbance could be taken for does not count over and over, as the errors of
+both hypotheses are weighed by their own spectrum.
+
+Source: P. Whittle, "Estimation and information in stationary time series", Arkiv för Matematik 2, 1953.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.significance import white_samples
+from greybox_torch.diagnosis.hypothesis.whole_records import coloured, from_windows, whole_runs
+from greybox_torch.diagnosis.refit.rank import RankedCandidate
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+
+
+def cost_of(fitted: Hypothesis) -> float:
+    """Negative logarithm of the likelihood of whole records from the values of the longest windows; infinite where they overflow."""
+    found = coloured(whole_runs(fitted, [from_windows(fitted.fits[-1])]))
+    return np.inf if found is None else found[1].cost
+
+
+def likelier(parent: Hypothesis, ranked: RankedCandidate, settings: DiagnosisSettings) -> bool:
+    """Whether a named candidate is surely better than the hypothesis before it by the likelihood of whole records.
+
+    Asked only of what leaves white noise alone.
+    """
+    asked = not ranked.unknown and ranked.gain > settings.least_gain_by_likelihood
+    if not asked or not white_samples(ranked.fitted, settings):
+        return False
+    behind = cost_of(parent) - cost_of(ranked.fitted)
+    return behind > 0.5 * settings.least_likelihood_significance**2

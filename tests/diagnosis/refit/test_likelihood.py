@@ -1,0 +1,31 @@
+"""What the likelihood of whole records says where windows are too few."""
+
+from __future__ import annotations
+
+import pytest
+
+from greybox_torch.diagnosis.refit import likelihood
+from greybox_torch.diagnosis.refit.likelihood import likelier
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+
+SETTINGS = DiagnosisSettings(least_gain_by_likelihood=0.05, least_likelihood_significance=10.0)
+
+
+@pytest.mark.parametrize(
+    ("case", "taken"),
+    [
+        ({}, True),
+        ({"cost": 151.0}, False),  # 9.9 standard errors
+        ({"gain": 0.04}, False),
+        ({"samples": 0}, False),  # more than white noise is left
+        ({"unknown": True}, False),
+    ],
+)
+def test_it_speaks_only_for_a_law_that_leaves_noise_alone_and_gains_enough(monkeypatch, stub, case, taken) -> None:
+    """Seen: viscous friction of a hanging pole, which ten long windows showed with 2.6 standard errors and the record with 20."""
+    known = {"cost": 149.0, "gain": 0.4, "samples": 5000, "unknown": False} | case
+    costs = {"before": 200.0, "after": known["cost"]}
+    monkeypatch.setattr(likelihood, "cost_of", lambda fitted: costs[fitted])
+    monkeypatch.setattr(likelihood, "white_samples", lambda fitted, settings: known["samples"])
+    ranked = stub(unknown=known["unknown"], gain=known["gain"], fitted="after")
+    assert likelier("before", ranked, SETTINGS) is taken  # type: ignore[arg-type]
