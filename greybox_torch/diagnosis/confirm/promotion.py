@@ -53,10 +53,10 @@ def promote_validation(study: Study, dataset: DataSet, state: SearchState, other
 def serves(others: HeldOut, before: SearchState, after: SearchState) -> bool:
     """Whether the model of ``after`` may stand in the place of that of ``before``, as experiments that had no part in either say.
 
-    Against what was found before it must predict them better. Against nothing it must not be worse than by chance: what was taken shows an
-    effect that they need not show.
+    Against what was found before it must predict them better, or, where it only adds to that, not worse than by chance: what was taken
+    shows an effect that they need not show, such as a stop that they never reach. Against nothing the latter is enough.
     """
     fits, fits_before = others.fits(after.current), others.fits(before.current)
-    if before.effects:
-        return gain(fits_before, fits).share > 0
-    return gain(fits, fits_before).errors_away < others.study.settings.held_out_beyond_chance
+    no_worse = gain(fits, fits_before).errors_away < others.study.settings.held_out_beyond_chance
+    adds = not before.effects or before.prefixes < after.prefixes
+    return (adds and no_worse) or (bool(before.effects) and gain(fits_before, fits).share > 0)

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from greybox_torch.data import DataSet
-from greybox_torch.diagnosis.confirm.held_out import HeldOut
+from greybox_torch.diagnosis.confirm import promotion
+from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.promotion import promote_validation, serves
 from greybox_torch.diagnosis.pipeline import diagnose
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.friction import QuadraticDrag
 
@@ -74,6 +76,20 @@ def test_what_explains_the_others_is_left_as_it_is(drag_at_speed, motor, begun) 
     search, complete = search.state, complete.state
     assert serves(others, search, complete) and not serves(others, complete, search)
     assert serves(others, complete, complete) is False and serves(others, search, search)
+
+
+def test_what_adds_to_what_was_found_need_not_show_in_the_experiments_that_are_left(monkeypatch, stub) -> None:
+    """Seen: dry friction, and a stop that one validation experiment alone reached; the two left to judge said neither yes nor no."""
+    alike, worse = Gain(-0.01, 0.01), Gain(-0.3, 0.01)
+    found = {"current": "friction", "effects": ("friction",), "prefixes": {"friction"}}
+    more = {"current": "both", "effects": ("friction", "stop"), "prefixes": {"friction", "stop"}}
+    other = {"current": "other", "effects": ("stop",), "prefixes": {"stop"}}
+    others = stub(fits=lambda hypothesis: hypothesis, study=stub(settings=DiagnosisSettings()))
+    for after, by_more, takes in ((more, alike, True), (other, alike, False), (more, worse, False)):
+        better_before = Gain(-by_more.share, by_more.error)
+        gains = {("friction", after["current"]): by_more, (after["current"], "friction"): better_before}
+        monkeypatch.setattr(promotion, "gain", lambda old, new, gains=gains: gains[old, new])
+        assert serves(others, stub(**found), stub(**after)) is takes
 
 
 def test_what_only_the_last_experiment_shows_is_said_to_be_missing_without_a_name(drag_at_speed, motor) -> None:
