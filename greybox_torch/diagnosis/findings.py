@@ -126,7 +126,7 @@ def _searched(study: Study, state: SearchState, deadline: Deadline) -> tuple[Stu
     """The study with what is known of the ports, the best state, and whether the search ended by itself."""
 
     def told(better: SearchState) -> None:
-        effects = [(e.port, e.mechanism.name) for e in better.effects]
+        effects = [e.named for e in better.effects]
         study.journal.found(effects, size(better.plain.fits, better.plain.fits, better.current.fits, study.settings))
 
     begun, complete = (study, state), True

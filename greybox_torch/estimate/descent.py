@@ -58,7 +58,7 @@ class Descent:
 
 
 @dataclass(frozen=True)
-class Way:
+class DescentOptions:
     """What every descent needs: how to simulate, when to stop, whom to tell."""
 
     simulator: Simulator
@@ -71,29 +71,29 @@ class Way:
         return fine_enough(self.simulator, problem)
 
 
-def descend(problem: Problem, way: Way, starts: int | None) -> Descent | None:
+def descend(problem: Problem, options: DescentOptions, starts: int | None) -> Descent | None:
     """The best optimum found from the start values of ``problem``; None where not even short windows simulate.
 
     Args:
         starts: how many start values to descend from, those given among them; by default one, or many where those turn out poor.
     """
-    simulator = way.fine_enough(problem)
+    simulator = options.fine_enough(problem)
     fits = _fits(problem, simulator)
     tolerable = fits.min() > TOLERABLE
-    begin, before = (problem, 0) if tolerable else _by_windows(problem, way, simulator)
-    found = _whole_records(begin, way, before)
+    begin, before = (problem, 0) if tolerable else _by_windows(problem, options, simulator)
+    found = _whole_records(begin, options, before)
     if starts is None:
         starts = 1 if found is not None and _trusted(fits, found) else _default_starts(problem, simulator)
     if starts > 1 and problem.free.any():
-        elsewhere = look_around(problem, simulator, starts=starts, seed=way.seed, progress=way.progress)
-        other = None if elsewhere is None else _whole_records(elsewhere, way, 0, (minimise_on_logarithms, minimise))
+        elsewhere = look_around(problem, simulator, starts=starts, seed=options.seed, progress=options.progress)
+        other = None if elsewhere is None else _whole_records(elsewhere, options, 0, (minimise_on_logarithms, minimise))
         found = _better(found, other)
     return found
 
 
-def improved(found: Descent | None, begin: Problem, way: Way) -> Descent | None:
+def improved(found: Descent | None, begin: Problem, options: DescentOptions) -> Descent | None:
     """The better of what was found and the optimum that a descent on whole records reaches from the values of ``begin``."""
-    return _better(found, _whole_records(begin, way, 0))
+    return _better(found, _whole_records(begin, options, 0))
 
 
 def _fits(problem: Problem, simulator: Simulator) -> np.ndarray:
@@ -120,7 +120,7 @@ def _default_starts(problem: Problem, simulator: Simulator) -> int:
     return min(MOST_STARTS, STARTS_A_PARAMETER * int(problem.free.sum())) if simulator.compiled else 1
 
 
-def _by_windows(problem: Problem, way: Way, simulator: Simulator) -> tuple[Problem, int]:
+def _by_windows(problem: Problem, options: DescentOptions, simulator: Simulator) -> tuple[Problem, int]:
     """Better parameters by way of windows with free start states; each length is kept only if the one before simulates."""
     evaluations, longest = 0, int(problem.records.lengths.max())
     for share in WINDOW_SHARES:
@@ -129,39 +129,42 @@ def _by_windows(problem: Problem, way: Way, simulator: Simulator) -> tuple[Probl
             continue
         evaluations += found.evaluations
         problem = problem.with_values(found.problem.values)
-        if way.progress is not None:
-            way.progress(f"windows of {found.windows.steps} samples", evaluations, found.mean_square)
+        if options.progress is not None:
+            options.progress(f"windows of {found.windows.steps} samples", evaluations, found.mean_square)
     return problem, evaluations
 
 
 def _whole_records(
-    problem: Problem, way: Way, before: int, methods: Sequence[Method] = (minimise, minimise_on_logarithms, minimise)
+    problem: Problem,
+    options: DescentOptions,
+    before: int,
+    methods: Sequence[Method] = (minimise, minimise_on_logarithms, minimise),
 ) -> Descent | None:
     """The optimum of whole records near the values of ``problem``, after so many passes.
 
     Where the parameters have come to need finer steps than they began with, the optimum is found anew with those.
     """
-    found = _optimum(FreeRun(problem, way.fine_enough(problem)), way, before, methods)
+    found = _optimum(FreeRun(problem, options.fine_enough(problem)), options, before, methods)
     for _ in range(FINER):
         if found is None:
             return None
         problem = found.run.at(found.optimum.point)
-        finer = way.fine_enough(problem)
+        finer = options.fine_enough(problem)
         if finer.substeps <= found.run.simulator.substeps:
             return found
-        found = _optimum(FreeRun(problem, finer), way, found.evaluations, methods[-1:])
+        found = _optimum(FreeRun(problem, finer), options, found.evaluations, methods[-1:])
     return found
 
 
-def _optimum(run: FreeRun, way: Way, before: int, methods: Sequence[Method]) -> Descent | None:
+def _optimum(run: FreeRun, options: DescentOptions, before: int, methods: Sequence[Method]) -> Descent | None:
     """Descend by one method after the other, until the plain one has arrived; where it creeps, logarithms are for."""
-    samples, progress = run.problem.samples, way.progress
+    samples, progress = run.problem.samples, options.progress
     report = None
     if progress is not None:
         report = lambda i, cost, _: progress("whole records", i, 2 * cost / samples)  # noqa: E731
     z, used, optimum = run.start, 0, None
     for method in methods:
-        settings = replace(way.settings, iterations=min(PATIENCE, way.settings.iterations - used))
+        settings = replace(options.settings, iterations=min(PATIENCE, options.settings.iterations - used))
         if settings.iterations <= 0:
             break
         here = method(run.quadratic, z, *run.bounds, settings=settings, admissible=run.admissible, on_iteration=report)

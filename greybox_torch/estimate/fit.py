@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.estimate.correlation import CorrelationMatrix, correlation_matrix
-from greybox_torch.estimate.descent import Descent, Progress, Way
+from greybox_torch.estimate.descent import Descent, DescentOptions, Progress
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.identifiability import Unidentifiable, identifiability
 from greybox_torch.estimate.levenberg_marquardt import DEFAULT, Settings
@@ -91,12 +91,12 @@ def fit_records(
         NumericalError: the simulation overflows even over short windows.
     """
     simulator = simulator or Simulator.of(problem.model, problem.free_names)
-    way = Way(simulator, settings, progress, seed)
+    options = DescentOptions(simulator, settings, progress, seed)
     if not problem.free.any() and not problem.initial_free.any():
-        return _unmoved(FreeRun(problem, way.fine_enough(problem)), problem.samples)
-    found = descend_nested(problem, way, starts)
+        return _unmoved(FreeRun(problem, options.fine_enough(problem)), problem.samples)
+    found = descend_nested(problem, options, starts)
     if found is None:
-        raise overflow_error("estimating", problem, way.fine_enough(problem))
+        raise overflow_error("estimating", problem, options.fine_enough(problem))
     unidentifiable = ()
     if with_uncertainty:
         unidentifiable = identifiability(found.run, found.optimum.point, found.optimum.model)

@@ -12,39 +12,39 @@ from dataclasses import replace
 
 import numpy as np
 
-from greybox_torch.estimate.descent import Descent, Way, descend, improved
+from greybox_torch.estimate.descent import Descent, DescentOptions, descend, improved
 from greybox_torch.estimate.problem import Problem
 
 HELD = "with {} held at zero"
 """What the stage is called, for those whom the progress is told."""
 
 
-def descend_nested(problem: Problem, way: Way, starts: int | None) -> Descent | None:
+def descend_nested(problem: Problem, options: DescentOptions, starts: int | None) -> Descent | None:
     """The best of a descent from the start values and one by way of the simpler model; as :func:`descend` where nothing starts at zero.
 
     It never ends worse than the simpler model estimated in the same way.
     """
-    found = descend(problem, way, starts)
+    found = descend(problem, options, starts)
     zero = problem.free & (problem.values == 0.0)
     if not zero.any() or zero.sum() == problem.free.sum():
         return found
     simpler = replace(problem, free=problem.free & ~zero)
     names = ", ".join(name for name, is_zero in zip(problem.names, zero, strict=True) if is_zero)
-    there = descend(simpler, _told(way, simpler, HELD.format(names)), starts)
+    there = descend(simpler, _told(options, simpler, HELD.format(names)), starts)
     if there is None or _cost(there) >= _cost(found):
         return found
     begin = problem.with_values(*_optimum(there))
-    return improved(found, begin, way)
+    return improved(found, begin, options)
 
 
-def _told(way: Way, simpler: Problem, what: str) -> Way:
-    """``way`` for the simpler problem, which has fewer tangents; progress says what it is of."""
-    told = way.progress
+def _told(options: DescentOptions, simpler: Problem, what: str) -> DescentOptions:
+    """``options`` for the simpler problem, which has fewer tangents; progress says what it is of."""
+    told = options.progress
     progress: Callable[[str, int, float], None] | None = None
     if told is not None:
         progress = lambda stage, k, error: told(f"{what}: {stage}", k, error)  # noqa: E731
-    simulator = way.simulator.for_model(simpler.model, simpler.free_names)
-    return replace(way, simulator=simulator, progress=progress)
+    simulator = options.simulator.for_model(simpler.model, simpler.free_names)
+    return replace(options, simulator=simulator, progress=progress)
 
 
 def _optimum(found: Descent) -> tuple[np.ndarray, np.ndarray]:

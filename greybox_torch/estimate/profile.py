@@ -117,11 +117,11 @@ def profile(found: Estimation, simulator: Simulator, name: str, *, settings: Set
     start, index = run.start, found.problem.free_names.index(name)
     colour, deviation = _colour(found, index), found.parameter_deviations("sandwich").get(name, np.inf)
     variance = found.mse * found.samples / max(found.samples - len(start), 1)
-    way = _Way(run, index, found.mse * found.samples, max(variance * colour, 1e-300), settings)
+    walk = _ProfileRun(run, index, found.mse * found.samples, max(variance * colour, 1e-300), settings)
     lower, upper = (float(bound[index]) for bound in run.bounds)
-    here = way.held(float(start[index]), start)
+    here = walk.held(float(start[index]), start)
     step = STEP * deviation if 0 < deviation < np.inf else 0.1 * max(abs(start[index]), 1e-6)
-    sides = [way.walked(here, -step, lower), way.walked(here, step, upper)]
+    sides = [walk.walked(here, -step, lower), walk.walked(here, step, upper)]
     middle = [(float(start[index]), 0.0)]
     low, high = _crossing(middle + sides[0]), _crossing(middle + sides[1])
     rows = np.array([*reversed(sides[0]), *middle, *sides[1]])
@@ -142,7 +142,7 @@ def profile(found: Estimation, simulator: Simulator, name: str, *, settings: Set
 
 
 @dataclass(frozen=True)
-class _Way:
+class _ProfileRun:
     """Away from the estimate: one unknown of ``run`` at ``index`` held, the sum of squares compared with ``base`` in units of ``scale``."""
 
     run: FreeRun

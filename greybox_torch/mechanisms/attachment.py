@@ -22,7 +22,13 @@ class Attachment:
 
     @property
     def prefix(self) -> str:
+        """What the names of its parameters and states begin with."""
         return f"{self.port}.{self.mechanism.name}{self.label}"
+
+    @property
+    def named(self) -> tuple[str, str]:
+        """The port, and the mechanism there: how a finding is called."""
+        return self.port, self.mechanism.name
 
 
 def attach(model: GreyBoxModel, port: str, mechanism: Mechanism, shifted: str = "") -> Attachment:

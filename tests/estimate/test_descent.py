@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greybox_torch.estimate.descent import Way, descend
+from greybox_torch.estimate.descent import DescentOptions, descend
 from greybox_torch.estimate.fit import fit_records
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import DEFAULT, Quadratic, Settings, minimise
@@ -78,7 +78,7 @@ def test_a_good_start_is_not_left(oscillation: Any) -> None:
 
 def test_nothing_finite_is_none(oscillation: Any) -> None:
     lost = oscillation.with_values(np.array([np.inf, 1.0]))
-    assert descend(lost, Way(Simulator.of(lost.model, lost.free_names), DEFAULT), 1) is None
+    assert descend(lost, DescentOptions(Simulator.of(lost.model, lost.free_names), DEFAULT), 1) is None
 
 
 def test_a_population_descends_as_its_members_would(oscillation: Any) -> None:

@@ -51,11 +51,11 @@ def test_a_descent_that_ends_in_a_worse_valley_is_replaced(problem: Problem, mon
     """The descent of the richer model is led astray, as it is on machines with many valleys."""
     simpler = fit_records(held(problem), starts=1)
 
-    def astray(begin: Problem, way: Any, starts: int | None) -> Any:
+    def astray(begin: Problem, options: Any, starts: int | None) -> Any:
         if begin.free.all():
             begin = begin.with_values(np.array([0.5, 0.01, 0.9]))
-            way = replace(way, settings=replace(way.settings, iterations=1))
-        return descend(begin, way, starts)
+            options = replace(options, settings=replace(options.settings, iterations=1))
+        return descend(begin, options, starts)
 
     monkeypatch.setattr(nested, "descend", astray)
     found = fit_records(problem, starts=1)
@@ -74,9 +74,9 @@ def test_what_is_better_already_stays(problem: Problem) -> None:
 def test_nothing_is_held_where_nothing_begins_at_zero(problem: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
     seen: list[Problem] = []
 
-    def counted(begin: Problem, way: Any, starts: int | None) -> Any:
+    def counted(begin: Problem, options: Any, starts: int | None) -> Any:
         seen.append(begin)
-        return descend(begin, way, starts)
+        return descend(begin, options, starts)
 
     monkeypatch.setattr(nested, "descend", counted)
     fit_records(held(problem), starts=1)

@@ -51,7 +51,7 @@ def sentences(
         )
     kept = {(e.port, e.mechanism) for e in effects}
     taken = [done.taken.candidate.attachment for done in state.steps if done.taken is not None]
-    lost = [_name(a) for a in taken if (a.port, a.mechanism.name) not in kept]
+    lost = [_name(a) for a in taken if a.named not in kept]
     if lost:
         lines.append(f"Taken back, as the other experiments or effects do not bear it out: {', '.join(lost)}.")
     if dataset.held_out_by_default:

@@ -14,10 +14,8 @@ def ranking(state: SearchState) -> tuple[tuple[str, str, float, float | None], .
     first = state.steps[0]
     best: dict[tuple[str, str], float] = {}
     for score in (score for at_length in first.screened for score in at_length):
-        key = (score.attachment.port, score.attachment.mechanism.name)
+        key = score.attachment.named
         best[key] = max(best.get(key, 0.0), score.explained)
-    gains = {
-        (r.candidate.attachment.port, r.candidate.attachment.mechanism.name): r.gain for r in reversed(first.ranked)
-    }
+    gains = {r.candidate.attachment.named: r.gain for r in reversed(first.ranked)}
     rows = [(port, name, share, gains.get((port, name))) for (port, name), share in best.items()]
     return tuple(sorted(rows, key=lambda row: -row[2])[:MOST_ROWS])

@@ -64,7 +64,7 @@ def in_order(ranked: Sequence[RankedCandidate], settings: DiagnosisSettings) -> 
 def rank(study: Study, current: Hypothesis, found: Sequence[Candidate]) -> list[RankedCandidate]:
     """Refit every candidate on top of ``current`` and rank them, best first."""
     budget = study.budget
-    study.journal.offer(_named(candidate) for candidate in found)
+    study.journal.offer(candidate.attachment.named for candidate in found)
     frozen = frozenset(
         p.name for p in current.model.declared_parameters if p.shrunk
     )  # heights of a curve: many, and good already
@@ -75,7 +75,7 @@ def rank(study: Study, current: Hypothesis, found: Sequence[Candidate]) -> list[
 
     def tried(candidate: Candidate, simulator: Simulator) -> Hypothesis | None:
         study.working_on(f"refitting {candidate.attachment.prefix}")
-        study.journal.begin(_named(candidate))
+        study.journal.begin(candidate.attachment.named)
         effects = (*current.effects, candidate.attachment)
         starts = candidate.first_starts(budget.trial_starts)
         return refit(effects, starts, at=middle, limits=budget.trial_iterations, simulator=simulator)
@@ -103,10 +103,6 @@ def rank(study: Study, current: Hypothesis, found: Sequence[Candidate]) -> list[
         longest_first = sorted(some, key=lambda entry: not entry[1].unknown)
         final += [r for r in side_by_side(partial(in_full, *entry[1:]) for entry in longest_first) if r is not None]
     return in_order([*final, *_laws_behind_curve(study, current, final, frozen)], study.settings)
-
-
-def _named(candidate: Candidate) -> tuple[str, str]:
-    return candidate.attachment.port, candidate.attachment.mechanism.name
 
 
 def judged(
@@ -169,9 +165,7 @@ def _finalists(
     tied = [e for e in named[: study.budget.most_tied] if e[0] < named[0][0] + study.settings.score_tie]
     chosen += [e for e in named[: max(study.budget.finalists, len(tied))] if e not in chosen]
     contained = {(e[1].attachment.port, name) for e in chosen for name in e[1].attachment.mechanism.generalises}
-    chosen += [
-        e for e in first if (e[1].attachment.port, e[1].attachment.mechanism.name) in contained and e not in chosen
-    ]
+    chosen += [e for e in first if e[1].attachment.named in contained and e not in chosen]
     if not any(e[1].unknown for e in chosen):
         chosen += [e for e in first if e[1].unknown][:1]
     return chosen

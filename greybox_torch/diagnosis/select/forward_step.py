@@ -40,7 +40,7 @@ def forward_step(study: Study, state: SearchState, *, curves: bool = True, fine:
         found = with_motion(found, from_motion(study, state))
     if found and not state.effects:
         first = max(found, key=lambda candidate: candidate.explained)
-        study.journal.pointed_at((first.attachment.port, first.attachment.mechanism.name), first.explained)
+        study.journal.pointed_at(first.attachment.named, first.explained)
     ranked = rank(study, state.current, found)
     further = rank(study, state.current, _at_other_ports(study, state, screened, found, ranked))
     return (yield from take_best(study, state, screened, in_order([*ranked, *further], study.settings)))

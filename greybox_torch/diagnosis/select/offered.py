@@ -60,10 +60,10 @@ def from_motion(study: Study, state: SearchState) -> list[Candidate]:
 
 def _is_there(offered: Attachment, effects: tuple[Attachment, ...]) -> bool:
     """Whether an effect is in the hypothesis already, as itself, as a law that it contains or as a part of one."""
-    there = {(e.port, e.mechanism.name) for e in effects}
+    there = {e.named for e in effects}
     there_in_part = {(e.port, name) for e in effects for name in e.mechanism.includes}
     own = {(offered.port, n) for n in (offered.mechanism.name, *offered.mechanism.generalises)}
-    return bool(there & own) or (offered.port, offered.mechanism.name) in there_in_part
+    return bool(there & own) or offered.named in there_in_part
 
 
 def _fine_curves(study: Study) -> list[Attachment]:

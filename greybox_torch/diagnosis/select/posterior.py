@@ -76,14 +76,14 @@ def shares(
     best = chosen if led is None else led
     weights: dict[tuple[str, str], tuple[float, RankedCandidate]] = {}
     for rival in ranked:
-        if (key := _key(rival)) != _key(chosen):
+        if (key := rival.candidate.attachment.named) != chosen.candidate.attachment.named:
             weight = _believed_weight(best, rival, settings, beliefs)
             if key not in weights or weight > weights[key][0]:
                 weights[key] = (weight, rival)
     total = _believed_weight(best, chosen, settings, beliefs) + sum(weight for weight, _ in weights.values())
     highest = settings.highest_probability
     found = [(rival, highest * weight / total) for weight, rival in weights.values()]
-    return sorted(found, key=lambda pair: (pair[1], _key(pair[0])), reverse=True)
+    return sorted(found, key=lambda pair: (pair[1], pair[0].candidate.attachment.named), reverse=True)
 
 
 def believed(
@@ -101,10 +101,6 @@ def _believed_weight(
 ) -> float:
     weight = 1.0 if rival is best else _weight(best, rival, settings)
     return weight * beliefs.weight(rival.candidate.attachment)
-
-
-def _key(candidate: RankedCandidate) -> tuple[str, str]:
-    return candidate.candidate.attachment.port, candidate.candidate.attachment.mechanism.name
 
 
 def by_comparison(without: Hypothesis, current: Hypothesis, settings: DiagnosisSettings) -> float:
