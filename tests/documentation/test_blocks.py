@@ -14,7 +14,9 @@ import pytest
 
 import greybox_torch as gt
 from greybox_torch.data.card import Card
+from greybox_torch.diagnosis.beliefs import beliefs_from_mapping
 from greybox_torch.diagnosis.settings.mapping import settings_from_mapping
+from greybox_torch.systems import RobotArm
 from tests.documentation.pages import ROOT, blocks, pages_with
 
 Make = Callable[..., Path]
@@ -62,4 +64,7 @@ def test_cards(page: str) -> None:
         card = SMALLEST | tomllib.loads(text)
         if "time" in card and card["time"] != SMALLEST.get("time"):
             del card["sample_time"]
-        settings_from_mapping(Card.model_validate(card).diagnosis, page)
+        read = Card.model_validate(card)
+        settings_from_mapping(read.diagnosis, page)
+        if read.beliefs:
+            beliefs_from_mapping(read.beliefs, RobotArm(), page)
