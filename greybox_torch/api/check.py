@@ -74,5 +74,6 @@ def _with_data(data: DataSet, examined: Examination) -> list[Finding]:
     try:
         make_problem(data, examined.model, data.recordings)
     except UserError as error:
-        return [Finding("error", "card", str(error), "the names that the model declares", data.path)]
+        found, _, write = str(error).removeprefix(f"{data.path}: ").partition("; expected ")
+        return [Finding("error", "card", found, write or "the names that the model declares", data.path)]
     return []

@@ -10,6 +10,9 @@ from greybox_torch.errors import UserError
 
 _PLAIN = re.compile(r"[A-Za-zµμΩ°%/·*^().²³0-9 \-]{1,40}")
 _LONG_NUMBER = re.compile(r"\d{3,}|\*\*|\^\s*-?\s*\d{2,}")
+_TURNS = re.compile(r"(1|U|r|tr|rev)\s*/\s*min|min\s*\^?\s*(-1|⁻¹)")
+"""Turns per minute, as data loggers write them; beside angles, for a rate of anything else may be 1/min."""
+_ANGLE = re.compile(r"\b(rad|deg|degree|rev|turn|mrad)\b|°")
 _WRITTEN = {"°C": "degC", "°F": "degF", "°": "deg", "·": "*", "²": "^2", "³": "^3", "μ": "µ"}
 
 
@@ -22,7 +25,8 @@ def conversion(source: str, target: str, place: str) -> tuple[float, float]:
 
     registry = _registry()
     try:
-        units = [registry.Unit(_written(unit)) for unit in (source, target)]
+        pair = (_turns(source, target), _turns(target, source))
+        units = [registry.Unit(_written(unit)) for unit in pair]
         if {"hertz" in str(unit) for unit in units} == {True, False} and any("radian" in str(unit) for unit in units):
             raise UserError(f'{place}: "{source}" and "{target}" differ by a turn; give the factor as scale')
         zero, one = (registry.Quantity(value, units[0]).to(units[1]).magnitude for value in (0.0, 1.0))
@@ -58,6 +62,11 @@ def dimensionality(unit: str) -> dict[str, float]:
         return {str(name): float(power) for name, power in _registry().Unit(_written(unit)).dimensionality.items()}
     except Exception as error:  # pint's parser raises what its tokenizer does
         raise ValueError(f'"{unit:.40}" is not a unit') from error
+
+
+def _turns(unit: str, other: str) -> str:
+    """Turns per minute where that is meant: "1/min" beside an angle."""
+    return "rpm" if _TURNS.fullmatch(unit.strip("[]() ")) and _ANGLE.search(other) else unit
 
 
 def _written(unit: str) -> str:

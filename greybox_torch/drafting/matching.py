@@ -12,17 +12,17 @@ from greybox_torch.errors import UserError
 
 _WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
 _ALIKE = (
-    {"speed", "velocity", "vel", "w", "v", "omega", "qd", "dq", "rpm", "n"},
-    {"position", "pos", "angle", "q", "theta", "phi", "x", "deg"},
-    {"torque", "tau", "trq", "moment", "m", "u"},
-    {"force", "f", "u"},
-    {"voltage", "volt", "volts", "v", "u"},
-    {"current", "cur", "i", "amps", "u"},
-    {"level", "height", "h", "y"},
-    {"temperature", "temp", "t", "y"},
-    {"pressure", "press", "p"},
-    {"flow", "q", "inflow", "u"},
-    {"power", "p", "heat", "u"},
+    {"speed", "velocity", "vel", "w", "v", "omega", "qd", "dq", "rpm", "n", "drehzahl", "geschwindigkeit", "vitesse"},
+    {"position", "pos", "angle", "q", "theta", "phi", "x", "deg", "weg", "lage", "winkel", "displacement"},
+    {"torque", "tau", "trq", "moment", "m", "u", "drehmoment", "couple"},
+    {"force", "f", "u", "kraft"},
+    {"voltage", "volt", "volts", "v", "u", "spannung", "tension"},
+    {"current", "cur", "i", "amps", "u", "strom", "courant"},
+    {"level", "height", "h", "y", "pegel", "niveau"},
+    {"temperature", "temp", "t", "y", "temperatur"},
+    {"pressure", "press", "p", "druck", "pression"},
+    {"flow", "q", "inflow", "u", "durchfluss", "debit"},
+    {"power", "p", "heat", "u", "leistung", "puissance"},
     {"acceleration", "acc", "a"},
     {"measured", "meas", "measurement", "actual", "act"},
 )
@@ -54,7 +54,21 @@ def matched(wanted: Sequence[Wanted], columns: Sequence[str], units: Mapping[str
     for negative, k, i in scores:
         if -negative >= SURE and wanted[i].name not in found and columns[k] not in found.values():
             found[wanted[i].name] = columns[k]
-    return found
+    return found | _only_ones_left(wanted, columns, units, found)
+
+
+def _only_ones_left(
+    wanted: Sequence[Wanted], columns: Sequence[str], units: Mapping[str, str], found: Mapping[str, str]
+) -> dict[str, str]:
+    """Channels for which one column alone is left whose unit fits, and which that column alone fits."""
+    open_ones = [channel for channel in wanted if channel.name not in found and channel.unit]
+    left = [column for column in columns if column not in found.values() and units.get(column)]
+    fitting = {channel.name: [c for c in left if fits(units[c], channel.unit)] for channel in open_ones}
+    return {
+        name: mine[0]
+        for name, mine in fitting.items()
+        if len(mine) == 1 and sum(mine[0] in others for others in fitting.values()) == 1
+    }
 
 
 def _score(channel: Wanted, column: str, unit: str, wanted: Sequence[Wanted]) -> float:

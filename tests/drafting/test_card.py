@@ -78,6 +78,17 @@ def test_units_of_the_file_are_converted(folder: Path) -> None:
     np.testing.assert_allclose(data.recordings[0].signals["voltage"], V[:75], atol=1e-6)
 
 
+def test_words_of_other_languages_and_the_only_column_left(folder: Path) -> None:
+    """A German log: the voltage by its word, the speed by its word and turns a minute, or by nothing but its unit."""
+    for names in ("Zeit [s],Spannung [V],Drehzahl [1/min]", "Zeit [s],Spannung [V],Kanal7 [1/min]"):
+        csv(folder / "a.csv", names, T, V, W * 30 / np.pi)
+        gt.card(folder / "a.csv", f"{folder / 'my_motor.py'}:Motor", path=folder / "own.toml").save()
+        data = gt.load_dataset(folder / "own.toml")
+        np.testing.assert_allclose(data.recordings[0].signals["speed"], W[:75], atol=1e-6)
+        np.testing.assert_allclose(data.recordings[0].signals["voltage"], V[:75], atol=1e-6)
+        (folder / "own.toml").unlink()
+
+
 def test_sizes_give_a_slip_away(folder: Path) -> None:
     """A speed in rpm beside a position in rad; nothing is converted without being asked for."""
 
