@@ -66,6 +66,8 @@ def test_the_contract(folder: Path, data: gt.DataSet) -> None:
     assert found.sentence == found.verdict.sentence and found.mismatch
     half_width = found.parameters["actuator.actuator_deadzone.half_width"]
     assert half_width.value == pytest.approx(0.4, rel=0.02) and 0 < (half_width.std or 0) < 0.01
+    table = {row["parameter"]: row["value"] for row in found.effect_rows if row["mechanism"] == effect.mechanism}
+    assert table["half_width"] == half_width.value and len(table) == len(effect.parameters)
     assert found.model.values() == {name: entry.value for name, entry in found.parameters.items()}
     assert (model.held_values(), fit.model.values()["J"]) == ({}, fit.parameters["J"].value)
     kept = {f"1-actuator-actuator_deadzone.{kind}" for kind in ("json", "safetensors")}
