@@ -41,9 +41,7 @@ def recorded(path: Path) -> Recorded:
     if not lengths and listing.names:
         read_table(path, listing.names[:1])  # says what is wrong with it
     if not lengths:
-        raise UserError(
-            f"{path}: no column of numbers among {', '.join(listing.names) or 'nothing'}; expected a recording"
-        )
+        raise UserError(f"{path}: found no column of numbers that could be read; expected a recording")
     usual = max(set(lengths), key=lambda n: (lengths.count(n), n))
     kept = {name: values for name, values in table.columns.items() if len(values) == usual}
     lost += [name for name in table.columns if name not in kept]

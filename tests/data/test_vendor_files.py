@@ -54,6 +54,7 @@ FILES: dict[str, Callable[[Path], object]] = {
     "dates.parquet": lambda path: TABLE.to_parquet(path),
     "index.parquet": lambda path: TABLE.set_index("Time").to_parquet(path),
     "dates.npz": lambda path: np.savez(path, Time=TABLE.Time.to_numpy(), u=U, w=W),
+    "records.npz": lambda path: np.savez(path, log=np.rec.fromarrays([T, U, W], names="t,u,w")),
     "default.json": lambda path: TABLE.to_json(path, date_format="iso", date_unit="us"),
     "records.json": lambda path: TABLE.to_json(path, orient="records", date_format="iso", date_unit="us"),
     "lines.jsonl": lambda path: TABLE.to_json(path, orient="records", lines=True, date_format="iso", date_unit="us"),
@@ -138,6 +139,12 @@ def test_a_space_separated_comment_is_not_a_column_too_many(tmp_path: Path) -> N
     """Column "t" of the comment "# t u" is the first one, not the second."""
     np.savetxt(tmp_path / "a.txt", np.column_stack([T, U]), header="t u")
     assert read_table(tmp_path / "a.txt", ["t"]).columns["t"] == pytest.approx(T)
+
+
+def test_a_field_that_records_lack(tmp_path: Path) -> None:
+    np.savez(tmp_path / "a.npz", log=np.rec.fromarrays([T, U], names="t,speed"))
+    with pytest.raises(gt.UserError, match=r"no 'sped' in it \(did you mean \"speed\"\?\); found t, speed"):
+        read_table(tmp_path / "a.npz", ["log.sped"])
 
 
 def test_what_stands_below_the_samples_is_told(tmp_path: Path) -> None:

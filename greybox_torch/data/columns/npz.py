@@ -24,6 +24,7 @@ def npz_columns(path: Path) -> Listing:
                 version = np.lib.format.read_magic(file)
                 read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
                 shape, _, dtype = read(file)
+                names += [f"{member.removesuffix('.npy')}.{name}" for name in (dtype.names or ()) if len(shape) == 1]
                 if dtype.kind not in "fiubmM":
                     continue
                 number = None

@@ -103,6 +103,11 @@ def _field(place: str, value: Any, name: str) -> Any:
         if name in value:
             return value[name]
         raise UserError(f"{place}: no {name!r} in it{did_you_mean(name, map(str, value))}; found {_listed(value)}")
+    if isinstance(value, np.ndarray) and value.dtype.names:  # records of NumPy: one a sample
+        if name in value.dtype.names:
+            return value[name]
+        names = value.dtype.names
+        raise UserError(f"{place}: no {name!r} in it{did_you_mean(name, names)}; found {_listed(names)}")
     if isinstance(value, list) and value and all(isinstance(entry, Mapping) for entry in value):
         return [_bare(entry.get(name)) for entry in value]  # records: one entry a sample
     if isinstance(value, np.ndarray) and value.size and isinstance(value.flat[0], Mapping):
