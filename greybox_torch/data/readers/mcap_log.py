@@ -11,6 +11,10 @@ from greybox_torch.data.readers.table import Table
 from greybox_torch.errors import UserError
 
 
+UNPACKED = 2**28
+"""Bytes by which a record, packed in its chunk, may be longer than the file; what declares more is not believed."""
+
+
 def read_mcap(path: Path, columns: Collection[str]) -> Table:
     """Reads fields of messages. Raises UserError for damaged files, and for messages that are neither of ROS nor in JSON."""
     return columns_of_log(mcap_log(path), columns)
@@ -19,11 +23,12 @@ def read_mcap(path: Path, columns: Collection[str]) -> Table:
 def mcap_log(path: Path) -> RobotLog:
     """The log in a file. Raises UserError where the package is not installed, or what that raises for a damaged file."""
     try:
-        from mcap.reader import make_reader
+        from mcap.reader import SeekingReader
     except ImportError:
         raise UserError(f"{path}: logs in MCAP need a package more; install it by {NEEDED}") from None
+    longest = path.stat().st_size + UNPACKED
     with path.open("rb") as file:
-        summary = make_reader(file).get_summary()
+        summary = SeekingReader(file, record_size_limit=longest).get_summary()
     if summary is None or not summary.channels:
         raise UserError(
             f"{path}: has no summary of its topics, as if the recorder was cut off; `mcap recover` writes one"
@@ -40,7 +45,8 @@ def mcap_log(path: Path) -> RobotLog:
 
     def messages(topics: Collection[str]) -> Iterator[Message]:
         with path.open("rb") as file:
-            for _, channel, message in make_reader(file, validate_crcs=True).iter_messages(topics=list(topics)):
+            reader = SeekingReader(file, validate_crcs=True, record_size_limit=longest)
+            for _, channel, message in reader.iter_messages(topics=list(topics)):
                 yield channel.topic, message.log_time, message.data
 
     return RobotLog(path, decoders, counts, messages)
