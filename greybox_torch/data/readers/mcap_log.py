@@ -10,7 +10,6 @@ from greybox_torch.data.readers.ros_messages import NEEDED, Decoder
 from greybox_torch.data.readers.table import Table
 from greybox_torch.errors import UserError
 
-
 UNPACKED = 2**28
 """Bytes by which a record, packed in its chunk, may be longer than the file; what declares more is not believed."""
 
