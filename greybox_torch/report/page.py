@@ -19,7 +19,6 @@ def render_page(verdict: Verdict, about: About) -> str:
     """
     environment = _environment()
     printed = [_printed(environment, name, verdict, about) for name in SECTIONS]
-    printed = [section.replace(" %", "&nbsp;%") for section in printed]  # the sign stays with its number
     page = environment.get_template("page.html.j2")
     live = any("data-lines=" in section for section in printed)
     return page.render(live=live, title=f"{verdict.dataset}: diagnosis", sections=printed, version=about.version)
