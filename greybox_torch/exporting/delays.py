@@ -11,11 +11,9 @@ from dataclasses import dataclass, replace
 from greybox_torch.codegen.lower import Equations, with_replaced
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.delayed_input import CHANNELS
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.ports import Actuator
-
-CHANNELS = 3
-"""Inputs that an effect with a dead time adds to a model: value at the present delay, its slope, and the delay."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +49,8 @@ def delays_of(model: GreyBoxModel) -> tuple[Delay, ...]:
                 f"model {model.title}: the dead time {name} has no upper bound, so nothing says how much of the past to keep; "
                 "expected one in the mechanism's Parameter"
             )
-        found.append(Delay(inputs.index(site.input), places[name], longest, model.surroundings[a.port].sample_time))
+        step = model.surroundings[a.port].sample_time
+        found += [Delay(inputs.index(i), places[name], longest, step) for i in (site.input, *a.mechanism.drives)]
     return tuple(found)
 
 
@@ -62,7 +61,7 @@ def with_delays(equations: Equations, inputs: int, delays: int) -> Equations:
     graph, zero = equations.graph, equations.graph.constant(0.0)
     other = {}
     for k in range(delays):
-        value, slope = (graph.leaf("u", inputs + CHANNELS * k + j) for j in (0, 1))
+        value, slope = (graph.leaf("u", inputs + len(CHANNELS) * k + j) for j in (0, 1))
         other |= {value: graph.leaf("u", inputs + k), slope: zero}
     roots = (*equations.rates, *equations.outputs)
     place = with_replaced(graph, roots, other)

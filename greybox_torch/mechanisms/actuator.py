@@ -52,7 +52,10 @@ class InputLag(Mechanism):
 
 
 class InputDelay(Mechanism):
-    """The input acts later by a dead time: u(t − T)."""
+    """The input acts later by a dead time: u(t − T).
+
+    With further ``drives``, inputs of the model, all of them do, by the same time: what computes them, or the bus that carries them, is late.
+    """
 
     name = "input_delay"
     kinds = ("actuator",)
@@ -64,12 +67,19 @@ class InputDelay(Mechanism):
     source = "L. Ljung, System Identification, 2nd ed., 1999"
     experiment = "a step or a chirp of the input, to tell a lag from a delay"
 
+    def __init__(self, drives: Sequence[str] = ()) -> None:
+        self.drives = tuple(drives)
+
     def parameters(self, around: Surroundings) -> list[Parameter]:
         step = around.sample_time
-        return [Parameter("T", 2 * step, "s", lower=0.0, upper=500 * step, description="dead time")]
+        told = "dead time, of all inputs alike" if self.drives else "dead time"
+        return [Parameter("T", 2 * step, "s", lower=0.0, upper=500 * step, description=told)]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         return s.delayed - s.input
+
+    def other_inputs(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
+        return {name: s[f"delayed@{name}"] - s[f"input@{name}"] for name in self.drives}
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (2, 6, 20, 60)]

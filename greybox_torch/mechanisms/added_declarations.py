@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.delayed_input import channels
 from greybox_torch.mechanisms.local_signals import LocalSignals
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
 from greybox_torch.model import Body, GreyBoxModel, Input, Parameter, State
@@ -31,7 +32,7 @@ def added_states(local: LocalSignals) -> list[State]:
 def added_inputs(attachments: Sequence[Attachment]) -> list[Input]:
     """The channels of delayed inputs: value at the present delay, slope, and that delay."""
     delays = [a for a in attachments if "delayed" in a.mechanism.needs]
-    return [Input(f"{a.prefix}.{n}") for a in delays for n in ("delayed", "slope", "delay")]
+    return [Input(f"{a.prefix}.{n}") for a in delays for names in channels(a.mechanism) for n in names]
 
 
 def added_parameters(

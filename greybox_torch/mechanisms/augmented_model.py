@@ -118,9 +118,9 @@ class AugmentedModel(GreyBoxModel):
         for a in (a for a in self.attachments if "delayed" in a.mechanism.needs):
             site = self.local.ports[a.port]
             assert isinstance(site, Actuator)
-            channel = [i.name for i in self.base.inputs].index(site.input)
             delay = float(values[names.index(f"{a.prefix}.T")])
-            rows += delayed(records, channel, delay)
+            for name in (site.input, *a.mechanism.drives):
+                rows += delayed(records, [i.name for i in self.base.inputs].index(name), delay)
             if a.prefix not in self.probed:  # a look at a long delay must not hide records from the other looks
                 y = np.where(after(records, delay), y, np.nan)
         return records if not rows else replace(records, u=np.concatenate([records.u, np.array(rows)]), y=y)
@@ -184,8 +184,10 @@ class AugmentedModel(GreyBoxModel):
             site = self.local.ports[a.port]
             if isinstance(site, Actuator):
                 local, own, memory = self._given(a, x, u, p)
-                change = self._share(a, p) * a.mechanism.force(local, own, memory)
-                acting = acting.replaced(**{site.input: acting[site.input] + change})
+                share = self._share(a, p)
+                changes = {site.input: a.mechanism.force(local, own, memory)}
+                changes |= a.mechanism.other_inputs(local, own, memory)
+                acting = acting.replaced(**{name: acting[name] + share * change for name, change in changes.items()})
         return acting
 
     def _given(self, a: Attachment, x: Signals, u: Signals, p: Signals) -> tuple[Signals, Signals, Signals]:

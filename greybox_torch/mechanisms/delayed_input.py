@@ -6,6 +6,16 @@ from typing import Any
 
 import numpy as np
 
+from greybox_torch.mechanisms.mechanism import Mechanism
+
+CHANNELS = ("delayed", "slope", "delay")
+"""What an input that acts later adds to a model's inputs: its value at the present delay, the slope by the delay, and that delay."""
+
+
+def channels(mechanism: Mechanism) -> list[list[str]]:
+    """For every input that a law delays, the one of its own port first, what its channels are called."""
+    return [[f"{name}{end}" for name in CHANNELS] for end in ("", *(f"@{other}" for other in mechanism.drives))]
+
 
 def after(records: Any, delay: float) -> np.ndarray:
     """Which samples (N,) lie ``delay`` s or more behind the beginning of their record."""

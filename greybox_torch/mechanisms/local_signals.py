@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.delayed_input import channels
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Signals
 from greybox_torch.model.ports import Actuator, Port, Sensor, driving_body, value_of
@@ -46,8 +47,10 @@ class LocalSignals:
             values["output"] = self.base.output(x, u, p)[site.output]
         values |= self.sampling(a.port)
         if "delayed" in a.mechanism.needs:
-            value, slope, at = (u[f"{a.prefix}.{n}"] for n in ("delayed", "slope", "delay"))
-            values["delayed"] = value + (p[f"{a.prefix}.T"] - at) * slope
+            for names in channels(a.mechanism):
+                value, slope, at = (u[f"{a.prefix}.{n}"] for n in names)
+                values[names[0]] = value + (p[f"{a.prefix}.T"] - at) * slope
+        values |= {f"input@{name}": u[name] for name in a.mechanism.drives}
         values |= {f"position@{link}": self._position(link, x, u, p) for link in a.mechanism.links}
         values |= self.clock(x)
         return Signals("signal", values)

@@ -40,6 +40,8 @@ class Mechanism:
     needs: tuple[str, ...] = ()
     links: tuple[str, ...] = ()
     """Bodies of a chain whose positions the law uses, as signals ``position@BODY``."""
+    drives: tuple[str, ...] = ()
+    """Further inputs of the model that a law at an actuator changes as well, as signals ``input@NAME``."""
     kinematic: ClassVar[bool] = False
     """Whether the law changes a coupling's deflection (:meth:`deflection`) instead of adding a force."""
     fades: ClassVar[bool] = False
@@ -85,6 +87,10 @@ class Mechanism:
 
     def elsewhere(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
         """Forces on other bodies by their names, for a law that acts at several with common parameters."""
+        return {}
+
+    def other_inputs(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
+        """For a law at an actuator, the changes of the further ``drives`` by their names."""
         return {}
 
     def deflection(self, s: Signals, p: Signals) -> Any:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
+from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.gravity import Gravity
@@ -15,7 +16,7 @@ from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Port
-from greybox_torch.model.ports import driving_body
+from greybox_torch.model.ports import Actuator, driving_body
 
 ANGLES = ("rad", "deg", "rev", "turn")
 """Beginnings of the units of angles: only on an angle does gravity repeat."""
@@ -58,7 +59,7 @@ def candidates(
                 and (shifted or not mechanism.kinematic)
             ):
                 found.append(attach(model, port.name, mechanism, shifted))
-    return found if flexible else [*found, *chain_candidates(model, surroundings)]
+    return found if flexible else [*found, *chain_candidates(model, surroundings), *common_delays(model)]
 
 
 def chain_candidates(model: GreyBoxModel, surroundings: Mapping[str, Surroundings]) -> list[Attachment]:
@@ -69,6 +70,15 @@ def chain_candidates(model: GreyBoxModel, surroundings: Mapping[str, Surrounding
         if isinstance(port, Body) and port.position is not None and _is_angle(surroundings[port.name])
     ]
     return [replace(attach(model, links[0], Gravity(links)), label="_of_chain")] if len(links) > 1 else []
+
+
+def common_delays(model: GreyBoxModel) -> list[Attachment]:
+    """A dead time of all inputs together, where there are several: one computer or one bus drives them."""
+    first, *rest = (port for port in model.all_ports if isinstance(port, Actuator))
+    if not rest:
+        return []
+    late = InputDelay([port.input for port in rest])
+    return [replace(attach(model, first.name, late), label="_of_all")]
 
 
 def periodic_candidates(

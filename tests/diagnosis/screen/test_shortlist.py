@@ -23,7 +23,7 @@ def score(mechanism, explained: float, *size: float, directions=(), port="rotor"
 
 @pytest.fixture
 def fit(stub):
-    return stub(problem=stub(names=("J", "b"), values=np.array([0.02, 0.05])))
+    return stub(problem=stub(values_by_name={"J": 0.02, "b": 0.05}))
 
 
 @pytest.fixture
