@@ -54,7 +54,7 @@ class InputLag(Mechanism):
 class InputDelay(Mechanism):
     """The input acts later by a dead time: u(t − T).
 
-    With further ``drives``, inputs of the model, all of them do, by the same time: what computes them, or the bus that carries them, is late.
+    With further ``drives``, inputs of the model, all of them do, by the same time: the computer or the bus before them is late.
     """
 
     name = "input_delay"
