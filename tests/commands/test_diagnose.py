@@ -125,6 +125,21 @@ def test_the_report_for_print(motor_folder: Make, finding: Callable[..., dict[st
     assert (folder / "out" / "report.pdf").read_bytes().startswith(b"%PDF-1.")
 
 
+def test_beliefs_of_the_card(motor_folder: Make, finding: Callable[..., dict[str, Any]]) -> None:
+    called = finding(DEADZONE)
+    folder = motor_folder()
+    card = folder / "dataset.toml"
+    plain = card.read_text()
+    card.write_text(f'{plain}\n[beliefs]\n"rotor/*" = "unlikely"\n"actuator/input_gain" = 0.0\n')
+    assert diagnose(folder).exit_code == 0
+    assert called["beliefs"].given == {"rotor/*": 0.1, "actuator/input_gain": 0.0}
+    card.write_text(f'{plain}\n[beliefs]\n"roter/*" = "unlikely"\n')
+    refused = diagnose(folder)
+    assert refused.exit_code == 2
+    told = " ".join(refused.stderr.split())
+    assert f'{card}: [beliefs]: "roter/*": model Motor has no port "roter" (did you mean "rotor"?)' in told
+
+
 def test_what_is_written(motor_folder: Make, finding: Callable[..., dict[str, Any]]) -> None:
     called = finding(DEADZONE)
     folder = motor_folder()
