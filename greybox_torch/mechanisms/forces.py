@@ -16,6 +16,9 @@ from greybox_torch.model import Parameter, Signals, State
 KNOWN_PLACE = 0.01
 """Share of the travel within which a stop has to be known to stand."""
 
+MARGIN = 0.1
+"""Share of the travel, as a model without a stop has it, by which the machine may have gone farther before it met one."""
+
 
 class ConstantBias(LinearLaw):
     """A constant b."""
@@ -79,15 +82,15 @@ class EndStop(Mechanism):
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         travel = around.ranges["position"]
-        end = travel.low + travel.span
+        end, margin = travel.low + travel.span, MARGIN * travel.span
         return [
             Parameter("k", 0.0, around.per("position"), lower=0.0, description="stiffness of the stop"),
             Parameter(
                 "where",
                 end,
                 around.units.get("position", ""),
-                lower=travel.low,
-                upper=end,
+                lower=travel.low - margin,
+                upper=end + margin,
                 description="stop",
             ),
             Parameter("c", 0.0, around.per("speed"), lower=0.0, description="damping of the stop"),
@@ -110,7 +113,10 @@ class EndStop(Mechanism):
         ]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        return beyond("where", values["where"], around, "position")
+        travel, where = around.ranges["position"], values["where"]
+        margin = MARGIN * travel.span
+        near = travel.low - margin < where < travel.high + margin
+        return None if near else beyond("where", where, around, "position")
 
     def degenerate(
         self, around: Surroundings, values: Mapping[str, float], deviations: Mapping[str, float]

@@ -61,7 +61,7 @@ def test_sound_parameters_are_not_objected_to(name: str, around: Surroundings) -
         ("friction_warmup", {"T": 0.002}, "T = 0.002 s is shorter than 3 samples of 0.001 s"),
         ("friction_warmup", {"T": 21.0}, "T = 21 s is far longer than the longest record, 10 s"),
         ("input_lag", {"T": 21.0}, "T = 21 s is far longer than the longest record, 10 s"),
-        ("end_stop", {"where": 5.0}, "where = 5 lies outside of where position was, -3 to 5 rad"),
+        ("end_stop", {"where": 5.8}, "where = 5.8 lies outside of where position was, -3 to 5 rad"),
         ("threshold_flow", {"threshold": 0.4}, "threshold = 0.4 lies outside of where level was, 0.5 to 4 m"),
         (
             "torque_ripple",
@@ -106,6 +106,14 @@ def test_zero_is_a_natural_bound_and_so_is_true_sticking(around: Surroundings) -
     assert law_of("coulomb_friction").degenerate(around, values, small(values)) is None
     values = {**SOUND["end_stop"], "c": 0.0}
     assert law_of("end_stop").degenerate(around, values, small(values)) is None
+
+
+def test_a_stop_may_stand_a_little_beyond_where_a_model_without_it_went(around: Surroundings) -> None:
+    """Seen: a pendulum reached 1.561 rad, windows of the model without the stop 1.535, and the stop was refused at its bound."""
+    stop = LIBRARY["end_stop"]()
+    assert stop.degenerate(around, {"k": 500.0, "where": 5.4, "c": 1.0, "side": 1.0}, {}) is None
+    (where,) = (p for p in stop.parameters(around) if p.name == "where")
+    assert where.bounds == pytest.approx((-3.8, 5.8))
 
 
 def test_how_stiff_a_rigid_stop_is_need_not_be_known_where_it_stands_has_to(around: Surroundings) -> None:
