@@ -46,9 +46,18 @@ class OneOf:
         }
 
 
+PERSONS = ("coulomb", "stribeck")
+"""Whose names are parts of the names of mechanisms."""
+
+
+def in_words(mechanism: str) -> str:
+    """A mechanism's name as words, the names of persons in capitals."""
+    return " ".join(word.capitalize() if word in PERSONS else word for word in mechanism.split("_"))
+
+
 def spoken(mechanism: str) -> str:
     """A mechanism's name as a sentence has it."""
-    return "an unknown effect" if mechanism == "unknown" else mechanism.replace("_", " ")
+    return "an unknown effect" if mechanism == "unknown" else in_words(mechanism)
 
 
 def spoken_at(mechanism: str, port: str) -> str:

@@ -59,7 +59,7 @@ def _sentence(series: Series, k: int) -> str:
 
 
 def _title(series: Series) -> str:
-    """Such as `coulomb friction at rotor: F c` or `J`."""
+    """Such as `Coulomb friction at rotor: F c` or `J`."""
     parts = series.name.split(".")
     if len(parts) < 2:
         return text.words(series.name)

@@ -7,6 +7,8 @@ import re
 
 from markupsafe import Markup, escape
 
+from greybox_torch.diagnosis.one_of import in_words
+
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _GREEK = {
     "alpha": "α",
@@ -19,7 +21,6 @@ _GREEK = {
     "sigma": "σ",
     "omega": "ω",
 }
-_PERSONS = ("coulomb", "stribeck")
 
 
 def number(value: float, digits: int = 3) -> str:
@@ -91,9 +92,7 @@ def words(name: str) -> str:
 
 def mechanism(name: str) -> str:
     """A mechanism's name as words, with the names of persons in capitals."""
-    if name == "unknown":
-        return "unknown effect"
-    return " ".join(word.capitalize() if word in _PERSONS else word for word in name.split("_"))
+    return "unknown effect" if name == "unknown" else in_words(name)
 
 
 def first_capital(sentence: str) -> str:

@@ -94,7 +94,7 @@ def test_what_is_printed(motor_folder: Make, finding: Callable[..., dict[str, An
     assert "actuator actuator_deadzone 0.91 98 half_width 0.4 0.01 V" in lines
     assert "slope 1 undetermined" in lines
     assert "actuator deadzone at actuator: |voltage| < 0.4 V" in lines
-    rivals = "actuator deadzone at actuator: it could also be coulomb friction at rotor (0.07); to tell them apart: slow reversals"
+    rivals = "actuator deadzone at actuator: it could also be Coulomb friction at rotor (0.07); to tell them apart: slow reversals"
     assert rivals in lines
     assert "Sweep validation speed 71 0.29 90 0.1 99.5 0.005 rad/s" in lines
     assert (

@@ -59,7 +59,7 @@ def test_the_recording_decides(designed, one_way) -> None:
     left = {}
     for name, kept in zip(designed.names, designed.hypotheses, strict=True):
         left[name] = gt.fit(kept, both).to_dict()["statistics"]["mse"]
-    assert left["coulomb friction at rotor"] < 0.5 * left["constant bias at rotor"]
+    assert left["Coulomb friction at rotor"] < 0.5 * left["constant bias at rotor"]
 
 
 def test_a_random_input_of_the_same_power_says_less_or_nothing_more(designed) -> None:
@@ -85,7 +85,7 @@ def test_command(results: Path) -> None:
     assert result.exit_code == 0, result.output
     told = json.loads(result.stdout)
     assert told["schema"] == "greybox-design/1" and told["seconds"] == pytest.approx(1.0)
-    assert [h["name"] for h in told["hypotheses"]] == ["coulomb friction at rotor", "constant bias at rotor"]
+    assert [h["name"] for h in told["hypotheses"]] == ["Coulomb friction at rotor", "constant bias at rotor"]
     folder = results / "design"
     assert sorted(p.name for p in folder.iterdir()) == ["design.csv", "design.png", "next.toml"]
     with (folder / "design.csv").open() as file:
@@ -107,7 +107,7 @@ def test_the_card_reads_what_is_recorded(designed, tmp_path: Path) -> None:
 def test_what_a_folder_keeps_is_what_the_diagnosis_had(results: Path, undecided) -> None:
     held = read_hypotheses(results)
     ((first, second),) = held.findings
-    assert (first.name, second.name) == ("coulomb friction at rotor", "constant bias at rotor")
+    assert (first.name, second.name) == ("Coulomb friction at rotor", "constant bias at rotor")
     assert first.model.values() == pytest.approx(dict(undecided.found.rivals[0].values))
     assert second.starts == {"steps": {"speed": 2.0}}
 

@@ -48,8 +48,8 @@ def coulomb() -> Callable[..., Row]:
         if level is None:
             return Row(name, "dataset.toml", "nothing", parameters=parameters, **kept | more)
         parameters["rotor.coulomb_friction.F_c"] = {"value": level, "std": std, "unit": "N m"}
-        found = {"effect": "coulomb friction at rotor", "port": "rotor", "mechanism": "coulomb_friction"}
-        found |= {"parameter": "F_c", "unit": "N m", "sentence": "The mismatch is coulomb friction at rotor."}
+        found = {"effect": "Coulomb friction at rotor", "port": "rotor", "mechanism": "coulomb_friction"}
+        found |= {"parameter": "F_c", "unit": "N m", "sentence": "The mismatch is Coulomb friction at rotor."}
         numbers = {"probability": 0.9, "value": level, "std": std}
         return Row(name, "dataset.toml", "named", parameters=parameters, **kept | found | numbers | more)
 

@@ -24,7 +24,7 @@ PURPOSES = {
     ("rank.py", "in_full"): "finalists",
     ("rank.py", "_laws_behind_curve"): "laws behind a curve",
     ("compare.py", "_polished"): "polishing",
-    ("ties.py", "_cost"): "ties by likelihood",
+    ("likelihood.py", "cost_of"): "likelihood of whole records",
     ("finer_curve.py", "with_finer_curve"): "finer curves",
     ("backward.py", "_without"): "without an effect",
     ("explore.py", "_from_given"): "the way passed over",

@@ -34,7 +34,7 @@ def sentences(
     looked = sum(len(s.screened[0]) for s in state.steps if s.screened)
     lengths = ", ".join(str(f.windows.steps) for f in plain)
     lines = [
-        f"{looked} looks at mechanisms and ports, over windows of {lengths} samples with free start states.",
+        f"{looked} tests of a mechanism at a port, over windows of {lengths} samples with free start states.",
         "Root mean square error over those windows, model as it stands: "
         + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in plain)
         + ("; with the effects: " + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in final) if effects else "")

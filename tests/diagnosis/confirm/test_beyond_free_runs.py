@@ -40,4 +40,4 @@ def test_it_is_said_where_windows_bear_an_effect_out_and_all_free_runs_are_lost(
         states(name, "joint.end_stop"), states("joint.end_stop"), {name: gain}, judged(*fits), DiagnosisSettings()
     )
     assert len(told) == said
-    assert not said or told[0].startswith("coulomb friction at joint removes 99.9 % of the held-out squared error")
+    assert not said or told[0].startswith("Coulomb friction at joint removes 99.9 % of the held-out squared error")

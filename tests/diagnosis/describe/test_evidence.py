@@ -66,4 +66,4 @@ def test_a_curve_is_its_own_ceiling(stub) -> None:
 
 def test_ceiling_in_words(stub) -> None:
     told = ceiling_sentence(stub(mechanism="coulomb_friction", port="motor", ceiling=0.883))
-    assert told.startswith("coulomb friction at motor reaches 88 % of the ceiling: the gain")
+    assert told.startswith("Coulomb friction at motor reaches 88 % of the ceiling: the gain")

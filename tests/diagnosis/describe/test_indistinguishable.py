@@ -51,7 +51,7 @@ def test_outputs_that_differ_by_less_than_could_be_seen(told) -> None:
 
 def test_outputs_that_differ_and_evidence_that_is_undecided(told) -> None:
     found = told(("motor", CoulombFriction(), 0.6, 0.0), ("motor", ConstantBias(), 0.3, 40.0))
-    assert found is not None and found.statement == "coulomb friction or constant bias at motor"
+    assert found is not None and found.statement == "Coulomb friction or constant bias at motor"
 
 
 def test_a_finding_that_stands_alone(told) -> None:
@@ -64,7 +64,7 @@ def test_a_law_that_contains_the_whole_of_the_one_found_says_the_same(told) -> N
     elsewhere = told(("motor", CoulombFriction(), 0.9, 0.0), ("arm", StribeckFriction(), 0.05, 0.0))
     assert elsewhere is not None
     another = told(("motor", ConstantBias(), 0.5, 0.0), ("motor", CoulombAsymmetry(), 0.4, 0.0))
-    assert another is not None and another.statement == "constant bias or coulomb asymmetry at motor"
+    assert another is not None and another.statement == "constant bias or Coulomb asymmetry at motor"
 
 
 def test_curves_are_no_rivals_and_have_none(told) -> None:

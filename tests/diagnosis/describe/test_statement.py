@@ -29,8 +29,8 @@ DRY = Member("motor", "coulomb_friction", "dry friction", 0.6, size=0.52, unit="
             (BIAS, replace(BIAS, port="actuator", size=-0.031)),
             "a constant offset of about 0.031 N m at motor or actuator",
         ),
-        ((BIAS, DRY), "constant bias or coulomb friction at motor"),
-        ((BIAS, replace(DRY, port="arm")), "constant bias at motor, or coulomb friction at arm"),
+        ((BIAS, DRY), "constant bias or Coulomb friction at motor"),
+        ((BIAS, replace(DRY, port="arm")), "constant bias at motor, or Coulomb friction at arm"),
         (
             (replace(BIAS, mechanism="magnet", nature=""), replace(BIAS, port="arm", mechanism="magnet", nature="")),
             "magnet at motor, or magnet at arm",
