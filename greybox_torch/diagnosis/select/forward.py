@@ -61,7 +61,8 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     branch = yield from only_if(_without_curves(study, start, done), partial(_as_far, study, with_curve))
     if _as_far(study, with_curve, branch):
         return branch
-    found = replace(branch, named=None) if len(branch.effects) > len(done.parent.effects) else with_curve.named
+    stand_for_it = len(branch.effects) > len(done.parent.effects) and not _in_pieces(study, with_curve, branch)
+    found = replace(branch, named=None) if stand_for_it else with_curve.named
     return replace(with_curve, plain=branch.plain, named=found)
 
 
@@ -72,9 +73,19 @@ def _without_curves(study: Study, start: SearchState, done: SelectionStep) -> St
     return (yield from take_effects(study, branch, curves=False)) if branch.took_one else branch
 
 
+def _in_pieces(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
+    """Whether so many named effects stand at the curve's port that each is a piece of it, and none is the machine's."""
+    done = with_curve.steps[-1]
+    port = None if done.taken is None else done.taken.candidate.attachment.port
+    added = [e for e in branch.effects if e not in done.parent.effects and e.port == port]
+    return len(added) > study.settings.most_names_for_curve
+
+
 def _as_far(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
     """Whether the effects of ``branch`` come as far as the curve of ``with_curve``, from the hypothesis that both build on."""
     before = with_curve.steps[-1].parent
     reached, ceiling = (before.score - s.current.score for s in (branch, with_curve))
     share = 1.0 if alone_at_noise(with_curve.current, branch.current, study.settings) else study.settings.named_share
+    if _in_pieces(study, with_curve, branch):
+        return False
     return reached >= min(ceiling - study.settings.curve_margin, share * ceiling)

@@ -178,6 +178,11 @@ class SelectionSettings:
         "Share of a free curve's gain from which named effects stand for it: no friction is exactly the law of a book.",
         unit="share of the curve's gain",
     )
+    most_names_for_curve: int = count(
+        2,
+        "Named effects at a port that may stand for a free curve there: more of them are pieces of it, and none is the machine's.",
+        chosen_by="a slack spring told as gravity, a stop, a bias and a ripple",
+    )
     passed_over_share: float = share(
         0.5,
         "Share of the residual over the shortest windows from which what explains it is followed whatever longer ones say.",

@@ -21,7 +21,7 @@ SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
 
 def state(stub, score: float, *names: str, steps: tuple[Any, ...] = ()) -> SearchState:
     """A state of which only the names of its effects and its score are known."""
-    effects = tuple(stub(prefix=n, mechanism=None) for n in names)
+    effects = tuple(stub(prefix=n, port=n.split(".")[0], mechanism=None) for n in names)
     fitted = stub(effects=effects, score=score, problem=stub(free=np.zeros(0, bool)))
     return SearchState(stub(effects=(), score=0.0), fitted, steps)
 
@@ -80,7 +80,8 @@ def test_among_names_in_the_place_of_a_curve_the_curve_stands_until_they_come_as
     monkeypatch, stub, score, names_stand
 ) -> None:
     before = state(stub, 0.0)
-    done = SelectionStep((), before.current, (stub(unknown=False),), stub(unknown=True))
+    curve = stub(unknown=True, candidate=stub(attachment=stub(port="rotor")))
+    done = SelectionStep((), before.current, (stub(unknown=False),), curve)
     with_curve = state(stub, -1.0, "rotor.unknown", steps=(done,))
     names = state(stub, score, "rotor.drag", steps=(stub(taken=stub()),))
     monkeypatch.setattr(advancing, "take_best", yielding(names))
