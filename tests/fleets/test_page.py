@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from collections.abc import Callable
 from dataclasses import replace
@@ -15,10 +14,7 @@ from greybox_torch.fleets.history import histories
 from greybox_torch.fleets.in_common import groups
 from greybox_torch.fleets.page import render_fleet
 from greybox_torch.fleets.row import Row
-
-BROWSER = next(
-    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
-)
+from tests.browser import BROWSER, needs_browser
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +72,7 @@ def test_a_fleet_without_dates_or_verdicts(coulomb: Callable[..., Row]) -> None:
     assert "0 machines: in 0 something is missing" in text_of(render_fleet([], (), ()))
 
 
-@pytest.mark.skipif(BROWSER is None, reason="no Chromium on this machine")
+@needs_browser
 def test_in_a_browser(html: str, tmp_path: Path) -> None:
     """Searched, filtered and sorted by what stands in the address."""
     page = tmp_path / "fleet.html"

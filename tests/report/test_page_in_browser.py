@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import re
-import shutil
-import subprocess
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from greybox_torch.diagnosis.beliefs import Beliefs
 from greybox_torch.diagnosis.effect import FreeCurve
@@ -18,10 +14,7 @@ from greybox_torch.diagnosis.one_of import Alternative, OneOf
 from greybox_torch.diagnosis.verdict import Estimate, InputTrace, Verdict
 from greybox_torch.report.about import About
 from greybox_torch.report.page import render_page
-
-BROWSER = next(
-    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
-)
+from tests.browser import after_scripts, needs_browser
 
 LOOK = """<!doctype html><meta charset="utf-8"><body>{frames}<script>
 onload = () => {{
@@ -55,7 +48,7 @@ def full(verdict: Verdict) -> Verdict:
     return replace(verdict, parameters=(own,), inputs=inputs, effects=tuple(effects), complete=False, beliefs=beliefs)
 
 
-@pytest.mark.skipif(BROWSER is None, reason="no Chromium on this machine")
+@needs_browser
 def test_on_a_phone(of_kind: Callable[[str], Verdict], about: About, tmp_path: Path) -> None:
     kinds = ("found", "unknown", "nothing")
     for kind in kinds:
@@ -65,21 +58,5 @@ def test_on_a_phone(of_kind: Callable[[str], Verdict], about: About, tmp_path: P
     )
     page = tmp_path / "look.html"
     page.write_text(LOOK.format(frames=frames), encoding="utf-8")
-    options = [
-        "--headless",
-        "--no-sandbox",
-        "--disable-gpu",
-        "--enable-logging=stderr",
-        "--allow-file-access-from-files",
-    ]
-    run = subprocess.run(
-        [str(BROWSER), *options, f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom", page.as_uri()],
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=120,
-    )
-    assert "CONSOLE" not in run.stderr, run.stderr
-    title = re.search(r"<title>(.*?)</title>", run.stdout)
-    assert title is not None
-    assert title[1].split(" / ") == [f"{kind},true,5" for kind in kinds]
+    title, _ = after_scripts(page, tmp_path, "--allow-file-access-from-files")
+    assert title.split(" / ") == [f"{kind},true,5" for kind in kinds]

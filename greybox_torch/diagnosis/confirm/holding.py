@@ -37,9 +37,10 @@ def holding(
         empty = _empty(study, state, judged.augmented, gains)
         if empty is None and judged.holds:
             break
-        by_windows = judged.having(as_windows_have_it(state.current))
-        if empty is None and _stands(study, state, by_windows, gains):
-            return state, gains, by_windows, (*told, WINDOWS_STAND), True
+        if empty is None:
+            by_windows = judged.having(as_windows_have_it(state.current))
+            if by_windows.holds and _empty(study, state, by_windows.augmented, gains) is None:
+                return state, gains, by_windows, (*told, WINDOWS_STAND), True
         if not state.compared_without:
             state = result_of(drop_superfluous(study, state))
         if empty is not None and empty in state.prefixes:
@@ -53,10 +54,6 @@ def holding(
         gains = held_out_gains(state, others) if others is not None else {}
         judged = judged.having(finish(state.current, study.settings, study.budget))
     return state, gains, judged, told, True
-
-
-def _stands(study: Study, state: SearchState, judged: Judgement, gains: Mapping[str, Gain]) -> bool:
-    return judged.holds and _empty(study, state, judged.augmented, gains) is None
 
 
 def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[str, Gain]) -> str | None:

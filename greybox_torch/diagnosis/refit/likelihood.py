@@ -9,6 +9,8 @@ Source: P. Whittle, "Estimation and information in stationary time series", Arki
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
@@ -24,13 +26,16 @@ def cost_of(fitted: Hypothesis) -> float:
     return np.inf if found is None else found[1].cost
 
 
-def likelier(parent: Hypothesis, ranked: RankedCandidate, settings: DiagnosisSettings) -> bool:
+def likelier(cost_before: Callable[[], float], ranked: RankedCandidate, settings: DiagnosisSettings) -> bool:
     """Whether a named candidate is surely better than the hypothesis before it by the likelihood of whole records.
 
     Asked only of what leaves white noise alone.
+
+    Args:
+        cost_before: gives :func:`cost_of` the hypothesis before it; called only where it is needed.
     """
     asked = not ranked.unknown and ranked.gain > settings.least_gain_by_likelihood
     if not asked or not white_samples(ranked.fitted, settings):
         return False
-    behind = cost_of(parent) - cost_of(ranked.fitted)
-    return behind > 0.5 * settings.least_likelihood_significance**2
+    cost = cost_of(ranked.fitted) if ranked.cost is None else ranked.cost
+    return cost_before() - cost > 0.5 * settings.least_likelihood_significance**2

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cache, partial
 
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.refit.likelihood import likelier
+from greybox_torch.diagnosis.refit.likelihood import cost_of, likelier
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order, rank
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
@@ -57,7 +58,8 @@ def take_best(
         r for r in compared.ranked if degenerate(r.candidate.attachment, study.surroundings, r.fitted.values()) is None
     ]
     in_turn = rank_by_likelihood(sound, settings, study.budget)
-    paying = [r for r in in_turn if r.gain > least_gain(r.fitted, settings) and _sure(compared.parent, r, settings)]
+    cost_before = cache(partial(cost_of, compared.parent))
+    paying = [r for r in in_turn if r.gain > least_gain(r.fitted, settings) and _sure(cost_before, r, settings)]
     if little_is_left(study, state):
         paying = [r for r in paying if completes(r.fitted, settings)]
     led = chosen([r for r in paying if not r.unknown or substantial(study, state, r)], state.plain, settings)
@@ -68,9 +70,9 @@ def take_best(
     return (yield from with_finer_curve(study, state)) if taken is not None and taken.unknown else state
 
 
-def _sure(parent: Hypothesis, ranked: RankedCandidate, settings: DiagnosisSettings) -> bool:
+def _sure(cost_before: Callable[[], float], ranked: RankedCandidate, settings: DiagnosisSettings) -> bool:
     """Whether a candidate improves on its parent beyond chance: over windows or, at the noise, by the likelihood of whole records."""
-    return ranked.significance > settings.least_significance or likelier(parent, ranked, settings)
+    return ranked.significance > settings.least_significance or likelier(cost_before, ranked, settings)
 
 
 def little_is_left(study: Study, state: SearchState) -> bool:

@@ -24,8 +24,9 @@ SETTINGS = DiagnosisSettings(least_gain_by_likelihood=0.05, least_likelihood_sig
 def test_it_speaks_only_for_a_law_that_leaves_noise_alone_and_gains_enough(monkeypatch, stub, case, taken) -> None:
     """Seen: viscous friction of a hanging pole, which ten long windows showed with 2.6 standard errors and the record with 20."""
     known = {"cost": 149.0, "gain": 0.4, "samples": 5000, "unknown": False} | case
-    costs = {"before": 200.0, "after": known["cost"]}
-    monkeypatch.setattr(likelihood, "cost_of", lambda fitted: costs[fitted])
+    monkeypatch.setattr(likelihood, "cost_of", lambda fitted: {"after": known["cost"]}[fitted])
     monkeypatch.setattr(likelihood, "white_samples", lambda fitted, settings: known["samples"])
-    ranked = stub(unknown=known["unknown"], gain=known["gain"], fitted="after")
-    assert likelier("before", ranked, SETTINGS) is taken  # type: ignore[arg-type]
+    ranked = stub(unknown=known["unknown"], gain=known["gain"], fitted="after", cost=None)
+    assert likelier(lambda: 200.0, ranked, SETTINGS) is taken  # type: ignore[arg-type]
+    known_before = stub(unknown=known["unknown"], gain=known["gain"], fitted=None, cost=known["cost"])
+    assert likelier(lambda: 200.0, known_before, SETTINGS) is taken, "a cost that is known is not computed again"

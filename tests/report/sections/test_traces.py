@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import html as escapes
 import re
-import shutil
-import subprocess
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -17,10 +15,7 @@ from greybox_torch.diagnosis.verdict import InputTrace, Verdict
 from greybox_torch.report.about import About
 from greybox_torch.report.page import render_page
 from greybox_torch.report.sections.traces import MOST_INPUTS, Traces
-
-BROWSER = next(
-    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
-)
+from tests.browser import after_scripts, needs_browser
 
 
 def with_inputs(verdict: Verdict, count: int = 1) -> Verdict:
@@ -105,7 +100,7 @@ setTimeout(() => {
 """
 
 
-@pytest.mark.skipif(BROWSER is None, reason="no Chromium on this machine")
+@needs_browser
 def test_in_a_browser(with_traces: Callable[..., Verdict], about: About, tmp_path: Path) -> None:
     """Dragged, moved by buttons, set back, and by the address: two outputs of one experiment together, another one not."""
     verdict = with_traces(("A", "validation", 1.0), ("B", "validation", 0.9))
@@ -113,25 +108,15 @@ def test_in_a_browser(with_traces: Callable[..., Verdict], about: About, tmp_pat
     page = tmp_path / "report.html"
     still = render_page(with_inputs(verdict), about)
     page.write_text(still.replace("</body>", f"{STEPS}</body>"), encoding="utf-8")
-    options = ["--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr", "--virtual-time-budget=5000"]
-    run = subprocess.run(
-        [str(BROWSER), *options, f"--user-data-dir={tmp_path / 'profile'}", "--dump-dom", page.as_uri()],
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=120,
-    )
-    assert "CONSOLE" not in run.stderr, run.stderr
-    title = re.search(r"<title>(.*?)</title>", run.stdout)
-    assert title is not None
-    told = [one.split("|") for one in escapes.unescape(title[1]).split(" / ")]
+    title, document = after_scripts(page, tmp_path, "--virtual-time-budget=5000")
+    told = [one.split("|") for one in escapes.unescape(title).split(" / ")]
     assert all(first == third and second == "" for first, second, third in told)
     stretches = [tuple(map(float, first.removesuffix(" s").split(" to "))) if first else None for first, *_ in told]
     # 2.999 s: a quarter to three quarters of it, half of that, half of it later, twice as long; the whole three times; the address
     shares = [(0.25, 0.75), (0.375, 0.625), (0.5, 0.75), (0.375, 0.875), None, None, None, (0.3 / 2.999, 0.6 / 2.999)]
     for found, share in zip(stretches, shares, strict=True):
         assert found == (None if share is None else pytest.approx((2.999 * share[0], 2.999 * share[1]), abs=1e-3))
-    panels = re.findall(r'<div class="panel \w+" data-lines.*?</svg>', run.stdout, re.DOTALL)
+    panels = re.findall(r'<div class="panel \w+" data-lines.*?</svg>', document, re.DOTALL)
     before = re.findall(r'<div class="panel \w+" data-lines.*?</svg>', still, re.DOTALL)
     moved = [paths(p) != paths(q) for p, q in zip(panels, before, strict=True)]
     assert moved == [True] * 3 + [False] * 3 + [True] * 2
