@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from greybox_torch.api.export import export
     from greybox_torch.api.export_result import ExportResult, SnippetResult
     from greybox_torch.api.fit import fit
+    from greybox_torch.api.fit_many import fit_many
     from greybox_torch.api.fit_result import FitResult
     from greybox_torch.api.fleet import fleet
     from greybox_torch.api.fleet_result import FleetResult
@@ -110,6 +111,7 @@ __all__ = [
     "explain",
     "export",
     "fit",
+    "fit_many",
     "fit_physics",
     "fleet",
     "inspect",
@@ -184,6 +186,7 @@ _HOME_OF = {
     "explain": "greybox_torch.training",
     "export": "greybox_torch.api.export",
     "fit": "greybox_torch.api.fit",
+    "fit_many": "greybox_torch.api.fit_many",
     "fit_physics": "greybox_torch.training",
     "fleet": "greybox_torch.api.fleet",
     "inspect": "greybox_torch.api.inspect",

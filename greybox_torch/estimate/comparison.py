@@ -72,7 +72,11 @@ def compare(
     """
     if estimate_starts:
         problem = estimate_initial(problem, simulator)
-    simulated = simulate(problem, simulator)
+    return compared(problem, recordings, simulate(problem, simulator))
+
+
+def compared(problem: Problem, recordings: Sequence[Recording], simulated: Sequence[np.ndarray]) -> Comparison:
+    """Simulated outputs (N_e, n_y) of every experiment of ``problem`` against its measurement."""
     scores = []
     for e, recording in enumerate(recordings):
         for k, output in enumerate(problem.model.outputs):

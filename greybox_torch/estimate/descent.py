@@ -9,8 +9,8 @@ import numpy as np
 
 from greybox_torch.estimate.free_run import FreeRun, simulate
 from greybox_torch.estimate.global_search import look_around
-from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimise
-from greybox_torch.estimate.logarithmic import minimise_on_logarithms
+from greybox_torch.estimate.levenberg_marquardt import Descending, Optimum, Settings, answered, descending
+from greybox_torch.estimate.logarithmic import descending_on_logarithms
 from greybox_torch.estimate.metrics import fit_percent
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.simulators import fine_enough
@@ -42,7 +42,13 @@ PATIENCE = 60
 FINER = 2
 """How often the steps of the simulation are refined after the parameters."""
 
-Method = Callable[..., Optimum[None] | None]
+Method = Callable[..., Descending[None]]
+
+METHODS: tuple[Method, ...] = (descending, descending_on_logarithms, descending)
+"""How whole records are descended on, one after the other."""
+
+BETTER_BEGUN = METHODS[1:]
+"""From start values that were looked for."""
 
 Progress = Callable[[str, int, float], None]
 """Called with a stage's name, an iteration and the mean squared error there."""
@@ -78,17 +84,28 @@ def descend(problem: Problem, options: DescentOptions, starts: int | None) -> De
         starts: how many start values to descend from, those given among them; by default one, or many where those turn out poor.
     """
     simulator = options.fine_enough(problem)
-    fits = _fits(problem, simulator)
-    tolerable = fits.min() > TOLERABLE
-    begin, before = (problem, 0) if tolerable else _by_windows(problem, options, simulator)
-    found = _whole_records(begin, options, before)
+    fits = fits_of(problem, simulate(problem, simulator))
+    begin, before = (problem, 0) if tolerable(fits) else _by_windows(problem, options, simulator)
+    return or_elsewhere(problem, fits, _whole_records(begin, options, before), options, starts)
+
+
+def or_elsewhere(
+    problem: Problem, fits: np.ndarray, found: Descent | None, options: DescentOptions, starts: int | None
+) -> Descent | None:
+    """What was ``found`` from start values that simulate with ``fits``, or what many others lead to, where that is better and asked for."""
+    simulator = options.fine_enough(problem)
     if starts is None:
         starts = 1 if found is not None and _trusted(fits, found) else _default_starts(problem, simulator)
     if starts > 1 and problem.free.any():
         elsewhere = look_around(problem, simulator, starts=starts, seed=options.seed, progress=options.progress)
-        other = None if elsewhere is None else _whole_records(elsewhere, options, 0, (minimise_on_logarithms, minimise))
+        other = None if elsewhere is None else _whole_records(elsewhere, options, 0, BETTER_BEGUN)
         found = _better(found, other)
     return found
+
+
+def tolerable(fits: np.ndarray) -> bool:
+    """Whether start values that simulate with ``fits`` in % are a place to begin a descent on whole records."""
+    return bool(fits.min() > TOLERABLE)
 
 
 def improved(found: Descent | None, begin: Problem, options: DescentOptions) -> Descent | None:
@@ -96,13 +113,12 @@ def improved(found: Descent | None, begin: Problem, options: DescentOptions) -> 
     return _better(found, _whole_records(begin, options, 0))
 
 
-def _fits(problem: Problem, simulator: Simulator) -> np.ndarray:
-    """Fit in % of every output of every experiment in free run."""
-    runs = simulate(problem, simulator)
+def fits_of(problem: Problem, simulated: Sequence[np.ndarray]) -> np.ndarray:
+    """Fit in % of every output of every experiment, simulated (N_e, n_y)."""
     return np.array(
         [
             fit_percent(problem.records.y[k, problem.records.span(e)], run[:, k])
-            for e, run in enumerate(runs)
+            for e, run in enumerate(simulated)
             for k in range(run.shape[1])
         ]
     )
@@ -110,7 +126,8 @@ def _fits(problem: Problem, simulator: Simulator) -> np.ndarray:
 
 def _trusted(before: np.ndarray, found: Descent) -> bool:
     """Whether the start values lay so near the optimum that it is the one meant, or it is so good that there is no better one."""
-    after = _fits(found.run.at(found.optimum.point), found.run.simulator)
+    there = found.run.at(found.optimum.point)
+    after = fits_of(there, simulate(there, found.run.simulator))
     near = (before >= TRUSTED) & (100.0 - before <= POOR * (100.0 - after))
     return bool((near | (after > CLOSE)).all())
 
@@ -138,7 +155,7 @@ def _whole_records(
     problem: Problem,
     options: DescentOptions,
     before: int,
-    methods: Sequence[Method] = (minimise, minimise_on_logarithms, minimise),
+    methods: Sequence[Method] = METHODS,
 ) -> Descent | None:
     """The optimum of whole records near the values of ``problem``, after so many passes.
 
@@ -162,19 +179,30 @@ def _optimum(run: FreeRun, options: DescentOptions, before: int, methods: Sequen
     report = None
     if progress is not None:
         report = lambda i, cost, _: progress("whole records", i, 2 * cost / samples)  # noqa: E731
-    z, used, optimum = run.start, 0, None
+    found = answered(by_methods(run, options.settings, methods, report), run.quadratic, run.admissible)
+    return None if found is None else Descent(run, found, before + found.evaluations)
+
+
+def by_methods(
+    run: FreeRun,
+    settings: Settings,
+    methods: Sequence[Method],
+    report: Callable[[int, float, float], None] | None = None,
+) -> Descending[None]:
+    """The questions of a descent by one method after the other, see :func:`_optimum`; its optimum counts the passes of all."""
+    z, iterations, evaluations, optimum = run.start, 0, 0, None
     for method in methods:
-        settings = replace(options.settings, iterations=min(PATIENCE, options.settings.iterations - used))
-        if settings.iterations <= 0:
+        limited = replace(settings, iterations=min(PATIENCE, settings.iterations - iterations))
+        if limited.iterations <= 0:
             break
-        here = method(run.quadratic, z, *run.bounds, settings=settings, admissible=run.admissible, on_iteration=report)
+        here = yield from method(z, *run.bounds, settings=limited, on_iteration=report)
         if here is None:
             return None
-        z, used, before = here.point, used + here.iterations, before + here.evaluations
-        optimum = replace(here, iterations=used)
-        if method is minimise and here.termination is not Termination.iteration_limit:
+        z, iterations, evaluations = here.point, iterations + here.iterations, evaluations + here.evaluations
+        optimum = replace(here, iterations=iterations, evaluations=evaluations)
+        if method is descending and here.termination is not Termination.iteration_limit:
             break
-    return None if optimum is None else Descent(run, optimum, before)
+    return optimum
 
 
 def _better(one: Descent | None, other: Descent | None) -> Descent | None:

@@ -100,7 +100,7 @@ def fit_records(
     unidentifiable = ()
     if with_uncertainty:
         unidentifiable = identifiability(found.run, found.optimum.point, found.optimum.model)
-    return _result(found, problem.samples, with_uncertainty, unidentifiable)
+    return estimation_of(found, problem.samples, with_uncertainty, unidentifiable)
 
 
 def _unmoved(run: FreeRun, samples: int) -> Estimation:
@@ -111,9 +111,10 @@ def _unmoved(run: FreeRun, samples: int) -> Estimation:
     return Estimation(run.problem, mse, mse, samples, 0, 1, Termination.nothing_free, None, run.simulator.substeps)
 
 
-def _result(
+def estimation_of(
     found: Descent, samples: int, with_uncertainty: bool, unidentifiable: tuple[Unidentifiable, ...]
 ) -> Estimation:
+    """What an optimum comes to."""
     run, optimum = found.run, found.optimum
     mse = 2 * optimum.model.cost / samples
     share, problem = len(optimum.point) / samples, run.at(optimum.point)

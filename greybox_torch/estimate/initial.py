@@ -12,19 +12,22 @@ from greybox_torch.estimate.levenberg_marquardt import Settings, minimise
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import fit_windows
 from greybox_torch.simulation.passes import Pass
-from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import Windows
 
 SHORT = 6
 """Into how many windows the beginning of a record is cut for a first guess of its start states."""
 
+FRACTION = 0.1
+"""Of an experiment, from its beginning, that its start states are estimated on."""
+
+START_SETTINGS = Settings(iterations=30, tolerance=1e-8)
 
 MOST_TRIALS = 2
 """How many of the possible start values are followed to their optimum."""
 
 
-def estimate_initial(problem: Problem, simulator: Simulator, *, fraction: float = 0.1) -> Problem:
+def estimate_initial(problem: Problem, simulator: Simulator, *, fraction: float = FRACTION) -> Problem:
     """The problem with the free start states of every experiment estimated on its first ``fraction``, parameters as they are.
 
     Start values that a model knows only up to a few possibilities (the angle at which a periodic effect begins) are tried one by one.
@@ -38,13 +41,7 @@ def estimate_initial(problem: Problem, simulator: Simulator, *, fraction: float 
         return problem
     rows = []
     for e in range(len(problem.records.first)):
-        part = replace(
-            problem,
-            records=_beginning(problem.records, e, fraction),
-            initial=problem.initial[e : e + 1],
-            initial_free=free,
-            free=np.zeros_like(problem.free),
-        )
+        part = beginning(replace(problem, initial_free=free), e, fraction)
         rows.append(_best_start(part, trials, simulator))
     return problem.with_values(problem.values, np.array(rows))
 
@@ -59,9 +56,9 @@ def _best_start(part: Problem, trials: Sequence[Mapping[str, float]], simulator:
         rows = _promising(part, rows, simulator)
     best, cost = part.initial[0], np.inf
     for initial in rows[:, None]:
-        for begin in (initial, _from_short_windows(replace(part, initial=initial), simulator)):
+        for begin in (initial, from_short_windows(replace(part, initial=initial), simulator)):
             run = FreeRun(replace(part, initial=begin), simulator)
-            optimum = minimise(run.quadratic, run.start, *run.bounds, settings=Settings(iterations=30, tolerance=1e-8))
+            optimum = minimise(run.quadratic, run.start, *run.bounds, settings=START_SETTINGS)
             if optimum is not None and optimum.model.cost < (1 - 1e-6) * cost:
                 best, cost = run.at(optimum.point).initial[0], optimum.model.cost
     return best
@@ -70,7 +67,7 @@ def _best_start(part: Problem, trials: Sequence[Mapping[str, float]], simulator:
 def _promising(part: Problem, rows: np.ndarray, simulator: Simulator) -> np.ndarray:
     """Those of the start states ``rows`` (K, n_x) that simulate best, the states that are not tried from short windows."""
     others = part.initial_free & (np.ptp(rows, axis=0) == 0)
-    rows = np.where(others, _from_short_windows(part, simulator), rows)
+    rows = np.where(others, from_short_windows(part, simulator), rows)
     first, last = (np.repeat(end, len(rows)) for end in (part.records.first, part.records.last))
     windows = Windows(first, last, int(part.records.lengths[0]))
     run = simulator.run(part.driving_records, Pass(windows, part.values, rows, weights=part.weights))
@@ -79,7 +76,7 @@ def _promising(part: Problem, rows: np.ndarray, simulator: Simulator) -> np.ndar
     return rows[np.argsort(energies, kind="stable")[:MOST_TRIALS]]
 
 
-def _from_short_windows(part: Problem, simulator: Simulator) -> np.ndarray:
+def from_short_windows(part: Problem, simulator: Simulator) -> np.ndarray:
     """Start states (1, n_x) from a short stretch at the beginning, where a wrong guess has no time to lead astray."""
     length = max(20, int(part.records.lengths[0]) // SHORT)
     fit = fit_windows(part, simulator, length, settings=Settings(iterations=15, tolerance=1e-4))
@@ -88,8 +85,14 @@ def _from_short_windows(part: Problem, simulator: Simulator) -> np.ndarray:
     return np.where(part.initial_free, fit.starts[:1], part.initial)
 
 
-def _beginning(records: Records, experiment: int, fraction: float) -> Records:
-    span = records.span(experiment)
+def beginning(problem: Problem, experiment: int, fraction: float) -> Problem:
+    """The first ``fraction`` of one experiment as a problem of its own, of which only the start states are estimated."""
+    span = problem.records.span(experiment)
     length = max(10, int(np.ceil(fraction * (span.stop - span.start))))
     part = slice(span.start, min(span.start + length, span.stop))
-    return records.part([part], [records.names[experiment]])
+    return replace(
+        problem,
+        records=problem.records.part([part], [problem.records.names[experiment]]),
+        initial=problem.initial[experiment : experiment + 1],
+        free=np.zeros_like(problem.free),
+    )

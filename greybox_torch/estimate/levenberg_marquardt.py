@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -52,6 +52,24 @@ class Optimum(Generic[Extra]):
     termination: Termination
 
 
+@dataclass(frozen=True)
+class Allowed:
+    """Asks whether the constraints beyond the bounds hold at ``point`` (d,)."""
+
+    point: np.ndarray
+
+
+@dataclass(frozen=True)
+class Evaluated:
+    """Asks for cost, gradient and Hessian at ``point`` (d,); None where the simulation fails there."""
+
+    point: np.ndarray
+
+
+Descending = Generator[Allowed | Evaluated, Any, Optimum[Extra] | None]
+"""A descent that says what it has to know next, is sent that, and returns where it ended: so that many can be answered together."""
+
+
 def minimise(
     evaluate: Callable[[np.ndarray], Quadratic[Extra] | None],
     start: np.ndarray,
@@ -71,12 +89,40 @@ def minimise(
 
     Returns:
         The optimum, or None where ``evaluate`` fails at the start already.
+    """
+    return answered(descending(start, lower, upper, settings=settings, on_iteration=on_iteration), evaluate, admissible)
+
+
+def answered(
+    descent: Descending[Extra],
+    evaluate: Callable[[np.ndarray], Quadratic[Extra] | None],
+    admissible: Callable[[np.ndarray], bool],
+) -> Optimum[Extra] | None:
+    """Where a descent ends, question by question."""
+    answer: Any = None
+    while True:
+        try:
+            asked = descent.send(answer)
+        except StopIteration as end:
+            return end.value
+        answer = evaluate(asked.point) if isinstance(asked, Evaluated) else admissible(asked.point)
+
+
+def descending(
+    start: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    *,
+    settings: Settings = DEFAULT,
+    on_iteration: Callable[[int, float, float], None] | None = None,
+) -> Descending[Any]:
+    """What :func:`minimise` does, as questions.
 
     Source: D. W. Marquardt (1963); damping after H. B. Nielsen, "Damping parameter in Marquardt's method", 1999; bounds by
     :func:`bounded_step`.
     """
     point = np.clip(start, lower, upper)
-    here = evaluate(point)
+    here = yield Evaluated(point)
     if here is None:
         return None
     if not point.size:
@@ -88,12 +134,12 @@ def minimise(
         moved = False
         for _ in range(settings.trials):
             step = _step(here, diagonal, damping, lower - point, upper - point)
-            trial = _shortened(point, step, lower, upper, admissible)
+            trial = yield from _shortened(point, step, lower, upper)
             taken = trial - point
             predicted = -(here.gradient @ taken) - 0.5 * taken @ here.hessian @ taken
             if not taken.any() or 0.0 <= predicted <= 1e-2 * settings.tolerance * here.cost:
                 return Optimum(point, here, iteration, evaluations, Termination.small_step)
-            there = evaluate(trial) if predicted > 0 else None
+            there = (yield Evaluated(trial)) if predicted > 0 else None
             evaluations += 1
             gain = -1.0 if there is None else float((here.cost - there.cost) / predicted)
             if there is not None and gain > 1e-4:
@@ -128,12 +174,12 @@ def _step(here: Quadratic, diagonal: np.ndarray, damping: float, lowest: np.ndar
 
 
 def _shortened(
-    point: np.ndarray, step: np.ndarray, lower: np.ndarray, upper: np.ndarray, admissible: Callable[[np.ndarray], bool]
-) -> np.ndarray:
+    point: np.ndarray, step: np.ndarray, lower: np.ndarray, upper: np.ndarray
+) -> Generator[Allowed, bool, np.ndarray]:
     """The projected step, halved until the joint constraints hold (not at all where they never do)."""
     for _ in range(30):
         trial = np.clip(point + step, lower, upper)
-        if admissible(trial):
+        if (yield Allowed(trial)):
             return trial
         step = 0.5 * step
     return point

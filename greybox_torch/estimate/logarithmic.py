@@ -7,11 +7,19 @@ logarithms; along a bent valley a descent creeps.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from greybox_torch.estimate.levenberg_marquardt import Optimum, Quadratic, Settings, minimise
+from greybox_torch.estimate.levenberg_marquardt import (
+    Descending,
+    Optimum,
+    Quadratic,
+    Settings,
+    answered,
+    descending,
+)
 
 
 @dataclass(frozen=True)
@@ -50,27 +58,43 @@ def minimise_on_logarithms(
     on_iteration: Callable[[int, float, float], None] | None = None,
 ) -> Optimum[None] | None:
     """As :func:`minimise`, with positive unknowns varied by factors. A bound at zero is approached and not reached."""
+    descent = descending_on_logarithms(start, lower, upper, settings=settings, on_iteration=on_iteration)
+    return answered(descent, evaluate, admissible)
+
+
+def descending_on_logarithms(
+    start: np.ndarray,
+    lower: np.ndarray,
+    upper: np.ndarray,
+    *,
+    settings: Settings,
+    on_iteration: Callable[[int, float, float], None] | None = None,
+) -> Descending[None]:
+    """What :func:`minimise_on_logarithms` does, as questions about the unknowns themselves."""
     scale = Scale.of(start, lower)
-
-    def there(seen: np.ndarray) -> Quadratic[None] | None:
-        point = scale.meant(seen)
-        found = evaluate(point)
-        if found is None:
-            return None
-        slope = scale.slopes(point)
-        return Quadratic(found.cost, found.gradient * slope, found.hessian * slope[:, None] * slope[None, :], None)
-
-    found = minimise(
-        there,
+    descent = descending(
         scale.seen(start),
         scale.seen(np.where(scale.logarithmic, np.maximum(lower, SMALLEST), lower)),
         scale.seen(upper),
         settings=settings,
-        admissible=lambda seen: admissible(scale.meant(seen)),
         on_iteration=on_iteration,
     )
-    if found is None:
-        return None
+    answer: Any = None
+    while True:
+        try:
+            asked = descent.send(answer)
+        except StopIteration as end:
+            return None if end.value is None else _meant(scale, end.value)
+        point = scale.meant(asked.point)
+        answer = yield replace(asked, point=point)
+        if isinstance(answer, Quadratic):
+            slope = scale.slopes(point)
+            hessian = answer.hessian * slope[:, None] * slope[None, :]
+            answer = Quadratic(answer.cost, answer.gradient * slope, hessian, None)
+
+
+def _meant(scale: Scale, found: Optimum[None]) -> Optimum[None]:
+    """An optimum on the scale of logarithms as one of the unknowns themselves."""
     point = scale.meant(found.point)
     slope = scale.slopes(point)
     model = Quadratic(

@@ -12,8 +12,12 @@ from greybox_torch.simulation.windows import Windows
 LARGEST = 64
 
 
+TOLERANCE = 3e-4
+"""Part of an output's spread by which it may change where the steps are halved."""
+
+
 def choose_substeps(
-    records: Records, stepper: Stepper, p: np.ndarray, starts: np.ndarray, *, tolerance: float = 3e-4
+    records: Records, stepper: Stepper, p: np.ndarray, starts: np.ndarray, *, tolerance: float = TOLERANCE
 ) -> int | None:
     """The smallest power of two for which doubling the steps changes no output by more than ``tolerance`` of its spread.
 
@@ -22,19 +26,31 @@ def choose_substeps(
     Returns:
         The number of sub-steps; ``LARGEST`` where only accuracy is in doubt; None where not even that many give finite numbers.
     """
-    windows = Windows(
-        records.first, records.last, int(min(records.lengths.max(), max(200, records.lengths.max() // 10)))
-    )
-    spread = np.nanstd(records.y, axis=1)
-    limit = tolerance * np.where(spread > 0, spread, 1.0)
-    asked = Pass(windows, p, starts)
+    asked = Pass(Windows(records.first, records.last, judged_steps(records)), p, starts)
+    limit = tolerance * output_spread(records)
     coarse, substeps = stepper.run(records, asked).y, 1
     while substeps <= LARGEST:
         fine = stepper.run(records, asked, 2 * substeps).y
-        finite = np.isfinite(coarse).all() and np.isfinite(fine).all()
-        with np.errstate(over="ignore"):  # steps that are too long give numbers of any size
-            near = finite and (np.sqrt(np.mean((fine - coarse) ** 2, axis=(0, 1))) <= limit).all()
-        if near:
+        if fine_enough(coarse, fine, limit):
             return substeps
         coarse, substeps = fine, 2 * substeps
     return LARGEST if np.isfinite(coarse).all() else None
+
+
+def judged_steps(records: Records) -> int:
+    """Of how many samples the stretch is that sub-steps are judged on."""
+    longest = int(records.lengths.max())
+    return min(longest, max(200, longest // 10))
+
+
+def output_spread(records: Records) -> np.ndarray:
+    """The spread (n_y,) of the measured outputs, one where there is none."""
+    spread = np.nanstd(records.y, axis=1)
+    return np.where(spread > 0, spread, 1.0)
+
+
+def fine_enough(coarse: np.ndarray, fine: np.ndarray, limit: np.ndarray) -> bool:
+    """Whether outputs (E, N, n_y) with steps of two lengths differ by less than ``limit`` (n_y,)."""
+    finite = np.isfinite(coarse).all() and np.isfinite(fine).all()
+    with np.errstate(over="ignore"):  # steps that are too long give numbers of any size
+        return bool(finite and (np.sqrt(np.mean((fine - coarse) ** 2, axis=(0, 1))) <= limit).all())
