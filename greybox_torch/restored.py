@@ -99,7 +99,7 @@ def _plain_model(path: Path, checkpoint: Checkpoint, model: GreyBoxModel | str |
     if defined is None:
         raise UserError(
             f"checkpoint {path}: is of the model {checkpoint.title} in {checkpoint.model}; a model file is run only where you name it "
-            "yourself: give the model as the argument model"
+            "yourself, with --model (in Python: model=)"
         )
     return defined()
 

@@ -98,7 +98,8 @@ def _aim(held: Hypotheses, precision: str | None) -> Aim:
     group = to_tell_apart(held.findings)
     if group is None:
         raise UserError(
-            "the diagnosis left no rivals to tell apart; expected a finding with named alternatives, or a parameter to sharpen (precision)"
+            "the diagnosis left no rivals to tell apart; expected a finding with named alternatives, or a parameter to sharpen: "
+            "--precision (in Python: precision=)"
         )
     return Aim(tuple(_contender(kept, held) for kept in group))
 

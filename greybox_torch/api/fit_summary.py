@@ -52,7 +52,7 @@ def parameter_table(found: Estimation) -> tuple[list[str], list[list[str | float
     for name, entry in estimated_parameters(found).items():
         bounds = f"[{number(entry.lower)}, {number(entry.upper)}]"
         rows.append([name, entry.description, entry.unit, *_numbers(entry, known), bounds, _kept(entry)])
-    return ["name", "description", "unit", "value", "std", "std\n(coloured)", "bounds", ""], rows
+    return _told(["name", "description", "unit", "value", "std", "std\n(coloured)", "bounds", ""], rows)
 
 
 def _initial_table(found: Estimation, experiment: int) -> tuple[list[str], list[list[str | float]]]:
@@ -60,7 +60,15 @@ def _initial_table(found: Estimation, experiment: int) -> tuple[list[str], list[
     states = {state.name: state for state in found.problem.model.states}
     for name, entry in estimated_starts(found, experiment).items():
         rows.append([name, states[name].description, entry.unit, *_numbers(entry, True), _kept(entry)])
-    return ["name", "description", "unit", "value", "std", "std\n(coloured)", ""], rows
+    return _told(["name", "description", "unit", "value", "std", "std\n(coloured)", ""], rows)
+
+
+def _told(headings: list[str], rows: list[list[str | float]]) -> tuple[list[str], list[list[str | float]]]:
+    """Without the column of descriptions where the model gives none."""
+    at = headings.index("description")
+    if any(row[at] for row in rows):
+        return headings, rows
+    return [h for k, h in enumerate(headings) if k != at], [[v for k, v in enumerate(r) if k != at] for r in rows]
 
 
 def _numbers(entry: EstimatedStart, known: bool) -> list[str | float]:

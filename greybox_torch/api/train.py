@@ -9,6 +9,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from greybox_torch.api.arguments import (
     check_data,
     check_device,
@@ -21,8 +23,8 @@ from greybox_torch.api.arguments import (
 from greybox_torch.api.train_result import TrainingResult
 from greybox_torch.api.train_scores import free_runs_of
 from greybox_torch.data import DataSet
-from greybox_torch.errors import ArgumentError
-from greybox_torch.estimate.problem import make_problem
+from greybox_torch.errors import ArgumentError, UserError
+from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.training import Explanation, Report, Trained, TrainingSettings, train_hybrid
 from greybox_torch.training import explain as explain_network
@@ -79,6 +81,7 @@ def train(
     if resume and snapshot is None:
         raise ArgumentError("resume", True, "expected a snapshot to take the training up from")
     make_problem(data, given, data.recordings)  # all of them fit the model, whatever is trained on
+    _check_moving(data, make_problem(data, given, data.estimation()))
     trained = partial(
         train_hybrid,
         data,
@@ -94,6 +97,18 @@ def train(
     explanation = _explained(found, trained, count, progress) if explain else None
     progress(Report("scoring", 1.0))
     return TrainingResult(data, given, found, explanation, free_runs_of(data, given, found, explanation, device))
+
+
+def _check_moving(data: DataSet, problem: Problem) -> None:
+    """Raises UserError where no output of the experiments to train on moves: every network would do."""
+    records = problem.records
+    spans = [records.y[:, records.span(e)] for e in range(len(records.first))]
+    if not any(np.nanmax(y) > np.nanmin(y) for one in spans for y in one if not np.isnan(y).all()):
+        outputs = ", ".join(output.name for output in problem.model.outputs)
+        raise UserError(
+            f"{data.place('[[experiment]]')} no output moves in the experiments of role 'estimation' ({outputs}: constant throughout); "
+            "expected recordings in which the machine moves"
+        )
 
 
 def _explained(

@@ -15,6 +15,7 @@ import tempfile
 from functools import lru_cache
 from pathlib import Path
 
+from greybox_torch.codegen.cache import cache_folder, prune, used
 from greybox_torch.errors import UserError
 
 FLAGS = (
@@ -31,6 +32,9 @@ FLAGS = (
 
 COMPILER_SECONDS = 300
 """The largest programs take 10 s, and the package ziglang as much as 50 s the first time."""
+
+ROOM = 1_000_000
+"""Bytes that the compiler needs."""
 
 TRIAL = 'extern "C" int works() { return 1; }\n'
 """What a compiler is tried with."""
@@ -76,12 +80,6 @@ def check_compiler(what: str) -> None:
         )
 
 
-def cache_folder() -> Path:
-    """Where compiled steppers are kept: ``$GREYBOX_CACHE``, else the user's cache folder."""
-    default = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "greybox_torch"
-    return Path(os.environ.get("GREYBOX_CACHE", default))
-
-
 @lru_cache(maxsize=256)
 def library(source: str) -> ctypes.CDLL | None:
     """The library compiled from ``source``, from the cache where it is there; None where no compiler works."""
@@ -92,18 +90,23 @@ def library(source: str) -> ctypes.CDLL | None:
     _check_own(folder)
     key = hashlib.sha256("\0".join([source, *program, *FLAGS, _processor()]).encode()).hexdigest()[:32]
     file = folder / f"{key}.so"
-    if not _is_own(file) and not _compile(program, source, file):
+    if _is_own(file):
+        used(file)
+    elif not _compiled(program, source, file):
         return None
     try:
         return ctypes.CDLL(str(file))
     except OSError:
         file.unlink(missing_ok=True)
-        return ctypes.CDLL(str(file)) if _compile(program, source, file) else None
+        return ctypes.CDLL(str(file)) if _compiled(program, source, file) else None
 
 
 def _check_own(folder: Path) -> None:
     """Makes the cache folder, for this user alone. Raises UserError where others could put a library there, which would then be run."""
-    folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+    try:
+        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+    except OSError as error:
+        raise UserError(_no_room(folder, error.strerror or str(error))) from error
     if not _is_own(folder):
         raise UserError(
             f"{folder}: compiled code is kept there, and other users may write to it; "
@@ -118,6 +121,28 @@ def _is_own(path: Path) -> bool:
     except OSError:
         return False
     return os.name != "posix" or (found.st_uid in (os.getuid(), 0) and not found.st_mode & stat.S_IWOTH)
+
+
+def _compiled(program: tuple[str, ...], source: str, file: Path) -> bool:
+    """Whether ``file`` has been made. Raises UserError where there is no room for it."""
+    try:
+        made = _compile(program, source, file)
+    except OSError as error:
+        raise UserError(_no_room(file.parent, error.strerror or str(error))) from error
+    if not made and shutil.disk_usage(file.parent).free < ROOM:
+        raise UserError(_no_room(file.parent, "the disk is full"))
+    _prune_once(file.parent)
+    return made
+
+
+def _no_room(folder: Path, why: str) -> str:
+    return f"{folder}: compiled code cannot be kept there: {why}; expected a folder with some room, named by $GREYBOX_CACHE"
+
+
+@lru_cache(maxsize=8)
+def _prune_once(folder: Path) -> None:
+    """Once a process that compiles something: listing the folder takes as long as a tenth of a compilation."""
+    prune(folder)
 
 
 def _compile(program: tuple[str, ...], source: str, file: Path) -> bool:

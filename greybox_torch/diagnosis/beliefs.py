@@ -50,6 +50,12 @@ class Beliefs:
         """Whether an effect is not to be considered."""
         return self.weight(attachment) == 0.0
 
+    def exclude_all(self, model: GreyBoxModel) -> bool:
+        """Whether no mechanism of the library, and no curve, is left at any port of a model."""
+        laws = {**LIBRARY, Unknown.name: Unknown}
+        places = ((p.name, name) for p in model.all_ports for name, law in laws.items() if p.kind in law.kinds)
+        return bool(self.given) and all(self.log_odds(*place) == -math.inf for place in places)
+
 
 NO_BELIEFS = Beliefs()
 """All hypotheses are alike."""

@@ -155,12 +155,15 @@ def _as_found(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int,
     detected = detect(judged.problem, traces, study.settings)
     clock.lap("validation and report data")
     unexplained = None if effects else _unexplained(study, state, found.others, judged)
+    looked = not study.beliefs.exclude_all(model)
     verdict = Verdict(
         dataset=dataset.name,
         model=model.title,
         seed=seed,
         seconds=clock.seconds,
-        confidence=confidence(study, state, effects, found.complete, unexplained),
+        confidence=confidence(
+            study, state, effects, found.complete and (looked or unexplained is not None), unexplained
+        ),
         effects=effects,
         scores={name: comparison.scores for name, comparison in judged.comparisons(bool(effects)).items()},
         evidence=(
@@ -180,6 +183,7 @@ def _as_found(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int,
         settings=study.settings,
         budget=study.budget,
         beliefs=study.beliefs,
+        looked=looked,
         not_tried=NotTried() if found.complete else NotTried(found.cut, study.journal.left),
     )
     final = judged.augmented if effects else judged.plain

@@ -129,6 +129,8 @@ class Verdict:
     parameters: tuple[Estimate, ...] = field(repr=False, default=())
     beliefs: Beliefs = NO_BELIEFS
     """What was known beforehand."""
+    looked: bool = True
+    """Whether there was anything to look for: beliefs may exclude every hypothesis."""
 
     @property
     def mismatch(self) -> bool:
@@ -140,11 +142,15 @@ class Verdict:
         """The verdict in one sentence."""
         if not self.effects and self.unexplained is not None:
             why = (
-                "No law of the library and no curve of one signal explains it."
+                "What it is was not looked for, as the beliefs exclude every hypothesis."
+                if not self.looked
+                else "No law of the library and no curve of one signal explains it."
                 if self.complete
                 else "The search was stopped before it could say what."
             )
             return f"Something is missing from {self.model}: its error is {self.unexplained:.1f} times the noise. {why}"
+        if not self.effects and not self.looked:
+            return f"Nothing was looked for in {self.model}: the beliefs exclude every hypothesis."
         if not self.effects and not self.complete:
             return f"Nothing was found to be missing from {self.model} before the search was stopped: no answer yet."
         if not self.effects:

@@ -48,7 +48,8 @@ def _around(
         row = [o.name for o in model.outputs].index(port.output)
         values["output"] = problem.records.y[row][~np.isnan(problem.records.y[row])]
     values["time"] = times
-    units = _units(model, port)
+    units = _of_sums(model, port, x, u, p) | _units(model, port)
+    _complete(port, units)
     return Surroundings(
         {name: _range(v) for name, v in values.items()},
         units,
@@ -91,11 +92,6 @@ def _units(model: GreyBoxModel, port: Port) -> dict[str, str]:
     units = {name: of[signal] for name, signal in port.signals.items() if isinstance(signal, str) and signal in of}
     if isinstance(port, Body):
         units["position"] = position_unit(model, port)
-    if isinstance(port, Coupling):
-        if "deflection" in units and "rate" not in units:
-            units["rate"] = f"{units['deflection']}/s"
-        if "rate" in units and "deflection" not in units:
-            units["deflection"] = units["rate"].removesuffix("/s")
     if isinstance(port, Actuator):
         units["input"] = of[port.input]
     body = driving_body(model.ports)
@@ -105,6 +101,38 @@ def _units(model: GreyBoxModel, port: Port) -> dict[str, str]:
         units["output"] = next(o.unit for o in model.outputs if o.name == port.output)
     units["time"] = "s"
     return units
+
+
+def _complete(port: Port, units: dict[str, str]) -> None:
+    """Where only one of a coupling's deflection and its rate has a known unit, the other's follows."""
+    if isinstance(port, Coupling):
+        if "deflection" in units and "rate" not in units:
+            units["rate"] = f"{units['deflection']}/s"
+        if "rate" in units and "deflection" not in units:
+            units["deflection"] = units["rate"].removesuffix("/s")
+
+
+def _of_sums(model: GreyBoxModel, port: Port, x: Signals, u: Signals, p: Signals) -> dict[str, str]:
+    """Units of signals that are sums or differences of states and inputs of one unit, as a twist is of two angles.
+
+    Each state and input is moved by one at a sample: what moves the signal by one, up or down, has the signal's unit.
+    """
+    found = {}
+    x, u = (Signals(kind, {name: each[name][..., :1] for name in each}) for kind, each in (("state", x), ("input", u)))
+    declared = [(x, s.name, s.unit) for s in model.states] + [(u, i.name, i.unit) for i in model.inputs]
+    for name, signal in port.signals.items():
+        if isinstance(signal, str):
+            continue
+        here, units = float(torch.as_tensor(signal(x, u, p)).reshape(-1)[0]), set()
+        for among, moved, unit in declared:
+            other = among.replaced(**{moved: among[moved] + 1.0})
+            there = signal(other, u, p) if among is x else signal(x, other, p)
+            change = abs(float(torch.as_tensor(there).reshape(-1)[0]) - here)
+            if change > 1e-9:
+                units.add(unit if abs(change - 1.0) < 1e-9 else "")
+        if len(units) == 1 and "" not in units:
+            found[name] = units.pop()
+    return found
 
 
 def _force_unit(port: Port, units: dict[str, str]) -> str:

@@ -50,7 +50,7 @@ def _answer(verdict: Verdict, leading: Effect | None) -> str:
         return "unknown" if leading.mechanism in LEARNED else "named"
     if verdict.mismatch:
         return "unknown"
-    return "nothing" if verdict.complete else "unfinished"
+    return "nothing" if verdict.complete and verdict.looked else "unfinished"
 
 
 def _leading(effect: Effect) -> dict[str, Any]:

@@ -24,6 +24,12 @@ def render_page(verdict: Verdict, about: About) -> str:
     return page.render(live=live, title=f"{verdict.dataset}: diagnosis", sections=printed, version=about.version)
 
 
+def registered_sections(verdict: Verdict, about: About) -> list[str]:
+    """The HTML of the sections that others have registered, from top to bottom. Raises UserError where one cannot be made or printed."""
+    environment = _environment()
+    return [_printed(environment, name, verdict, about) for name in SECTIONS if name in TEMPLATES]
+
+
 def _printed(environment: Environment, name: str, verdict: Verdict, about: About) -> str:
     """The HTML of a section, empty where it has nothing to say."""
     if name not in TEMPLATES:

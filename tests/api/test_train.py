@@ -40,3 +40,10 @@ def test_a_training_that_explains_nothing(folder: Path, data: gt.DataSet) -> Non
     start = [row["fit"] for row in found.scores if row["model"] == "start"]
     assert start == [row["fit"] for row in gt.simulate(model, data).scores]
     check_shown(found, folder / "saved", {"train.json", "model.json", "model.safetensors"})
+
+
+def test_nothing_is_learned_from_a_machine_at_rest() -> None:
+    still = {"voltage": np.linspace(0, 1, 100), "speed": np.zeros(100)}
+    data = gt.DataSet([gt.Recording.from_arrays("Rest", still, sample_time=0.01, role="estimation")])
+    with pytest.raises(gt.UserError, match=r"no output moves in the experiments of role 'estimation' \(speed"):
+        gt.train(Motor(), data)

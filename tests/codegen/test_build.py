@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import time
 from pathlib import Path
 
 import pytest
 
-from greybox_torch.codegen import build
+from greybox_torch.codegen import build, cache
 from greybox_torch.errors import UserError
 
 WORKS = build.TRIAL
@@ -87,5 +90,44 @@ def test_what_others_may_write_is_not_loaded(own_cache: Path) -> None:
     build.library.cache_clear()
     with pytest.raises(
         UserError, match=r"other users may write to it; expected a folder of your own, named by \$GREYBOX_CACHE"
+    ):
+        build.library(WORKS)
+
+
+def test_what_was_not_used_for_longest_is_thrown_out(own_cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    own_cache.mkdir(mode=0o700)
+    now = time.time()
+    for name, days in (("new", 0.0), ("used", 1.0), ("old", 2.0), ("ancient", 100.0)):
+        file = own_cache / f"{name}.so"
+        file.write_bytes(bytes(400_000))
+        os.utime(file, (now - 86400 * days,) * 2)
+    left, working = own_cache / "tmpleft", own_cache / "tmpnow"
+    for folder in (left, working):
+        folder.mkdir()
+    os.utime(left, (now - 86400,) * 2)
+    cache.prune(own_cache)
+    assert {file.stem for file in own_cache.glob("*.so")} == {"new", "used", "old"}
+    assert working.is_dir() and not left.exists()
+    monkeypatch.setenv("GREYBOX_CACHE_MB", "1")
+    cache.prune(own_cache)
+    assert {file.stem for file in own_cache.glob("*.so")} == {"new", "used"}
+
+
+def test_what_is_loaded_counts_as_used(own_cache: Path) -> None:
+    assert build.library(WORKS) is not None
+    (file,) = own_cache.glob("*.so")
+    os.utime(file, (1e9, 1e9))
+    build.library.cache_clear()
+    assert build.library(WORKS) is not None
+    assert time.time() - file.stat().st_mtime < 100
+
+
+def test_a_disk_without_room(own_cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*arguments: object, **options: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(build.tempfile, "TemporaryDirectory", full)
+    with pytest.raises(
+        UserError, match="compiled code cannot be kept there: No space left on device; expected a folder"
     ):
         build.library(WORKS)

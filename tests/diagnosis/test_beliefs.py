@@ -136,3 +136,5 @@ def test_everything_excluded(motor_data, motor) -> None:
     data = motor_data(600, torque=lambda place, speed: -0.2 * np.tanh(speed))
     found = gt.diagnose(motor, data, beliefs={"rotor/*": 0.0, "actuator/*": 0.0, "sensor/*": 0.0})
     assert not found.effects and not hypotheses(found) and found.verdict.complete
+    assert not found.verdict.looked and "the beliefs exclude every hypothesis" in found.sentence
+    assert "Nothing is missing" not in found.sentence and "curve of one signal explains" not in found.sentence

@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import greybox_torch as gt
 from greybox_torch.estimate.problem import make_problem
-from greybox_torch.estimate.surroundings import survey
+from greybox_torch.estimate.surroundings import surroundings_along, survey
 from greybox_torch.model.ports import driving_body
 from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.simulator import Simulator
@@ -101,3 +102,32 @@ def test_position_of_the_model_and_missing_samples(data_set, machines: Path) -> 
 def test_driving_body_is_the_first() -> None:
     body = driving_body(RobotArm().ports)
     assert body is not None and body.name == "motor"
+
+
+class Sledge(gt.GreyBoxModel):
+    """A mass on a spring to a moved base: twist and rate are functions, the lever's path has a factor."""
+
+    states = [gt.State("x", "m"), gt.State("v", "m/s")]
+    inputs = [gt.Input("base", "m")]
+    outputs = [gt.Output("x", "m")]
+    parameters = [gt.Parameter("k", 50.0, unit="N/m"), gt.Parameter("r", 2.0, unit="m")]
+    ports = [
+        gt.Coupling("spring", deflection=lambda x, u, p: u.base - x.x, rate=lambda x, u, p: -x.v),
+        gt.Coupling("lever", deflection=lambda x, u, p: p.r * x.x, rate=lambda x, u, p: p.r * x.v),
+    ]
+
+    def derivative(self, x, u, p, port):
+        return {"x": x.v, "v": p.k * (u.base - x.x) + port.spring - port.lever}
+
+    def output(self, x, u, p):
+        return {"x": x.x}
+
+
+def test_a_difference_of_lengths_is_a_length() -> None:
+    signals = {"base": np.sin(np.arange(50) * 0.1), "x": np.zeros(50)}
+    data = gt.DataSet([gt.Recording.from_arrays("Run", signals, sample_time=0.01, role="estimation")])
+    problem = make_problem(data, Sledge(), data.recordings)
+    found = surroundings_along(problem.model, problem, np.zeros((50, 2)))
+    spring, lever = found["spring"], found["lever"]
+    assert (spring.units["deflection"], spring.units["rate"], spring.force_unit) == ("m", "m/s", "N")
+    assert "deflection" not in lever.units and lever.force_unit == ""

@@ -9,6 +9,9 @@ import pytest
 import greybox_torch as gt
 from greybox_torch.errors import UserError
 from greybox_torch.report.page import render_page
+from greybox_torch.report.pdf.document import render_pdf
+from greybox_torch.report.pdf.own_sections import PICTURE
+from greybox_torch.report.pdf.sheets import Sheets
 
 SECTION = '''
 import greybox_torch as gt
@@ -88,3 +91,17 @@ def test_a_template_in_a_file_of_its_own(tmp_path: Path, run_file, of_kind, abou
 def test_only_what_was_registered_is_taken_out() -> None:
     with pytest.raises(UserError, match="'effects' was not registered; registered are: none"):
         gt.unregister_section("effects")
+
+
+def test_its_text_is_printed(of_kind, about, monkeypatch) -> None:
+    told: list[str] = []
+    write = Sheets.text
+    monkeypatch.setattr(Sheets, "text", lambda self, text, *a, **k: (told.append(text), write(self, text, *a, **k))[1])
+    table = "<table><tr><td>grease</td><td>{{ section.dataset }}</td></tr></table><svg><text>drawn</text></svg>"
+    gt.register_section("maintenance", lambda verdict, about: {"dataset": "a & b"}, f"<h2>To do</h2>{table}")
+    try:
+        render_pdf(of_kind("found"), about)
+    finally:
+        gt.unregister_section("maintenance")
+    assert "grease · a & b" in told and PICTURE in told
+    assert "drawn" not in told

@@ -43,10 +43,11 @@ def sentences(
     lines += [_noise(study, state), *detection_sentences(detected, bool(effects))]
     lines += [_step_sentence(done, study.settings) for done in state.steps]
     lines += [ceiling_sentence(e) for e in effects if e.ceiling is not None]
+    spoken_of = {a.prefix: _name(a) for a in state.effects}
     for prefix, gain in gains.items():
         low, high = gain.interval
         lines.append(
-            f"Held out: {prefix} removes {100 * gain.share:.1f} % of the squared error that is left without it "
+            f"Held out: {spoken_of.get(prefix, prefix)} removes {100 * gain.share:.1f} % of the squared error that is left without it "
             f"(95 % interval {100 * low:.1f} to {100 * high:.1f} %)."
         )
     kept = {(e.port, e.mechanism) for e in effects}
@@ -60,7 +61,12 @@ def sentences(
         )
     if interrupted:
         lines.append("The search was stopped before it was done (time limit or interruption): the best verdict so far.")
-    return tuple(lines)
+    return tuple(begun(line) for line in lines)
+
+
+def begun(sentence: str) -> str:
+    """A sentence with its first letter large, as names of mechanisms have none."""
+    return sentence[:1].upper() + sentence[1:]
 
 
 def _step_sentence(done: SelectionStep, settings: DiagnosisSettings) -> str:

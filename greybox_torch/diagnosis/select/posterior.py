@@ -142,6 +142,7 @@ def confidence(
     """How sure the answer to "is anything missing?" is; a search that was stopped before it found anything is not sure of it.
 
     Args:
+        complete: whether all was looked for that there was to look for.
         unexplained: how many times the noise the error is, where it is clearly more and no effect explains it.
     """
     settings = study.settings

@@ -7,8 +7,10 @@ from collections.abc import Sequence
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report import text
 from greybox_torch.report.about import About
+from greybox_torch.report.page import registered_sections
 from greybox_torch.report.pdf.charts import COLOURS, draw_chart, height_of
 from greybox_torch.report.pdf.effects import BARS, draw_effects, draw_facts, plain
+from greybox_torch.report.pdf.own_sections import draw_own
 from greybox_torch.report.pdf.sheets import MARGIN, QUIET, ROOM, SPACING, Sheets, broken, wide
 from greybox_torch.report.pdf.tables import draw_bars, draw_table
 from greybox_torch.report.sections.headline import Figure, Headline
@@ -26,7 +28,7 @@ OF_TRACES = 0.72
 
 
 def render_pdf(verdict: Verdict, about: About) -> bytes:
-    """The sections of the page as PDF; those that were registered by others have templates for the page alone, and are left out."""
+    """The sections of the page as PDF; of those that were registered by others, whose templates are HTML, the text."""
     sheets = Sheets(f"{verdict.dataset}: diagnosis with greybox_torch {about.version}")
     _headline(sheets, Headline.of(verdict))
     _scores(sheets, Scores.of(verdict, about))
@@ -38,6 +40,8 @@ def render_pdf(verdict: Verdict, about: About) -> bytes:
     _list(sheets, "Evidence", verdict.evidence)
     _spectrum(sheets, Spectrum.of(verdict))
     _ranking(sheets, Ranking.of(verdict))
+    for html in registered_sections(verdict, about):
+        draw_own(sheets, html)
     _making(sheets, Making.of(verdict, about))
     made = about.created
     return sheets.printed({"Title": f"{verdict.dataset}: diagnosis", "Creator": "greybox_torch", "CreationDate": made})

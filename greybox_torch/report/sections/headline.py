@@ -37,9 +37,9 @@ class Headline:
     @classmethod
     def of(cls, verdict: Verdict) -> Headline:
         unknown = not verdict.effects or any(e.mechanism == "unknown" for e in verdict.effects)
-        answer = "nothing" if not verdict.mismatch else "unknown" if unknown else "found"
+        answer = "nothing" if verdict.looked and not verdict.mismatch else "unknown" if unknown else "found"
         figures = [_fit(verdict), *_errors(verdict)]
-        if verdict.mismatch or verdict.complete:
+        if verdict.mismatch or (verdict.complete and verdict.looked):
             figures.append(_confidence(verdict))
         told = (verdict.dataset, verdict.model, verdict.sentence, answer, tuple(figures))
         return cls(*told, verdict.complete, verdict.not_tried.sentences())
