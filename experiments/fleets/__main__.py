@@ -7,6 +7,9 @@ an effect change about the middle of the year. Measured are
 - what becomes of the work when a worker is killed after a quarter of it, and the command itself after a half, and it is begun again;
 - how two workers compare with one, what a data set costs, how that grows with its length, and where the time goes.
 
+`--only throughput` measures one worker against two alone, with steppers in the cache: on a quiet machine,
+`OMP_NUM_THREADS=1 python -m experiments.fleets --only throughput --recordings 1 --throughput 64`.
+
 Writes OUT/measured.json and OUT/measured.md.
 """
 
@@ -36,6 +39,14 @@ def main(arguments: list[str] | None = None) -> int:
     cards = write_fleet(planned, out / "data", samples=chosen.samples, seed=chosen.seed)
     (out / "key.json").write_text(json.dumps([machine.as_json() for machine in planned], indent=1))
     measured = {"about": header(), "choices": {k: v for k, v in vars(chosen).items() if k != "out"}}
+    if chosen.only == "throughput":
+        _tell("steppers into the cache")
+        throughput(cards[:8], out / "warm", (2,), data=out / "data")
+        _tell(f"throughput of one worker and of two on {chosen.throughput} data sets")
+        measured["throughput"] = throughput(cards[: chosen.throughput], out, (1, 2))
+        (out / "measured.json").write_text(json.dumps(measured, indent=1))
+        print(json.dumps(measured["throughput"], indent=1))
+        return 0
     try:
         _tell(f"{len(cards)} data sets with {chosen.workers} workers, one of them killed, and the command as well")
         result, measured["interrupted"] = interrupted(out / "data", out / "fleet", chosen.workers, len(cards))
@@ -71,6 +82,7 @@ def _parsed(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--compared", type=int, default=12, help="data sets that are diagnosed one by one as well")
     parser.add_argument("--throughput", type=int, default=32, help="data sets that throughput is measured with")
+    parser.add_argument("--only", choices=["throughput"], help="measure nothing else")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/fleets"))
     return parser.parse_args(arguments)

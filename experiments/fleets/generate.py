@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -75,8 +75,24 @@ def write_fleet(planned: Sequence[Planned], out: Path, *, samples: int, seed: in
     return cards
 
 
-def simulate(planned: Sequence[Planned], *, samples: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Torque and measured speed (samples, lanes): machine by machine, recording by recording, experiment by experiment."""
+def both_ways(rng: Generator, samples: int) -> np.ndarray:
+    """Steps of a third of a second, and a multisine: 1 N m at the most, mostly."""
+    steps = np.repeat(rng.uniform(-0.7, 0.7, samples // 33 + 1), 33)[:samples]
+    return steps + 0.2 * multisine(rng, samples, SAMPLE_TIME, 0.3, 10.0)
+
+
+def simulate(
+    planned: Sequence[Planned],
+    *,
+    samples: int,
+    seed: int,
+    torque: Callable[[Generator, int], np.ndarray] = both_ways,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Torque and measured speed (samples, lanes): machine by machine, recording by recording, experiment by experiment.
+
+    Args:
+        torque: draws so many samples of it.
+    """
     repeat = len(EXPERIMENTS)
     inertia = np.array([m.inertia for m in planned for _ in m.dates for _ in EXPERIMENTS])
     damping = np.repeat([b for m in planned for b in m.damping], repeat)
@@ -93,18 +109,12 @@ def simulate(planned: Sequence[Planned], *, samples: int, seed: int) -> tuple[np
     )
     rng = np.random.default_rng(SeedSequence([seed, 2]))
     total = samples + BEFORE
-    torque = np.column_stack([_torque(rng, total) for _ in range(lanes)])
+    commanded = np.column_stack([torque(rng, total) for _ in range(lanes)])
     noise = NOISE * rng.normal(size=(1, total, lanes))
     none = np.zeros(lanes)
-    drives = BodyDrive(torque, np.zeros((total, lanes)), noise, none, none, np.zeros(1))
+    drives = BodyDrive(commanded, np.zeros((total, lanes)), noise, none, none, np.zeros(1))
     run = plant.run(plant.initial_state(none, none), drives)
     return run.command[BEFORE:], run.outputs[0, BEFORE:]
-
-
-def _torque(rng: Generator, samples: int) -> np.ndarray:
-    """Steps of a third of a second, and a multisine: 1 N m at the most, mostly."""
-    steps = np.repeat(rng.uniform(-0.7, 0.7, samples // 33 + 1), 33)[:samples]
-    return steps + 0.2 * multisine(rng, samples, SAMPLE_TIME, 0.3, 10.0)
 
 
 def _laws(planned: Sequence[Planned], repeat: int) -> list[Law]:

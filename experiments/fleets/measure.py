@@ -59,13 +59,19 @@ def alone(cards: Sequence[Path], out: Path) -> dict[str, Any]:
     return {"compared": len(cards), "different": different, "processor": processor}
 
 
-def throughput(cards: Sequence[Path], out: Path, workers: Sequence[int]) -> list[dict[str, float]]:
-    """The same data sets by so many workers: seconds from the first that is done to the last, and of processors."""
-    root = out / "throughput" / "data"
+def throughput(
+    cards: Sequence[Path], out: Path, workers: Sequence[int], *, data: Path | None = None
+) -> list[dict[str, float]]:
+    """The same data sets by so many workers: seconds from the first that is done to the last, and of processors.
+
+    Args:
+        data: the folder that the cards lie below; OUT/data by default.
+    """
+    root, data = out / "throughput" / "data", data or out / "data"
     for card in cards:
-        folder = root / card.parent.relative_to(out / "data")
+        folder = root / card.parent.relative_to(data)
         shutil.copytree(card.parent, folder)
-    shutil.copyfile(out / "data" / MODEL.name, root / MODEL.name)
+    shutil.copyfile(data / MODEL.name, root / MODEL.name)
     found = []
     for count in workers:
         place = out / "throughput" / f"by_{count}"

@@ -131,8 +131,12 @@ class Mechanism:
         return (
             lost_in_its_deviation(self.essential or amplitudes, values, deviations)
             or self.misplaced(around, values)
-            or at_a_bound(parameters, values, self.natural)
+            or at_a_bound(parameters, values, self.natural_ends(around))
         )
+
+    def natural_ends(self, around: Surroundings) -> tuple[str, ...]:
+        """The bounds that a parameter may sit at in such recordings; see :attr:`natural`."""
+        return self.natural
 
     def options(self) -> dict[str, Any]:
         """What the constructor was told, by argument, so that the same mechanism can be made again."""

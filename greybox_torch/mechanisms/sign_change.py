@@ -48,3 +48,8 @@ class DryLaw(LinearLaw):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((self.parameter,), {"v_0": width}) for width in widths(around)]
+
+    def natural_ends(self, around: Surroundings) -> tuple[str, ...]:
+        """Where the speed never changes its sign, nothing says over which width the force would."""
+        speed = around.ranges["speed"]
+        return (*self.natural, "v_0.upper") if speed.low * speed.high > 0.0 else self.natural

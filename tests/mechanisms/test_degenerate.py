@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from greybox_torch.mechanisms.library import LEARNED, LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism
-from greybox_torch.mechanisms.surroundings import Surroundings
+from greybox_torch.mechanisms.surroundings import Range, Surroundings
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
@@ -106,6 +108,14 @@ def test_zero_is_a_natural_bound_and_so_is_true_sticking(around: Surroundings) -
     assert law_of("coulomb_friction").degenerate(around, values, small(values)) is None
     values = {**SOUND["end_stop"], "c": 0.0}
     assert law_of("end_stop").degenerate(around, values, small(values)) is None
+
+
+def test_a_width_is_not_asked_of_a_machine_that_turns_one_way(around: Surroundings) -> None:
+    """Seen: believed Coulomb friction of a motor that only ran forwards was taken back, as its width had drifted to a bound."""
+    values = {**SOUND["coulomb_friction"], "v_0": 6.0}
+    assert law_of("coulomb_friction").degenerate(around, values, small(values)) is not None
+    forwards = replace(around, ranges={**around.ranges, "speed": Range(2.0, 20.0, 12.0)})
+    assert law_of("coulomb_friction").degenerate(forwards, values, small(values)) is None
 
 
 def test_a_stop_may_stand_a_little_beyond_where_a_model_without_it_went(around: Surroundings) -> None:
