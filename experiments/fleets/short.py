@@ -27,12 +27,14 @@ from experiments.concealed.excitation import multisine
 from experiments.fleets.generate import MODEL, SAMPLE_TIME, simulate
 from experiments.fleets.plan import KINDS, Planned
 from experiments.speed.settings import header
-from greybox_torch.fleets.suggested_beliefs import FEWEST, TWICE, SuggestedBeliefs
 
 DOMINANT = 0.8
 """Share of the machines of a type that have the effect of the type."""
 
 COMMISSIONED = 30
+TWICE, HIGHEST = 2, 0.95
+"""Machines that an effect has to be found at, and the strongest belief that is suggested."""
+
 ROLES = ("estimation", "validation")
 
 
@@ -63,11 +65,9 @@ def _effect(rng: Generator, of_type: str) -> str:
 
 
 def _believed(rng: Generator, of_type: str) -> dict[str, float]:
-    """As the verdicts of commissioned machines give them; their recordings show every effect by its name."""
+    """By the rule that `greybox fleet` documents (rule of succession), as recordings of commissioning show every effect by its name."""
     counts = Counter("/".join(KINDS[_effect(rng, of_type)].accept[0]) for _ in range(COMMISSIONED))
-    found = {key: k for key, k in counts.most_common() if k >= TWICE}
-    assert counts.total() >= FEWEST
-    return SuggestedBeliefs("Motor", found, COMMISSIONED).beliefs
+    return {key: round(min(HIGHEST, (k + 1) / (k + 2)), 3) for key, k in counts.most_common() if k >= TWICE}
 
 
 def judged(found: gt.DiagnosisResult, machine: Planned) -> dict[str, Any]:

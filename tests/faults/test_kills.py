@@ -14,6 +14,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from greybox_torch import cli
+from greybox_torch.__main__ import main
 from greybox_torch.codegen import build
 from greybox_torch.errors import UserError
 from greybox_torch.files import json_text, write_all, write_text
@@ -40,7 +42,7 @@ sys.exit(library(TRIAL).works() != 1)
 def test_what_is_written_is_whole(tmp_path: Path, sent: signal.Signals) -> None:
     """Files that are replaced all the time by a process that is killed."""
     rng = np.random.default_rng(sent)
-    for k in range(4):
+    for k in range(2):
         arguments = [sys.executable, "-c", WRITES, str(tmp_path / "out"), "300000"]
         process = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         assert process.stdout is not None and process.stdout.readline() == b"begun\n"
@@ -71,3 +73,15 @@ def test_a_full_disk(tmp_path: Path) -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert [file.name for file in tmp_path.iterdir()] == ["a.json"]
     assert json.loads((tmp_path / "a.json").read_text()) == {"run": 1}
+
+
+def test_ctrl_c_while_loading(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """Seen: a traceback out of an import, half a second after the start."""
+
+    def interrupted() -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "main", interrupted)
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 130 and capsys.readouterr().err == "interrupted\n"
