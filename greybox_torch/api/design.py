@@ -9,21 +9,22 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.api.arguments import check_seconds, check_seed
-from greybox_torch.api.design_result import DesignResult, Expected
+from greybox_torch.api.design_result import DesignResult
 from greybox_torch.api.diagnosis_result import DiagnosisResult
+from greybox_torch.api.expected import Expected
 from greybox_torch.api.hypotheses import Hypotheses, Kept, hypotheses_of, read_hypotheses, to_tell_apart
 from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
 from greybox_torch.estimate.problem import with_card
+from greybox_torch.experiment_design.aim import Aim, Trial
 from greybox_torch.experiment_design.contender import Contender, Prediction, contender, records_of
 from greybox_torch.experiment_design.excitation import Excitation
+from greybox_torch.experiment_design.imitation import THOROUGH
+from greybox_torch.experiment_design.judged import judged
 from greybox_torch.experiment_design.limits import Limits, limits_of
-from greybox_torch.experiment_design.search import MOST_SAMPLES, Aim, Trial, frequencies, sampled, search, within
-from greybox_torch.experiment_design.separation import expected_probability
+from greybox_torch.experiment_design.search import MOST_SAMPLES, frequencies, sampled, search
+from greybox_torch.experiment_design.simulated import within
 
-DRAWS = 4
-"""Draws of the parameters that the evidence of the best input is averaged over."""
-
-RANDOM = 8
+RANDOM = 5
 """Random multisines of the same power that the best input is compared with."""
 
 
@@ -116,7 +117,8 @@ def _result(
     nats, random = np.zeros((len(shares),) * 2), None
     before = after = None
     if aim.parameter is None:
-        nats = _averaged(aim, best.inputs, time, predictions, seed)
+        assert best.nats is not None
+        nats = best.nats
         random = _by_random_inputs(aim, limits, time, best, seed)
     else:
         one = aim.contenders[0]
@@ -133,6 +135,7 @@ def _result(
         hypotheses=tuple(c.problem.model for c in aim.contenders),
         outputs=tuple(p.y[0] for p in predictions),
         level=aim.contenders[0].level,
+        memory=aim.contenders[0].memory,
         expected=Expected(shares, nats, random),
         begins_like=aim.contenders[0].problem.records.names[0],
         start=aim.contenders[0].start,
@@ -149,27 +152,10 @@ def _predicted(aim: Aim, inputs: np.ndarray, time: np.ndarray) -> list[Predictio
     return [c.predicted(records_of([inputs], c.problem.records, step)) for c in aim.contenders]
 
 
-def _averaged(aim: Aim, inputs: np.ndarray, time: np.ndarray, predictions: list[Prediction], seed: int) -> np.ndarray:
-    """The evidence (n, n), averaged over what is known of the parameters of the hypothesis that is right."""
-    rng = np.random.default_rng(seed)
-    step, total = float(time[1] - time[0]), aim.nats(predictions, 0)
-    count = 1
-    for _ in range(DRAWS):
-        drawn = [c.drawn(rng).predicted(records_of([inputs], c.problem.records, step)) for c in aim.contenders]
-        if not all(np.isfinite(d.y).all() for d in drawn):
-            continue
-        own = np.zeros_like(total)
-        for a in range(len(drawn)):
-            own[a] = aim.nats([*predictions[:a], drawn[a], *predictions[a + 1 :]], 0)[a]
-        total, count = total + own, count + 1
-    return total / count
-
-
-def _by_random_inputs(aim: Aim, limits: Limits, time: np.ndarray, best: Trial, seed: int) -> float | None:
-    """The expected probability after a random multisine of the same power, over all frequencies; the median of several."""
+def _by_random_inputs(aim: Aim, limits: Limits, time: np.ndarray, best: Trial, seed: int) -> np.ndarray | None:
+    """The evidence of a random multisine of the same power, over all frequencies; of several, of the middle one by what it decides."""
     slowest, fastest = frequencies(time)
-    shares = [c.probability for c in aim.contenders]
-    found = []
+    found: list[Trial] = []
     for k in range(RANDOM):
         inputs = sampled(
             tuple(Excitation("multisine", slowest, fastest, 0.0, 1.0, seed + 1000 + k) for _ in limits.inputs),
@@ -182,5 +168,8 @@ def _by_random_inputs(aim: Aim, limits: Limits, time: np.ndarray, best: Trial, s
         low, high = (np.array([[getattr(r, end)] for r in limits.inputs.values()]) for end in ("lower", "upper"))
         inputs = np.clip(inputs, low, high)
         if within(aim.contenders, limits, [inputs], time)[0]:
-            found.append(expected_probability(shares, aim.nats(_predicted(aim, inputs, time), 0)))
-    return float(np.median(found)) if found else None
+            found.append(judged(aim, [aim.contenders], Trial(best.candidate, inputs, 0.0), time, limits))
+    if not found:
+        return None
+    middle = sorted(found, key=lambda t: t.score)[len(found) // 2]
+    return judged(aim, [aim.contenders], middle, time, limits, THOROUGH).nats

@@ -11,12 +11,11 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
+from greybox_torch.api.expected import Expected
 from greybox_torch.api.result import Result
 from greybox_torch.data import DataSet
-from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.experiment_design.excitation import Excitation
 from greybox_torch.experiment_design.limits import Limits
-from greybox_torch.experiment_design.separation import expected_probability, seconds_for
 from greybox_torch.files import toml_key, toml_text
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.report import notebook
@@ -31,32 +30,14 @@ WANTED = 0.95
 HARDLY_ANY = 0.01
 """Part of a recording below which its length is not told: evidence grows with time on the whole, not period by period."""
 
-VISIBLE = DiagnosisSettings().visible_divergence
-"""Nats below which two hypotheses cannot be told apart, as in a diagnosis."""
-
-
-@dataclass(frozen=True)
-class Expected:
-    """What a recording is expected to say: probabilities ``before`` it, and the evidence ``nats`` (n, n) for each hypothesis (row, if it
-    is right) against each other one. ``random``: the probability of the right one after a random multisine of the same power.
-    """
-
-    before: tuple[float, ...]
-    nats: np.ndarray
-    random: float | None
-
-    @property
-    def after(self) -> float:
-        """The expected probability of the right one."""
-        return expected_probability(self.before, self.nats)
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class DesignResult(Result):
     """The input of a next recording, and what it is expected to tell.
 
     ``time`` (N,) s and ``inputs`` (N,) by name, in the model's units. ``names`` of the ``hypotheses`` and the ``outputs`` (N, n_y) each
-    predicts; ``level`` (n_y,) root mean square errors so far. ``start``: the states that it begins with, those of the recording
+    predicts; ``level`` (n_y,) root mean square errors so far, correlated for
+    ``memory`` samples. ``start``: the states that it begins with, those of the recording
     ``begins_like``. Where a ``parameter`` is to be sharpened, ``before`` and ``after`` are its
     standard deviations in ``unit``.
     """
@@ -71,6 +52,7 @@ class DesignResult(Result):
     hypotheses: tuple[GreyBoxModel, ...]
     outputs: tuple[np.ndarray, ...]
     level: np.ndarray
+    memory: float
     expected: Expected
     begins_like: str
     start: Mapping[str, float]
@@ -88,14 +70,14 @@ class DesignResult(Result):
     @property
     def needed(self) -> float:
         """Seconds of such a recording after which the right hypothesis is expected at a probability of 0.95."""
-        return seconds_for(self.expected.before, self.expected.nats, self.seconds, WANTED)
+        return self.expected.seconds_for(WANTED, self.seconds)
 
     @property
     def alike(self) -> list[tuple[str, str]]:
         """Pairs of hypotheses that this recording would not tell apart."""
-        nats, count = self.expected.nats, len(self.names)
+        alike, count = self.expected.alike, len(self.names)
         pairs = [(a, b) for a in range(count) for b in range(a + 1, count)]
-        return [(self.names[a], self.names[b]) for a, b in pairs if min(nats[a, b], nats[b, a]) < VISIBLE]
+        return [(self.names[a], self.names[b]) for a, b in pairs if alike[a, b]]
 
     @property
     def sentence(self) -> str:
@@ -107,6 +89,8 @@ class DesignResult(Result):
                 f"from {self.before:.2g} to {self.after:.2g} {self.unit}".rstrip()
                 + "."
             )
+        if not self.expected.decides:
+            return f"No input within the limits was found that tells these hypotheses apart: {', '.join(self.names)}."
         told = (
             f"{self.seconds:.3g} s of {kinds} are expected to bring the right one of {len(self.names)} hypotheses to a probability of "
             f"{self.expected.after:.2f}"
@@ -158,6 +142,8 @@ class DesignResult(Result):
             f"No input within the limits was found that tells {a} from {b} in {self.seconds:.3g} s."
             for a, b in self.alike
         ]
+        if self.alike and self.parameter is None and self.expected.decides:
+            lines.append("Those count as one in the probability that is expected.")
         if self.expected.random is not None and self.parameter is None:
             lines.append(f"A random multisine of the same power: {self.expected.random:.2f}.")
         if self.limits.seconds > 1.001 * self.seconds:

@@ -47,17 +47,22 @@ class Contender:
         names = [s.name for s in self.problem.model.plain.states]
         return {name: float(value) for name, value in zip(names, self.problem.initial[0], strict=False)}
 
-    def predicted(self, records: Records, *, tangents: bool = True) -> Prediction:
-        """Its free runs of records with as many samples each, begun as the first of its own recordings began."""
+    def predicted(self, records: Records, *, tangents: bool = True, start: np.ndarray | None = None) -> Prediction:
+        """Its free runs of records with as many samples each, begun as the first of its own recordings began.
+
+        Args:
+            start: other states (n_x,) to begin with, those of the effects' memory among them; by default these begin as the input says.
+        """
         count, steps = len(records.first), int(records.lengths[0])
-        start = np.repeat(self.problem.initial[:1], count, axis=0)
-        problem = replace(self.problem, records=records, initial=start)
+        first = np.repeat(self.problem.initial[:1] if start is None else start[None], count, axis=0)
+        problem = replace(self.problem, records=records, initial=first)
         driven = problem.driving_records
-        begun = problem.model.begun(start, driven, records.first, problem.values)
-        run = self.simulator.run(driven, _pass(problem, records, begun, tangents))
+        if start is None:
+            first = problem.model.begun(first, driven, records.first, problem.values)
+        run = self.simulator.run(driven, _pass(problem, records, first, tangents))
         assert run.states is not None
         slopes = None if run.dy is None else run.dy[:, :steps]
-        return Prediction(run.y[:, :steps], run.states[:, :steps], slopes)
+        return Prediction(run.y[:, :steps], run.states[:, :steps], slopes, first)
 
     def deviation(self, index: int) -> float:
         """The standard deviation of a free parameter after the recordings so far."""
@@ -79,12 +84,13 @@ class Contender:
 @dataclass(frozen=True)
 class Prediction:
     """Outputs ``y`` (C, N, n_y) and ``states`` (C, N, n_x) of C records; ``slopes`` (C, N, n_y, n_d), the outputs' derivatives by the free
-    parameters and start states.
+    parameters and start states; ``start`` (C, n_x), the states that they begin with.
     """
 
     y: np.ndarray
     states: np.ndarray
     slopes: np.ndarray | None
+    start: np.ndarray
 
 
 def contender(

@@ -44,7 +44,9 @@ def evidence(difference: np.ndarray, slopes: np.ndarray, known: np.ndarray) -> f
     return 0.5 * max(0.0, float(difference @ difference - imitated))
 
 
-def expected_probability(probabilities: Sequence[float], nats: np.ndarray) -> float:
+def expected_probability(
+    probabilities: Sequence[float], nats: np.ndarray, *, alike: np.ndarray | None = None, temperature: float = 1.0
+) -> float:
     """The probability of the right hypothesis after a recording, averaged over which one is right and over the errors.
 
     A log-likelihood ratio whose mean is D has the variance 2 D where errors are Gaussian.
@@ -52,34 +54,49 @@ def expected_probability(probabilities: Sequence[float], nats: np.ndarray) -> fl
     Args:
         probabilities: of the hypotheses, before it.
         nats: (n, n), entry (a, b) the evidence for a against b where a is right.
+        alike: (n, n), whether two hypotheses count as one.
+        temperature: standard errors that count as one where the recording is judged.
     """
     share = np.asarray(probabilities, dtype=float) / np.sum(probabilities)
+    same = np.eye(len(share), dtype=bool) if alike is None else alike | np.eye(len(share), dtype=bool)
     level = (np.arange(QUANTILES) + 0.5) / QUANTILES
     normal = ndtri(level)
     total = 0.0
     for a, own in enumerate(share):
-        against = np.zeros(QUANTILES)
-        for b, other in enumerate(share):
-            if b != a and own > 0:
-                told = nats[a, b] + np.sqrt(2.0 * nats[a, b]) * normal
-                against += other / own * np.exp(np.clip(-told, -700.0, 700.0))
+        against, whole = np.zeros(QUANTILES), float(share[same[a]].sum())
+        for b in np.flatnonzero(~same[a]):
+            if own > 0:
+                told = (nats[a, b] + np.sqrt(2.0 * nats[a, b]) * normal) / temperature**2
+                against += share[b] / whole * np.exp(np.clip(-told, -700.0, 700.0))
         total += own * float(np.mean(1.0 / (1.0 + against)))
     return total
 
 
-def seconds_for(probabilities: Sequence[float], nats: np.ndarray, seconds: float, wanted: float) -> float:
+def seconds_for(
+    probabilities: Sequence[float],
+    nats: np.ndarray,
+    seconds: float,
+    wanted: float,
+    *,
+    alike: np.ndarray | None = None,
+    temperature: float = 1.0,
+) -> float:
     """How long a recording like one of so many ``seconds`` must be for a ``wanted`` expected probability; infinite where none suffices.
 
-    The evidence grows in proportion to the time.
+    The evidence grows in proportion to the time. Other arguments as for :func:`expected_probability`.
     """
-    if expected_probability(probabilities, 1e6 * nats) < wanted:
+
+    def expected(factor: float) -> float:
+        return expected_probability(probabilities, factor * nats, alike=alike, temperature=temperature)
+
+    if expected(1e6) < wanted:
         return np.inf
     low, high = 0.0, 1.0
-    while expected_probability(probabilities, high * nats) < wanted:
+    while expected(high) < wanted:
         low, high = high, 2.0 * high
     for _ in range(40):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if expected_probability(probabilities, middle * nats) >= wanted else (middle, high)
+        low, high = (low, middle) if expected(middle) >= wanted else (middle, high)
     return high * seconds
 
 

@@ -14,8 +14,8 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.estimate.start_states import starts_of
 from greybox_torch.model import GreyBoxModel
 
-MOST = 3
-"""Rivals that are kept beside a finding."""
+FEW, MOST = 3, 6
+"""Rivals that are kept beside a finding: so many, and at most so many where none of these is decided against."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,8 @@ def rivals(state: SearchState, settings: DiagnosisSettings, beliefs: Beliefs = N
         if step is None or step.taken is None or step.taken.unknown:
             continue
         ranked = shares(step.taken, step.ranked, settings, beliefs, step.led)
-        beside = [(r, p) for r, p in ranked if not r.unknown and r.gain > 0][:MOST]
+        named = [(r, p) for r, p in ranked if not r.unknown and r.gain > 0][:MOST]
+        beside = [(r, p) for k, (r, p) in enumerate(named) if k < FEW or p >= settings.least_class_share]
         own = settings.highest_probability - sum(p for _, p in ranked)
         found += [_rival(effect.prefix, r, p) for r, p in [(step.taken, own), *beside]]
     return tuple(found)

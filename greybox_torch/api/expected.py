@@ -1,0 +1,59 @@
+"""What a designed recording is expected to say in a diagnosis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.experiment_design.separation import expected_probability, seconds_for
+
+AS_IN_A_DIAGNOSIS = DiagnosisSettings()
+VISIBLE = AS_IN_A_DIAGNOSIS.visible_divergence
+"""Nats below which two hypotheses cannot be told apart, as in a diagnosis."""
+
+
+@dataclass(frozen=True)
+class Expected:
+    """What a recording is expected to say: probabilities ``before`` it, and the evidence ``nats`` (n, n) for each hypothesis (row, if it
+    is right) against each other one. ``random_nats``: those after a random multisine of the same power.
+
+    Hypotheses that this input does not tell apart count as one, and evidence as it counts in a diagnosis.
+    """
+
+    before: tuple[float, ...]
+    nats: np.ndarray
+    random_nats: np.ndarray | None
+
+    @property
+    def alike(self) -> np.ndarray:
+        """Whether two hypotheses, (n, n), are not told apart."""
+        return np.minimum(self.nats, self.nats.T) < VISIBLE
+
+    @property
+    def decides(self) -> bool:
+        """Whether it tells any of them apart."""
+        return not bool(self.alike.all())
+
+    @property
+    def after(self) -> float:
+        """The expected probability of the right one."""
+        return min(self._probability(self.nats), AS_IN_A_DIAGNOSIS.highest_probability)
+
+    @property
+    def random(self) -> float | None:
+        """The expected probability of the right one after the random input."""
+        if self.random_nats is None:
+            return None
+        return min(self._probability(self.random_nats), AS_IN_A_DIAGNOSIS.highest_probability)
+
+    def seconds_for(self, wanted: float, seconds: float) -> float:
+        """How long a recording like one of so many ``seconds`` must be for a ``wanted`` expected probability."""
+        nats = np.where(self.alike, 0.0, self.nats)
+        temperature = AS_IN_A_DIAGNOSIS.windows_temperature
+        return seconds_for(self.before, nats, seconds, wanted, alike=self.alike, temperature=temperature)
+
+    def _probability(self, nats: np.ndarray) -> float:
+        temperature = AS_IN_A_DIAGNOSIS.windows_temperature
+        return expected_probability(self.before, nats, alike=self.alike, temperature=temperature)

@@ -1,0 +1,128 @@
+"""What a rival cannot imitate of another hypothesis' outputs, by other parameters and start states, however far these have to go.
+
+Near its own estimates a rival is linear in them, and :func:`separation.evidence` says at once what it cannot imitate. Where a machine is
+unstable, or two laws become the same far away, it is not: there the rival is estimated anew, as a diagnosis of the new recording will.
+Source: K. Levenberg, Quarterly of Applied Mathematics 2, 1944; D. W. Marquardt, SIAM Journal 11, 1963.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.experiment_design.contender import Contender, Prediction
+from greybox_torch.experiment_design.separation import scaled_inverse
+from greybox_torch.simulation.records import Records
+
+
+@dataclass(frozen=True)
+class Effort:
+    """At most so many steps, while each lowers the evidence by more than a share ``enough`` of it."""
+
+    steps: int
+    enough: float
+
+
+QUICK, THOROUGH = Effort(12, 0.02), Effort(60, 1e-3)
+NOTHING = 0.05
+"""Nats below which nothing is left to imitate."""
+DAMPED, LESS, MORE, HEAVIEST = 1e-6, 0.1, 30.0, 1e6
+"""Damping to begin with, its factors after a step that helps and one that does not, and where the estimation gives up."""
+
+
+@dataclass(frozen=True)
+class _Point:
+    """A rival's values (n_p,) and start states (n_x,), with the evidence against it there, its gradient (n_d,) and curvature (n_d, n_d)."""
+
+    values: np.ndarray
+    start: np.ndarray
+    nats: float
+    gradient: np.ndarray
+    curvature: np.ndarray
+
+
+def not_imitated(
+    right: np.ndarray,
+    rival: Contender,
+    first: Prediction,
+    records: Records,
+    level: np.ndarray,
+    effort: Effort = THOROUGH,
+) -> float:
+    """The least over the rival's unknowns of ½ ‖(y − y_rival) / level‖² + ½ δᵀ I δ, in nats, with δ from its estimates.
+
+    Args:
+        right: the outputs to be imitated, y (N, n_y).
+        first: the rival's prediction of the one record at its estimates, with slopes.
+        records: that record.
+        level: errors (n_y,), in units of which outputs differ.
+    """
+    point = _point(right, rival, first, level, rival.problem.values, first.start[0])
+    damping = DAMPED
+    if not np.isfinite(point.curvature).all():
+        return 0.0  # where it cannot be judged, nothing is promised
+    for _ in range(effort.steps):
+        if point.nats < NOTHING:
+            break
+        moved = _moved(right, rival, records, level, point, damping)
+        if moved is None or not moved.nats < point.nats:
+            damping *= MORE
+            if damping > HEAVIEST:
+                break
+            continue
+        settled = point.nats - moved.nats < effort.enough * point.nats
+        point, damping = moved, damping * LESS
+        if settled:
+            break
+    return point.nats
+
+
+def _moved(
+    right: np.ndarray, rival: Contender, records: Records, level: np.ndarray, at: _Point, damping: float
+) -> _Point | None:
+    """The point one damped step on, None where the rival cannot be simulated there."""
+    problem, count = rival.problem, len(rival.free)
+    moving = np.concatenate([~_held(rival, at), np.ones(len(at.gradient) - count, dtype=bool)])
+    heavier = (at.curvature + damping * np.diag(np.diag(at.curvature))) * np.outer(moving, moving)
+    step = -scaled_inverse(heavier) @ at.gradient
+    values, start = at.values.copy(), at.start.copy()
+    values[rival.free] += step[:count]
+    values = np.clip(values, problem.lower, problem.upper)
+    start[problem.free_states] += step[count:]
+    if not (np.isfinite(values).all() and np.isfinite(start).all() and problem.admissible(values)):
+        return None
+    prediction = rival.at(values).predicted(records, start=start)
+    if prediction.slopes is None or not (np.isfinite(prediction.y).all() and np.isfinite(prediction.slopes).all()):
+        return None
+    point = _point(right, rival, prediction, level, values, start)
+    return point if np.isfinite(point.curvature).all() else None
+
+
+def _held(rival: Contender, at: _Point) -> np.ndarray:
+    """Which free parameters stand at a bound and would go beyond it, (n_p,)."""
+    values, free = at.values[rival.free], rival.free
+    down = at.gradient[: len(free)] > 0
+    return np.where(down, values <= rival.problem.lower[free], values >= rival.problem.upper[free])
+
+
+def _point(
+    right: np.ndarray,
+    rival: Contender,
+    prediction: Prediction,
+    level: np.ndarray,
+    values: np.ndarray,
+    start: np.ndarray,
+) -> _Point:
+    assert prediction.slopes is not None
+    slopes = prediction.slopes[0] / level[:, None]
+    slopes = slopes.reshape(-1, slopes.shape[-1])
+    left = ((right - prediction.y[0]) / level).ravel()
+    away = (values - rival.problem.values)[rival.free]
+    pull, count = rival.information @ away, len(rival.free)
+    with np.errstate(over="ignore", invalid="ignore"):
+        gradient, curvature = -slopes.T @ left, slopes.T @ slopes
+        nats = 0.5 * float(left @ left + away @ pull)
+    gradient[:count] += pull
+    curvature[:count, :count] += rival.information
+    return _Point(values, start, nats, gradient, curvature)

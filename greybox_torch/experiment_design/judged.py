@@ -1,0 +1,50 @@
+"""An input judged as a recording of it will be: every rival estimated anew, whichever parameters the right hypothesis has."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from greybox_torch.experiment_design.aim import Aim, Trial
+from greybox_torch.experiment_design.contender import Contender
+from greybox_torch.experiment_design.imitation import QUICK, Effort, not_imitated
+from greybox_torch.experiment_design.limits import Limits
+from greybox_torch.experiment_design.simulated import input_records, within
+
+DRAWS = 2
+"""Draws of every hypothesis' parameters from what is known of them, beside its estimates."""
+OUTSIDE = 1.0
+"""What an input loses that keeps the limits at the estimates and not at a draw: it is taken where there is no other."""
+
+Draws = Sequence[Sequence[Contender]]
+
+
+def draws_of(aim: Aim, seed: int) -> Draws:
+    """The hypotheses at their estimates, and at draws of their parameters, the same for every input."""
+    rng = np.random.default_rng(seed)
+    return [aim.contenders, *(tuple(c.drawn(rng) for c in aim.contenders) for _ in range(DRAWS))]
+
+
+def judged(aim: Aim, draws: Draws, trial: Trial, time: np.ndarray, limits: Limits, effort: Effort = QUICK) -> Trial:
+    """The trial with its evidence, typical of the draws (the mean of its logarithm), and its score by that."""
+    found = [_nats(aim, own, trial, time, effort) for own in draws]
+    nats = np.expm1(np.mean([np.log1p(n) for n in found], axis=0))
+    fine = all(within(own, limits, [trial.inputs], time)[0] for own in draws[1:])
+    score = float(np.mean([aim.decided(n) for n in found])) - (0.0 if fine else OUTSIDE)
+    return replace(trial, nats=nats, score=score)
+
+
+def _nats(aim: Aim, rights: Sequence[Contender], trial: Trial, time: np.ndarray, effort: Effort) -> np.ndarray:
+    """The evidence (n, n) for each hypothesis with these parameters against each other one."""
+    count = len(aim.contenders)
+    found = np.zeros((count, count))
+    outputs = [one.predicted(input_records(one, [trial.inputs], time), tangents=False).y[0] for one in rights]
+    for b, rival in enumerate(aim.contenders):
+        records = input_records(rival, [trial.inputs], time)
+        first = rival.predicted(records)
+        for a, own in enumerate(outputs):
+            if a != b and np.isfinite(own).all():
+                found[a, b] = not_imitated(own, rival, first, records, aim.level, effort)
+    return found
