@@ -43,6 +43,11 @@ def also_right(right: Collection[Pair], alike: Collection[Collection[Pair]]) -> 
         found |= more
 
 
+def leading(before: Mapping[Pair, float], alike: Collection[Collection[Pair]]) -> float:
+    """The probability of the likeliest hypothesis before a recording, together with those that no input tells from it."""
+    return max(sum(before.get(p, 0.0) for p in also_right([one], alike)) for one in before)
+
+
 def realised(designed: gt.DesignResult, right: int, rival: int, before: DataSet, after: DataSet) -> float:
     """By how many nats a new recording tells the right hypothesis from a rival: both estimated without it, and with it.
 

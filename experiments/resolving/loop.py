@@ -13,7 +13,7 @@ import greybox_torch as gt
 from experiments.concealed.excitation import multisine
 from experiments.concealed.workshop.plant import Array
 from experiments.resolving.bench import CARD, Bench, draw
-from experiments.resolving.judging import also_right, is_open, nearest, pairs_of, probability_of, realised
+from experiments.resolving.judging import also_right, is_open, leading, nearest, pairs_of, probability_of, realised
 from greybox_torch.errors import UserError
 from greybox_torch.files import json_text, write_text
 from greybox_torch.systems import load_model
@@ -53,7 +53,7 @@ def _asked(bench: Bench, folder: Path, found: gt.DiagnosisResult, seed: int) -> 
         "expected": designed.expected.after,
         "expected_random": designed.expected.random,
         "alike": [[list(a), list(b)] for a, b in alike],
-        "decides": len(alike) < len(designed.names) * (len(designed.names) - 1) // 2,
+        "leading": leading(dict(zip(pairs.values(), designed.expected.before, strict=True)), alike),
         "before": probability_of(found.to_dict(), wanted),
     }
     inputs = np.stack([designed.inputs[c.name] for c in bench.machine.inputs], axis=1)

@@ -31,8 +31,8 @@ def write_page(out: Path, page: Path, command: str) -> None:
 
 
 def is_counted(outcome: Outcome) -> bool:
-    """Whether something was open that the design says an input decides."""
-    return bool(outcome["open"]) and bool(outcome.get("decides")) and outcome["before"] < SURE
+    """Whether something was open that the design says an input decides, as the verdict had it."""
+    return bool(outcome["open"]) and outcome.get("leading", 1.0) < SURE
 
 
 def text(outcomes: Sequence[Outcome], command: str, about: Mapping[str, str]) -> str:
@@ -47,6 +47,7 @@ def text(outcomes: Sequence[Outcome], command: str, about: Mapping[str, str]) ->
         ("cases drawn; verdicts left open", f"{len(outcomes)}; {len(opened)}"),
         ("of them without a design, and why", _refused(opened)),
         ("of them nothing that an input decides is open, as the design says", str(len(designed) - len(counted))),
+        ("verdicts among these that were wrong: sure of another answer", str(sum(_wrong_before(o) for o in designed))),
         ("left to decide", str(len(counted))),
         (f"**decided rightly at {SURE:g} or more, with the designed recording**", str(_right(counted, "designed"))),
         ("the same with a random multisine of the same power", str(_right(counted, "random"))),
@@ -107,6 +108,10 @@ def draw(outcomes: Sequence[Outcome], file: Path) -> None:
     if shown:
         axes.legend(fontsize="small", frameon=False)
     figure.savefig(file, dpi=130)
+
+
+def _wrong_before(outcome: Outcome) -> bool:
+    return not is_counted(outcome) and outcome["before"] <= 1.0 - SURE
 
 
 def _middle(values: Sequence[float]) -> str:

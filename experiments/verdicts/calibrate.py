@@ -2,8 +2,9 @@
 
     python -m experiments.verdicts.calibrate OUT CASES VERDICTS [CASES VERDICTS]
 
-The map p' = 1 / (1 + exp(−(a + b·logit p))) is fitted on the first pair of folders; both pairs are scored with it (where there is one
-pair only, the map is fitted on every other finding and scored on the rest). Writes OUT/reliability.png and OUT/calibration.json.
+Of names, and of statements: the whole class (``one_of``) that a finding is told as, its own name where it stands alone. The map
+p' = 1 / (1 + exp(−(a + b·logit p))) is fitted on the first pair of folders; both pairs are scored with it (where there is one pair only,
+the map is fitted on every other finding and scored on the rest). Writes OUT/calibration.json, OUT/reliability.png and OUT/classes.png.
 
 Source: J. C. Platt, "Probabilistic outputs for support vector machines", 1999; G. W. Brier, 1950.
 """
@@ -19,16 +20,18 @@ from typing import Any
 
 import numpy as np
 
+from experiments.verdicts.rates import Rate
 from experiments.verdicts.scoring import score_all
 
 EDGES = (0.0, 0.3, 0.5, 0.7, 0.9, 1.0)
 STEPS = 100
 
 
-def collect(cases: Path, verdicts: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Claimed probabilities (n,) of all findings, and whether each is right (n,)."""
+def collect(cases: Path, verdicts: Path, *, classes: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    """Claimed probabilities (n,) of all findings, and whether each is right (n,); of their classes where these are asked for."""
     findings = [f for scored in score_all(cases, verdicts) for f in scored.findings]
-    return np.array([f.probability for f in findings]), np.array([f.right for f in findings], dtype=float)
+    told = [(f.class_probability, f.class_right) if classes else (f.probability, f.right) for f in findings]
+    return np.array([p for p, _ in told], dtype=float), np.array([right for _, right in told], dtype=float)
 
 
 def fitted_map(claimed: np.ndarray, right: np.ndarray) -> tuple[float, float]:
@@ -53,16 +56,19 @@ def brier(claimed: np.ndarray, right: np.ndarray) -> float:
 
 
 def reliability(claimed: np.ndarray, right: np.ndarray) -> list[dict[str, float]]:
-    """Per bin of claimed probability: how many findings, the mean claim, and the share that is right."""
+    """Per bin of claimed probability: how many findings, the mean claim, the share that is right, and its exact interval of 95 %."""
     rows = []
     for low, high in pairwise(EDGES):
         inside = (claimed > low) & (claimed <= high)
         if inside.any():
+            lower, upper = Rate(int(right[inside].sum()), int(inside.sum())).interval
             rows.append(
                 {
                     "findings": int(inside.sum()),
                     "claimed": float(claimed[inside].mean()),
                     "right": float(right[inside].mean()),
+                    "lower": lower,
+                    "upper": upper,
                 }
             )
     return rows
@@ -102,10 +108,11 @@ def _logit(p: np.ndarray) -> np.ndarray:
     return np.log(bounded / (1 - bounded))
 
 
-def main(out: Path, folders: Sequence[Path]) -> None:
-    claimed, right = collect(*folders[:2])
+def scored(out: Path, folders: Sequence[Path], *, classes: bool) -> dict[str, Any]:
+    """What is claimed against what is right, fitted on the first pair of folders, and the diagram."""
+    claimed, right = collect(*folders[:2], classes=classes)
     if len(folders) > 2:
-        fit_on, test_on = (claimed, right), collect(*folders[2:4])
+        fit_on, test_on = (claimed, right), collect(*folders[2:4], classes=classes)
     else:
         fit_on, test_on = (claimed[::2], right[::2]), (claimed[1::2], right[1::2])
     weights = fitted_map(*fit_on)
@@ -119,9 +126,14 @@ def main(out: Path, folders: Sequence[Path]) -> None:
             "reliability": reliability(p, r),
         }
     out.mkdir(parents=True, exist_ok=True)
-    (out / "calibration.json").write_text(json.dumps(result, indent=1) + "\n")
     tested = (("as claimed", reliability(*test_on)), ("mapped", reliability(mapped(test_on[0], weights), test_on[1])))
-    draw(tested, out / "reliability.png")
+    draw(tested, out / ("classes.png" if classes else "reliability.png"))
+    return result
+
+
+def main(out: Path, folders: Sequence[Path]) -> None:
+    result = scored(out, folders, classes=False) | {"classes": scored(out, folders, classes=True)}
+    (out / "calibration.json").write_text(json.dumps(result, indent=1) + "\n")
     print(json.dumps(result, indent=1))
 
 

@@ -73,12 +73,18 @@ def test_probabilities_of_answers_are_added_once() -> None:
     }
 
 
+def test_what_leads_counts_with_what_no_input_tells_from_it() -> None:
+    before = {("a", "lag"): 0.4, ("b", "lag"): 0.35, ("a", "delay"): 0.2}
+    assert judging.leading(before, []) == 0.4
+    assert judging.leading(before, [[("a", "lag"), ("b", "lag")]]) == pytest.approx(0.75)
+
+
 def outcome(number: int, before: float, after: float, realised: float) -> dict:
     said = {"probability": after, "open": after < 0.9}
     return {
         "number": number,
         "open": True,
-        "decides": True,
+        "leading": max(before, 0.5),
         "question": "lag or delay",
         "effect": "lag",
         "before": before,

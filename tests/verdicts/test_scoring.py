@@ -158,6 +158,8 @@ def test_the_whole_script(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
         answer.mkdir(parents=True)
         (case / "key.json").write_text(json.dumps(KEY))
         said = verdict(("motor", "coulomb_friction" if rng.random() < 0.7 else "gravity", 0.6 + 0.03 * k))
+        members = [{"port": "motor", "mechanism": name} for name in ("gravity", "coulomb_friction")]
+        said["effects"][0]["one_of"] = {"probability": 0.97, "members": members}
         (answer / "verdict.json").write_text(json.dumps(said))
     (tmp_path / "cases" / "unanswered").mkdir()
     (tmp_path / "cases" / "unanswered" / "key.json").write_text(json.dumps(KEY))
@@ -166,7 +168,14 @@ def test_the_whole_script(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     printed = json.loads(capsys.readouterr().out)
     assert printed == json.loads((tmp_path / "out" / "calibration.json").read_text())
     assert printed["fitted on"]["findings"] == printed["tested on"]["findings"] == 6
-    assert (tmp_path / "out" / "reliability.png").stat().st_size > 5000
+    of_classes = printed["classes"]["tested on"]
+    assert of_classes["brier"] == pytest.approx(0.03**2) and of_classes["right"] == 1.0
+    assert of_classes["reliability"][0]["upper"] == 1.0
+    assert of_classes["reliability"][0]["lower"] == pytest.approx(
+        0.025 ** (1 / 6)
+    )  # Clopper and Pearson, of six of six
+    for name in ("reliability.png", "classes.png"):
+        assert (tmp_path / "out" / name).stat().st_size > 5000
 
 
 def test_the_table_counts_by_kind_and_shows_misses() -> None:

@@ -15,7 +15,7 @@ QUESTIONS: tuple[Question, ...] = (
     Question("lag or delay", "motor", ("voltage_lag", "voltage_delay"), (0.3, 1.2)),
     Question("actuator or sensor", "pendulum", ("torque_lag", "angle_slow", "torque_delay", "angle_late"), (1.0, 4.0)),
     Question("offset or force", "pendulum", ("offset", "bias", "imbalance"), (5.0, 15.0)),
-    Question("either side of a gear", "drive", ("motor_coulomb", "load_coulomb"), (0.3, 1.2)),
-    Question("stiffness or damping", "car", ("cubic", "one_way", "drag"), (1.0, 4.0)),
+    Question("either side of a gear", "drive", ("motor_coulomb", "load_coulomb"), (0.5, 1.5)),
+    Question("stiffness or damping", "car", ("cubic", "one_way", "drag"), (0.7, 1.6)),
 )
 """Drawn in turn."""

@@ -16,14 +16,18 @@ from greybox_torch.diagnosis.refit.likelihood import cost_of
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 
+LOST = 2.0
+"""Times the mean square error of the best from which a free run is somewhere else, and no measure of its hypothesis."""
+
 
 def rank_by_likelihood(
     ranked: Sequence[RankedCandidate], settings: DiagnosisSettings, budget: SearchBudget
 ) -> list[RankedCandidate]:
     """``ranked`` with the named ones that tie at the noise in the order of their likelihood, less a price for every parameter.
 
-    The price is half the logarithm of the number of samples. One whose free run is far from what its windows promise (a machine that is
-    nearly bistable) keeps its place.
+    The price is half the logarithm of the number of samples. One whose free run is farther behind than windows that tie promise keeps its
+    place, and counts as far behind as that: whole records do not speak for it. One whose free run is lost (a machine that is nearly
+    bistable) is judged by its windows alone.
 
     Source: G. Schwarz, "Estimating the dimension of a model", Annals of Statistics 6, 1978.
     """
@@ -38,6 +42,10 @@ def rank_by_likelihood(
     costs = [cost_of(r.fitted) for r in tied]
     within = min(costs) + 0.5 * settings.score_tie * samples
     weighed = {id(r): replace(r, cost=cost) for r, cost in zip(tied, costs, strict=True) if cost <= within}
+    lost = min(costs) + 0.5 * float(np.log(LOST)) * samples
+    behind = {id(r): replace(r, cost=within) for r, cost in zip(tied, costs, strict=True) if within < cost <= lost}
     price = 0.5 * float(np.log(samples))
     in_turn = iter(sorted(weighed.values(), key=lambda r: (r.cost or 0.0) + price * r.size))
-    return [next(in_turn) if id(r) in weighed else r for r in ranked]
+    ordered = [next(in_turn) if id(r) in weighed else r for r in ranked]
+    first = next(r for r in ordered if not r.unknown)
+    return ordered if first.cost is None else [behind.get(id(r), r) for r in ordered]

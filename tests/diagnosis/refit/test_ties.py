@@ -76,6 +76,21 @@ def test_what_does_not_tie_keeps_its_place_and_so_do_curves_and_what_goes_astray
     assert names(found) == ["unknown", "constant_bias", "gravity", "torque_ripple"]
 
 
+def test_a_free_run_beyond_the_tie_counts_as_far_behind_as_the_tie_goes(monkeypatch, ranked) -> None:
+    """Seen: a rival whose whole records were 32 nats worse weighed 0.24 by its windows, one 21 nats worse 0.005."""
+    edge = 100.0 + 0.5 * SETTINGS.score_tie * SAMPLES
+    order = [ranked(ConstantBias(), 1.0), ranked(Gravity(), 1.0001)]
+    own = []
+    for cost in (110.0, edge - 1.0, edge + 1.0, edge + 2000.0):
+        costing(monkeypatch, constant_bias=100.0, gravity=cost)
+        chosen, rival = rank_by_likelihood(order, SETTINGS, BUDGET)
+        assert (chosen.cost, rival.cost) == (100.0, min(cost, edge))
+        own.append(shared(chosen, [chosen, rival], SETTINGS)[0])
+    assert own == sorted(own) and own[-1] > 0.96
+    costing(monkeypatch, constant_bias=edge + 1.0, gravity=100.0)
+    assert [r.cost for r in rank_by_likelihood(order, SETTINGS, BUDGET)] == [None, 100.0]
+
+
 def test_above_the_noise_and_alone_nothing_is_weighed(ranked) -> None:
     loud = [ranked(Gravity(), 3.0, 2), ranked(ConstantBias(), 3.0)]
     alone = [ranked(Gravity(), 1.0, 2)]
