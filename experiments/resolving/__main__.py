@@ -4,7 +4,7 @@
 
 Draws cases on four small machines until so many verdicts are open (a class, or less sure than 0.9), designs a recording for each, runs
 the machine (code that shares nothing with the tool) with it, and diagnoses again; beside it with a random multisine of the same power.
-A process for each case; interrupted, the same command goes on where it was. Without --cases only the page is written.
+A process for each case; interrupted, the same command goes on where it was. With --cases 0 only the page is written, of what there is.
 """
 
 from __future__ import annotations
@@ -55,6 +55,11 @@ def _outcome(folder: Path, seed: int, number: int, limit: float) -> dict[str, An
             _tell(f"c{number:03d}: no outcome after {time.perf_counter() - began:.0f} s (exit {process.exitcode})")
             return {"failed": True}
     return json.loads(file.read_text(encoding="utf-8"))
+
+
+def _opened(out: Path) -> int:
+    """How many of the cases that lie in a folder were open."""
+    return sum(json.loads(file.read_text(encoding="utf-8"))["open"] for file in out.glob(f"*/{OUTCOME}"))
 
 
 def _said(outcome: dict[str, Any]) -> str:

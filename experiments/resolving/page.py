@@ -58,7 +58,10 @@ def text(outcomes: Sequence[Outcome], command: str, about: Mapping[str, str]) ->
             ", ".join(str(sum(not o[k] for o in designed)) for k in ("limits_kept_in_simulation", "limits_kept")),
         ),
         ("seconds of a design on the clock: median, largest", _middle(seconds)),
-        ("processor seconds of it: median, largest", _middle([o["design_processor"] for o in designed])),
+        (
+            "processor seconds of it, the compiler's not counted: median, largest",
+            _middle([o["design_processor"] for o in designed]),
+        ),
     ]
     machine = f"{about['processor']}, {about['cores']} cores, shared with other work"
     head = f"`{command}`\n\nCommit {about['commit']}, {about['date']}, {machine}."
