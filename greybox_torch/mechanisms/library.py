@@ -31,6 +31,7 @@ from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorGain,
 from greybox_torch.mechanisms.transmission import Backlash, HystereticSpring, NonlinearDamping, NonlinearStiffness
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import FrictionWarmup, LoadDependentFriction, PositionDependentFriction
 
 LIBRARY: dict[str, type[Mechanism]] = {
@@ -70,7 +71,9 @@ LIBRARY: dict[str, type[Mechanism]] = {
     )
 }
 
-LEARNED: dict[str, type[Mechanism]] = {curve.name: curve for curve in (Unknown, FrictionNet, ResidualNet, MemoryNet)}
+LEARNED: dict[str, type[Mechanism]] = {
+    learned.name: learned for learned in (Unknown, UnknownWithMemory, FrictionNet, ResidualNet, MemoryNet)
+}
 """Curves and networks that are learned where no law has a name; never hypotheses of their own."""
 
 

@@ -46,6 +46,8 @@ class Mechanism:
     """Whether the law changes a coupling's deflection (:meth:`deflection`) instead of adding a force."""
     fades: ClassVar[bool] = False
     """Whether the memory is gone after a few samples, so that a window may begin with any."""
+    free: ClassVar[bool] = False
+    """Whether it is no law but the answer `unknown`: whatever curve or response the recordings ask for."""
     linear: ClassVar[bool] = False
     """Whether signals pass through it linearly, so that a frequency response shows what it does."""
     generalises: ClassVar[tuple[str, ...]] = ()

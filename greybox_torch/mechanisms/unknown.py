@@ -20,6 +20,7 @@ class Unknown(Mechanism):
 
     name = "unknown"
     kinds = ("body", "coupling", "balance", "actuator", "sensor")
+    free = True
     explanation = "Something repeatable is missing here that no known mechanism describes; the curve shows what."
     source = "radial basis functions: D. S. Broomhead, D. Lowe, Complex Systems 2, 1988"
 
@@ -42,9 +43,13 @@ class Unknown(Mechanism):
         return [*heights, first, spacing]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        place = torch.clamp((s[self.signal] - p.first) / p.spacing, 1.0, self.knots - 2.0)
-        curve = sum(p[f"w_{k}"] * torch.exp(-((place - k) ** 2)) for k in range(self.knots))
+        curve = self.curve(s, p)
         return curve * s[self.factor] if self.factor in s else curve
+
+    def curve(self, s: Signals, p: Signals) -> Any:
+        """The sum of the bumps at the signal."""
+        place = torch.clamp((s[self.signal] - p.first) / p.spacing, 1.0, self.knots - 2.0)
+        return sum(p[f"w_{k}"] * torch.exp(-((place - k) ** 2)) for k in range(self.knots))
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(tuple(f"w_{k}" for k in range(self.knots)))]
