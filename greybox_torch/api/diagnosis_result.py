@@ -95,7 +95,7 @@ class DiagnosisResult(Result):
         """Of the model with its effects, by name: value, standard deviation, unit, and whether it was fixed."""
         deviations: dict[str, Any] = {}
         for effect in self.effects:
-            prefix = f"{effect.port}.{effect.mechanism}."
+            prefix = f"{effect.prefix}."
             deviations |= {f"{prefix}{name}": entry.get("std") for name, entry in effect.parameters.items()}
         return {
             p.name: FoundParameter(self.found.values[p.name], deviations.get(p.name), p.unit, p.fixed)

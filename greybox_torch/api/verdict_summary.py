@@ -16,7 +16,6 @@ from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.tables import print_table
 
-UNKNOWN = "unknown"
 _COLUMNS = ["port", "mechanism", "probability", "explains [%]", "parameter", "value", "std", "unit"]
 
 
@@ -54,12 +53,12 @@ def verdict_scores(verdict: Verdict) -> dict[str, tuple[Score, ...]]:
 
 
 def _rows(effect: Effect) -> Iterator[list[str | float]]:
-    """A line for every parameter of a law; one for a curve, whose heights mean little one by one."""
+    """A line for every parameter of a law or a response; one for a curve, whose heights mean little one by one."""
     first: list[str | float] = [effect.port, effect.mechanism, effect.probability, 100.0 * effect.explained]
-    if effect.mechanism == UNKNOWN or not effect.parameters:
+    if not effect.shown_parameters:
         yield [*first, f"curve over {', '.join(effect.signals)}", "", "", ""]
         return
-    for name, entry in effect.parameters.items():
+    for name, entry in effect.shown_parameters.items():
         yield [*first, name, float(entry["value"]), _deviation(entry.get("std")), entry.get("unit", "")]
         first = [""] * len(first)
 

@@ -44,7 +44,8 @@ class Beliefs:
 
     def weight(self, attachment: Attachment) -> float:
         """The odds of an effect; one where nothing is said of it."""
-        return math.exp(self.log_odds(attachment.port, attachment.mechanism.name))
+        mechanism = Unknown.name if attachment.mechanism.free else attachment.mechanism.name
+        return math.exp(self.log_odds(attachment.port, mechanism))
 
     def exclude(self, attachment: Attachment) -> bool:
         """Whether an effect is not to be considered."""

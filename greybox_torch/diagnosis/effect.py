@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken_at
 
 
@@ -97,14 +98,32 @@ class Effect:
     size: float = float("nan")
     """Share of the mean squared held-out mismatch of the refitted plain model that leaving the effect out brings back."""
 
+    memory: Memory | None = None
+    """The response of an unknown effect that depends on the past; its ``curve`` is what the force settles at."""
+
     one_of: OneOf | None = None
     """What these recordings cannot tell from it, as one statement; None where it stands alone."""
+
+    @property
+    def prefix(self) -> str:
+        """What the names of its parameters begin with."""
+        return f"{self.port}.{self.mechanism}" + ("" if self.memory is None else "_with_memory")
+
+    @property
+    def shown_parameters(self) -> Mapping[str, Mapping[str, Any]]:
+        """Those that mean something one by one: all but the heights of a curve."""
+        if self.mechanism != "unknown":
+            return self.parameters
+        if self.memory is None:
+            return {}
+        return {n: v for n, v in self.parameters.items() if not self.memory.curved or n == "T"}
 
     @property
     def headline(self) -> str:
         """The finding as a headline has it: the statement of what cannot be told apart, or the law and its place."""
         if self.one_of is None:
-            return f"{spoken_at(self.mechanism, self.port)} (probability {self.probability:.2f})"
+            past = "" if self.memory is None else f", {self.memory.told}"
+            return f"{spoken_at(self.mechanism, self.port)}{past} (probability {self.probability:.2f})"
         return f"{self.one_of.statement} (probability {self.one_of.probability:.2f}, {self.one_of.likeliest})"
 
     @property
@@ -134,6 +153,8 @@ class Effect:
             result["ceiling"] = self.ceiling
         if self.curve is not None and self.mechanism == "unknown":
             result["curve"] = self.curve.as_json()
+        if self.memory is not None:
+            result["memory"] = self.memory.as_json()
         return result
 
     def as_refinement_json(self) -> dict[str, Any]:

@@ -57,7 +57,8 @@ def in_words(mechanism: str) -> str:
 
 def spoken(mechanism: str) -> str:
     """A mechanism's name as a sentence has it."""
-    return "an unknown effect" if mechanism == "unknown" else in_words(mechanism)
+    unknown = {"unknown": "an unknown effect", "unknown_with_memory": "an unknown effect with memory"}
+    return unknown.get(mechanism) or in_words(mechanism)
 
 
 def spoken_at(mechanism: str, port: str) -> str:

@@ -144,7 +144,7 @@ class Verdict:
             why = (
                 "What it is was not looked for, as the beliefs exclude every hypothesis."
                 if not self.looked
-                else "No law of the library and no curve of one signal explains it."
+                else "No law of the library and no curve of one signal explains it, with or without memory."
                 if self.complete
                 else "The search was stopped before it could say what."
             )

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.effect import Curve, Effect, Profile
+from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.diagnosis.one_of import Alternative
 from greybox_torch.diagnosis.verdict import Trace, Verdict
 from greybox_torch.estimate.comparison import Score
@@ -41,6 +42,27 @@ UNKNOWN = replace(
     probability=0.88,
     parameters={"w_0": {"value": 0.1, "std": 0.01, "unit": "N m"}},
     explanation="Something repeatable is missing here that no known mechanism describes.",
+)
+
+FREQUENCY = np.geomspace(0.05, 20.0, 41)
+REMEMBERED = 0.02 - 0.3 / (1.0 + 0.5j * FREQUENCY)
+
+MEMORY = replace(
+    UNKNOWN,
+    parameters={"T": {"value": 0.08, "std": 0.002, "unit": "s"}},
+    signals=("motor_speed",),
+    memory=Memory(
+        "motor_speed",
+        "N m/(rad/s)",
+        False,
+        1,
+        0.08,
+        0.002,
+        FREQUENCY,
+        REMEMBERED,
+        np.full(41, 0.004),
+        np.full(41, 0.02),
+    ),
 )
 
 
@@ -95,6 +117,7 @@ VERDICTS = {
     "found": (BACKLASH,),
     "several": (BACKLASH, replace(BACKLASH, port="arm_spring")),
     "unknown": (UNKNOWN,),
+    "memory": (MEMORY,),
     "nothing": (),
 }
 
@@ -107,7 +130,7 @@ def verdict(request: pytest.FixtureRequest) -> Verdict:
 
 @pytest.fixture
 def of_kind() -> Callable[[str], Verdict]:
-    """The verdict of a kind: "found", "several", "unknown", "nothing"."""
+    """The verdict of a kind: "found", "several", "unknown", "memory", "nothing"."""
     return lambda kind: verdict_of(*VERDICTS[kind])
 
 

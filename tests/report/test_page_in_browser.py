@@ -50,7 +50,7 @@ def full(verdict: Verdict) -> Verdict:
 
 @needs_browser
 def test_on_a_phone(of_kind: Callable[[str], Verdict], about: About, tmp_path: Path) -> None:
-    kinds = ("found", "unknown", "nothing")
+    kinds = ("found", "unknown", "memory", "nothing")
     for kind in kinds:
         (tmp_path / f"{kind}.html").write_text(render_page(full(of_kind(kind)), about), encoding="utf-8")
     frames = "".join(

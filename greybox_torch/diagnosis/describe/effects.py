@@ -11,6 +11,7 @@ import numpy as np
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.indistinguishable import one_of
 from greybox_torch.diagnosis.describe.law_over_data import over_data
+from greybox_torch.diagnosis.describe.memory import remembered, settled_curve
 from greybox_torch.diagnosis.describe.profiles import explained_energy, local_signals, most_of, profile
 from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
@@ -79,23 +80,26 @@ def _effect(
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     profiles = _profiles(study, state, model, attachment, site)
     timelines = () if gain is None else gain.timelines
-    mechanism = attachment.mechanism
+    mechanism, around = attachment.mechanism, study.surroundings[attachment.port]
     members = None if taken is None else one_of(model.base, taken, probability, study.settings, study.beliefs)
     return Effect(
         port=attachment.port,
-        mechanism=mechanism.name,
+        mechanism=Unknown.name if mechanism.free else mechanism.name,
         probability=probability,
         signals=tuple(signal_name(model.base, site, s) for s in mechanism.signals()),
         where=where(profiles, timelines),
         parameters=_parameters(model, attachment, final),
         explained=round(explained, 4),
         alternatives=alternatives,
-        curve=over_data(study, state.current, attachment, final.problem),
+        curve=settled_curve(attachment, around, final) or over_data(study, state.current, attachment, final.problem),
+        memory=remembered(attachment, around, final, signal_name(model.base, site, mechanism.signals()[0]))
+        if mechanism.free
+        else None,
         profiles=profiles,
         explanation=mechanism.explanation,
         source=mechanism.source,
         separating_experiment=mechanism.experiment,
-        ceiling=None if taken is None else ceiling_share(taken),
+        ceiling=None if taken is None else ceiling_share(taken, state.memory_step),
         timelines=timelines,
         one_of=members,
     )
@@ -110,18 +114,23 @@ def _probability(
         probability, alternatives = by_comparison(without, state.current, study.settings), ()
     else:
         probability, alternatives = shared(taken.taken, taken.ranked, study.settings, study.beliefs, taken.led)
-    if isinstance(attachment.mechanism, Unknown):
+    if attachment.mechanism.free:
         return probability, alternatives
     share = remaining_share(state.plain, state.current, study.settings)
     return for_all_that_is_left(probability, share, state.current, study.settings), alternatives
 
 
-def ceiling_share(done: SelectionStep) -> float | None:
+def ceiling_share(done: SelectionStep, memory: SelectionStep | None = None) -> float | None:
     """The share of the best free curve's gain, in the logarithm of the mean squared error, that the named effect of a step reaches.
 
     At most one, where the law does better than any curve; None where there is no curve beside it in the step.
+
+    Args:
+        memory: the step in which residuals with memory were offered, where there was one: fitted in the same place they count as curves.
     """
     gains = [r.gain for r in done.ranked if r.unknown]
+    if memory is not None and memory.parent.effects == done.parent.effects:
+        gains += [r.gain for r in memory.ranked]
     if done.taken is None or done.taken.unknown or not gains or done.taken.gain <= 0:
         return None
     return round(done.taken.gain / max(done.taken.gain, *gains), 4)

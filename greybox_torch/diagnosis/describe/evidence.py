@@ -42,6 +42,8 @@ def sentences(
     ]
     lines += [_noise(study, state), *detection_sentences(detected, bool(effects))]
     lines += [_step_sentence(done, study.settings) for done in state.steps]
+    asked = state.memory_step
+    lines += [] if asked is None or asked in state.steps else [_memory_sentence(asked)]
     lines += [ceiling_sentence(e) for e in effects if e.ceiling is not None]
     spoken_of = {a.prefix: _name(a) for a in state.effects}
     for prefix, gain in gains.items():
@@ -50,9 +52,9 @@ def sentences(
             f"Held out: {spoken_of.get(prefix, prefix)} removes {100 * gain.share:.1f} % of the squared error that is left without it "
             f"(95 % interval {100 * low:.1f} to {100 * high:.1f} %)."
         )
-    kept = {(e.port, e.mechanism) for e in effects}
+    kept = {e.prefix for e in effects}
     taken = [done.taken.candidate.attachment for done in state.steps if done.taken is not None]
-    lost = [_name(a) for a in taken if a.named not in kept]
+    lost = [_name(a) for a in taken if f"{a.port}.{a.mechanism.name}" not in kept]
     if lost:
         lines.append(f"Taken back, as the other experiments or effects do not bear it out: {', '.join(lost)}.")
     if dataset.held_out_by_default:
@@ -87,6 +89,18 @@ def _step_sentence(done: SelectionStep, settings: DiagnosisSettings) -> str:
     return (
         f"The best further candidate, {_name(best.candidate.attachment)}, would lower it by {100 * (1 - np.exp(-best.gain)):.2g} % "
         f"({best.significance:.1f} standard errors); claimed is what exceeds {100 * least_gain(best.fitted, settings):.0f} % and chance."
+    )
+
+
+def _memory_sentence(done: SelectionStep) -> str:
+    """What residuals with memory would do alone, in the place of what was found."""
+    asked = "As neither laws nor curves reach the noise, residuals with one and two hidden states were asked for at every port"
+    if not done.ranked:
+        return f"{asked}; none explains anything."
+    best = done.ranked[0]
+    return (
+        f"{asked}: the best, {_name(best.candidate.attachment)}, alone lowers the mean squared error of the model as it stands by a factor "
+        f"{np.exp(best.gain):.3g}."
     )
 
 

@@ -17,6 +17,7 @@ from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.problem import problem_for
+from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import cut
@@ -61,8 +62,14 @@ def in_order(ranked: Sequence[RankedCandidate], settings: DiagnosisSettings) -> 
     return sorted(ranked, key=lambda r: r.fitted.score + price * r.size)
 
 
-def rank(study: Study, current: Hypothesis, found: Sequence[Candidate]) -> list[RankedCandidate]:
-    """Refit every candidate on top of ``current`` and rank them, best first."""
+def rank(
+    study: Study, current: Hypothesis, found: Sequence[Candidate], to_beat: Hypothesis | None = None
+) -> list[RankedCandidate]:
+    """Refit every candidate on top of ``current`` and rank them, best first.
+
+    Args:
+        to_beat: what a candidate has to come near in its trial to be refitted in full; by default ``current``.
+    """
     budget = study.budget
     study.journal.offer(candidate.attachment.named for candidate in found)
     frozen = frozenset(
@@ -91,9 +98,11 @@ def rank(study: Study, current: Hypothesis, found: Sequence[Candidate]) -> list[
     first = [
         (trial.score, candidate, trial, simulator) for trial, (candidate, simulator) in trials if trial is not None
     ]
-    at_middle = [f for f in current.fits if f.windows.steps == cut(study.problem.records, middle[0]).steps]
-    before = score_of(at_middle, current.floor)
-    hopeless = before + study.settings.trial_allowance
+    before, standing = (
+        score_of([f for f in h.fits if f.windows.steps == cut(study.problem.records, middle[0]).steps], h.floor)
+        for h in (current, to_beat or current)
+    )
+    hopeless = standing + study.settings.trial_allowance
     first = sorted((entry for entry in first if entry[0] < hopeless), key=lambda entry: entry[0])
     final: list[RankedCandidate] = []
     for some in _leading_and_rest(_finalists(first, study), before, study.settings):
@@ -141,7 +150,7 @@ def _laws_behind_curve(
 ) -> list[RankedCandidate]:
     """Where a free curve leads: the named laws of the same signal at the same port, refitted from what the curve has learned."""
     best = min(final, key=lambda r: r.fitted.score, default=None)
-    if best is None or not best.unknown:
+    if best is None or not isinstance(best.candidate.attachment.mechanism, Unknown):
         return []
 
     def tried(candidate: Candidate) -> RankedCandidate | None:

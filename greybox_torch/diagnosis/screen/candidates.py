@@ -14,6 +14,7 @@ from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Port
 from greybox_torch.model.ports import Actuator, driving_body
@@ -106,6 +107,27 @@ def periodic_candidates(
 def _curves(port: Port, knots: int) -> Iterable[Unknown]:
     yield from (Unknown(signal, knots) for signal in FLEXIBLE.get(port.kind, ()))
     yield from (Unknown(signal, knots, factor) for signal, factor in GAINS.get(port.kind, ()))
+
+
+def memory_candidates(
+    model: GreyBoxModel, surroundings: Mapping[str, Surroundings], knots: int = 0
+) -> list[Attachment]:
+    """Residuals with one and two hidden states at every port, of each signal that free curves are tried over.
+
+    With ``knots``, those of one state with a curve in front.
+
+    Not of a position that would have to be integrated from the speed: what it begins at would not be known.
+    """
+    found = []
+    for port in model.all_ports:
+        for signal in FLEXIBLE.get(port.kind, ()):
+            integrated = signal == "position" and isinstance(port, Body) and port.position is None
+            if signal in surroundings[port.name].ranges and not integrated:
+                kinds = (
+                    [UnknownWithMemory(signal, 1, knots)] if knots else [UnknownWithMemory(signal, m) for m in (1, 2)]
+                )
+                found += [attach(model, port.name, mechanism) for mechanism in kinds]
+    return found
 
 
 def _is_angle(around: Surroundings) -> bool:

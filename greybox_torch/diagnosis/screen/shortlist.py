@@ -12,7 +12,6 @@ from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
-from greybox_torch.mechanisms.unknown import Unknown
 
 
 @dataclass(frozen=True)
@@ -31,8 +30,8 @@ class Candidate:
 
     @property
     def unknown(self) -> bool:
-        """Whether it is a free curve."""
-        return isinstance(self.attachment.mechanism, Unknown)
+        """Whether it is a free curve or response."""
+        return self.attachment.mechanism.free
 
 
 def shortlist(study: Study, screened: Sequence[Sequence[ScreenScore]], fits: Sequence[WindowFit]) -> list[Candidate]:
@@ -47,10 +46,8 @@ def shortlist(study: Study, screened: Sequence[Sequence[ScreenScore]], fits: Seq
     """
 
     def first_few(best: list[ScreenScore]) -> list[ScreenScore]:
-        named = _with_ties(study, [b for b in best if not isinstance(b.attachment.mechanism, Unknown)])
-        return (
-            named + [b for b in best if isinstance(b.attachment.mechanism, Unknown)][: study.budget.curves_per_length]
-        )
+        named = _with_ties(study, [b for b in best if not b.attachment.mechanism.free])
+        return named + [b for b in best if b.attachment.mechanism.free][: study.budget.curves_per_length]
 
     return _followed(study, screened, fits, first_few)
 
@@ -93,7 +90,7 @@ def _followed(
             identity = identity_of(score.attachment)
             shape = suggested(score, surroundings)
             starts = ({**fitted, **card, **shape}, {**fitted, **shape})
-            if isinstance(score.attachment.mechanism, Unknown):
+            if getattr(score.attachment.mechanism, "knots", 0):
                 starts = (
                     {**fitted, **shape},
                     {**fitted, **_lower(score, shape, study.budget.part_of_curve)},
@@ -134,6 +131,7 @@ def identity_of(attachment: Attachment) -> tuple:
         mechanism.name,
         attachment.label,
         getattr(mechanism, "signal", ""),
+        getattr(mechanism, "modes", 0),
         None if order is None else round(order, 2),
     )
 

@@ -29,6 +29,7 @@ def with_finer_curve(study: Study, state: SearchState) -> Stage[SearchState]:
 
 def _may_be_finer(study: Study, state: SearchState) -> bool:
     curve = state.effects[-1].mechanism
-    assert isinstance(curve, Unknown)
+    if not isinstance(curve, Unknown):
+        return False  # a response with memory
     wanted = len(state.current.problem.free_names) + curve.knots
     return not curve.only_coarse and wanted < study.budget.most_parameters

@@ -9,6 +9,7 @@ from greybox_torch.diagnosis.hypothesis.above_noise import only_noise, times_noi
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
 from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
+from greybox_torch.diagnosis.select.memory import completed_by_memory
 from greybox_torch.diagnosis.select.remaining import completes
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import Stage, only_if
@@ -22,6 +23,10 @@ def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> St
         curves: whether free curves are offered.
     """
     while len(state.effects) < study.budget.most_effects and not _done(study, state):
+        if curves:
+            state = yield from completed_by_memory(study, state)
+        if _done(study, state):
+            break
         before = state
         state = yield from forward_step(study, before, curves=curves)
         if not state.took_one and _fine_curves_may_help(study, state, curves) and not little_is_left(study, state):

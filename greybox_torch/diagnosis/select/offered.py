@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
-from greybox_torch.diagnosis.screen.candidates import candidates, periodic_candidates
+from greybox_torch.diagnosis.screen.candidates import candidates, memory_candidates, periodic_candidates
 from greybox_torch.diagnosis.screen.from_motion import candidates_from_motion
 from greybox_torch.diagnosis.screen.periodic_orders import distinct_orders, scan_orders
 from greybox_torch.diagnosis.screen.score_test import Screen, ScreenScore
@@ -25,8 +26,19 @@ def screen_scores(study: Study, state: SearchState, *, curves: bool, fine: bool)
         fine: offer curves with many knots, and nothing else.
     """
     study.working_on("screening fine curves" if fine else "screening every port and mechanism")
-    model, at = study.problem.model, state.current
     every = _fine_curves(study) if fine else _offered(study, state, curves)
+    return _scored(study, state, every)
+
+
+def memory_scores(study: Study, state: SearchState, knots: int = 0) -> tuple[tuple[ScreenScore, ...], ...]:
+    """By window length, the scores of residuals with memory at every port; with ``knots``, of those with a curve in front."""
+    study.working_on("screening residuals with memory")
+    return _scored(study, state, memory_candidates(study.problem.model, study.surroundings, knots))
+
+
+def _scored(study: Study, state: SearchState, every: Sequence[Attachment]) -> tuple[tuple[ScreenScore, ...], ...]:
+    """By window length, the scores of those that are not there yet, nor excluded."""
+    model, at = study.problem.model, state.current
     offered = [a for a in every if not (_is_there(a, at.effects) or study.beliefs.exclude(a))]
     if not offered:
         return tuple(() for _ in at.fits)

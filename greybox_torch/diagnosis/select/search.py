@@ -10,6 +10,7 @@ from greybox_torch.diagnosis.select.choice import priced_score
 from greybox_torch.diagnosis.select.explore import explore
 from greybox_torch.diagnosis.select.forward import take_effects
 from greybox_torch.diagnosis.select.forward_step import forward_step
+from greybox_torch.diagnosis.select.memory import with_memory
 from greybox_torch.diagnosis.select.posterior import shared
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage, result_of
@@ -28,7 +29,12 @@ def search(study: Study, state: SearchState) -> Stage[SearchState]:
             break
         state = yield from take_effects(study, state)
         state = yield from drop_superfluous(study, state)
-    return state
+    before = state
+    state = yield from with_memory(study, before)
+    if state.current is before.current:
+        return state
+    state = yield from take_effects(study, state)
+    return (yield from drop_superfluous(study, state))
 
 
 def revise(study: Study, state: SearchState) -> Stage[SearchState]:

@@ -9,7 +9,6 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.unknown import Unknown
 
 
 @dataclass(frozen=True)
@@ -30,7 +29,8 @@ class SearchState:
     """The model as it stands (``plain``), the hypothesis so far (``current``), and the steps that led to it.
 
     ``without``: by effect, the current hypothesis refitted without it; empty until that was compared. ``named``: effects with names that
-    were found in the place of a free curve that goes farther.
+    were found in the place of a free curve that goes farther. ``memory``: the model with a residual with memory alone, where that
+    was tried in the place of all that was found, or what was left of it.
     """
 
     plain: Hypothesis
@@ -38,6 +38,12 @@ class SearchState:
     steps: tuple[SelectionStep, ...] = ()
     without: Mapping[str, Hypothesis] = field(default_factory=dict)
     named: SearchState | None = None
+    memory: SearchState | None = None
+
+    @property
+    def memory_step(self) -> SelectionStep | None:
+        """The step in which residuals with memory were offered alone."""
+        return None if self.memory is None else self.memory.steps[-1]
 
     @property
     def effects(self) -> tuple[Attachment, ...]:
@@ -51,8 +57,8 @@ class SearchState:
 
     @property
     def has_curve(self) -> bool:
-        """Whether one of them is a free curve."""
-        return any(isinstance(e.mechanism, Unknown) for e in self.effects)
+        """Whether one of them is a free curve or response."""
+        return any(e.mechanism.free for e in self.effects)
 
     @property
     def took_one(self) -> bool:

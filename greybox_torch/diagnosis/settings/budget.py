@@ -25,6 +25,12 @@ class SearchBudget:
         2, "How often the choice of earlier effects is taken up again.", chosen_by=TIME, least=0
     )
 
+    names_before_memory: int = count(
+        2,
+        "Effects found that leave more than noise, before a residual with memory is tried in their place.",
+        chosen_by=TIME,
+    )
+
     window_factors: tuple[int, ...] = counts(
         (1, 4, 16),
         "Window lengths as multiples of the shortest: short windows forgive a wrong trajectory, long ones show slow effects.",

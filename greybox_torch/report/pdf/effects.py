@@ -52,7 +52,7 @@ def _card(sheets: Sheets, card: Card) -> None:
         sheets.gap(3.0)
         sheets.text(f"{'What would tell them apart' if card.shares else 'What would show it best'}: {card.experiment}.")
     sheets.gap(8.0)
-    for chart in (card.curve, *(card.responses.charts if card.responses else ()), card.profiles, card.timelines):
+    for chart in (*card.curves, *(card.responses.charts if card.responses else ()), card.profiles, card.timelines):
         if chart is not None:
             draw_chart(sheets, chart)
     if card.responses and card.responses.note:

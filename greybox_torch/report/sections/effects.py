@@ -16,6 +16,7 @@ from greybox_torch.report.chart.panel import Chart, Panel, side_by_side
 from greybox_torch.report.chart.scale import Scale, linear
 from greybox_torch.report.sections.frequency import Responses, responses
 from greybox_torch.report.sections.law import law_chart
+from greybox_torch.report.sections.memory import memory_chart
 
 MOST_EXPERIMENTS = 4
 """Experiments of which is drawn where along them an effect acts; with more, those in which it is strongest."""
@@ -61,7 +62,7 @@ class Card:
     experiment: str
     source: str
     unknown: bool
-    curve: Chart | None
+    curves: tuple[Chart, ...]
     responses: Responses | None
     profiles: Chart | None
     timelines: Chart | None
@@ -82,7 +83,7 @@ class Effects:
 def _card(effect: Effect, shown: Responses | None) -> Card:
     unknown = effect.mechanism == "unknown"
     return Card(
-        title="An unknown effect" if unknown else text.first_capital(text.mechanism(effect.mechanism)),
+        title=_unknown_title(effect) if unknown else text.first_capital(text.mechanism(effect.mechanism)),
         port=effect.port,
         statement="" if effect.one_of is None else text.first_capital(effect.one_of.statement),
         probability=effect.probability if effect.one_of is None else effect.one_of.probability,
@@ -91,21 +92,32 @@ def _card(effect: Effect, shown: Responses | None) -> Card:
         signals=effect.signals,
         explained=text.percent(effect.explained),
         ceiling="" if effect.ceiling is None else text.percent(effect.ceiling),
-        parameters=() if unknown else _parameters(effect),
+        parameters=_parameters(effect),
         shares=_shares(effect),
         experiment=effect.separating_experiment,
         source=effect.source,
         unknown=unknown,
-        curve=None if effect.curve is None else law_chart(effect, effect.curve),
+        curves=_own_charts(effect),
         responses=shown,
         profiles=_profiles(effect),
         timelines=_timelines(effect),
     )
 
 
+def _unknown_title(effect: Effect) -> str:
+    return "An unknown effect" if effect.memory is None else "An unknown effect with memory"
+
+
+def _own_charts(effect: Effect) -> tuple[Chart, ...]:
+    """The effect's curve (of a linear response it is a straight line, and left out), and its response where it remembers."""
+    memory = effect.memory
+    curve = () if effect.curve is None or (memory and not memory.curved) else (law_chart(effect, effect.curve),)
+    return curve if memory is None else (*curve, memory_chart(effect, memory))
+
+
 def _parameters(effect: Effect) -> tuple[ParameterRow, ...]:
     rows = []
-    for name, entry in effect.parameters.items():
+    for name, entry in effect.shown_parameters.items():
         value, deviation = entry.get("value"), entry.get("std")
         shown = text.measured(
             math.nan if value is None else float(value), None if deviation is None else float(deviation)

@@ -53,7 +53,7 @@ def responses(verdict: Verdict, effect: Effect) -> Responses | None:
     """The frequency responses that show an effect; None where it is none that they show."""
     members = () if effect.one_of is None else effect.one_of.members
     names = {effect.mechanism, *(m.mechanism for m in members)}
-    if not any(LIBRARY[name].linear for name in names if name in LIBRARY):
+    if effect.memory is None and not any(LIBRARY[name].linear for name in names if name in LIBRARY):
         return None
     there = _alike(_recorded(verdict))
     if not there:

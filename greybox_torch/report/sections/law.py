@@ -71,7 +71,8 @@ def _legend(effect: Effect, curve: Curve) -> tuple[Key, ...]:
 
 
 def _caption(effect: Effect, curve: Curve) -> str:
-    over = f"what it adds at {effect.port} over {text.words(curve.signal)}"
+    settled = "" if effect.memory is None else ", once all has settled"
+    over = f"what it adds at {effect.port} over {text.words(curve.signal)}{settled}"
     if curve.free is None:
         spread = "" if curve.spread is None else ", with two standard deviations on either side"
         return f"The effect's own curve{spread}: {over}."

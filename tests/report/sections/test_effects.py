@@ -23,8 +23,8 @@ def test_a_named_effect(of_kind: Callable[[str], Verdict]) -> None:
         ("nonlinear stiffness", 0.04),
         ("anything else", 0.02),
     ]
-    assert card.curve is not None and card.profiles is not None
-    ((panel,),) = card.curve.columns
+    assert card.profiles is not None
+    (((panel,),),) = (chart.columns for chart in card.curves)
     assert (panel.x_label, panel.y_label) == ("gear twist [rad]", "effect [N·m]")
     assert [mark.kind for mark in panel.marks] == ["area", "line"]
 
@@ -76,7 +76,7 @@ def test_an_unknown_effect_shows_its_curve_not_its_weights(of_kind: Callable[[st
     assert effects is not None
     (card,) = effects.cards
     assert (card.title, card.parameters) == ("An unknown effect", ())
-    assert card.curve is not None
+    assert len(card.curves) == 1
 
 
 def test_nothing(of_kind: Callable[[str], Verdict]) -> None:

@@ -1,0 +1,115 @@
+"""Where neither laws nor curves reach the noise: whether what is missing depends on the past.
+
+A residual with one or two hidden states follows any law that is linear, and a little of the others. So it is asked for late, and only where
+more than noise is left. Alone it takes the place of names as a curve does; beside names it has to complete the model. Where much more is
+left, a curve may stand in front: that follows, in part, whatever rubs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
+from greybox_torch.diagnosis.refit.rank import rank
+from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
+from greybox_torch.diagnosis.select.choice import alone_at_noise
+from greybox_torch.diagnosis.select.forward_step import little_is_left, take_best
+from greybox_torch.diagnosis.select.offered import memory_scores
+from greybox_torch.diagnosis.select.remaining import completes
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.stopping import Stage, result_of
+from greybox_torch.diagnosis.study import Study
+
+
+def completed_by_memory(study: Study, state: SearchState) -> Stage[SearchState]:
+    """Once some names are found: the state with a linear residual alone in their place where that completes the model.
+
+    Further names would then only be pieces of it. Asked once in a search; else the state with what was seen.
+    """
+    if state.memory is not None or len(state.effects) < study.budget.names_before_memory or not _asked(study, state):
+        return state
+    alone = _linear(study, state.at(state.plain), state.current)
+    state = replace(state, plain=alone.plain, memory=alone)
+    if alone.took_one and completes(alone.current, study.settings) and _goes_farther(study, state, alone):
+        state = _in_place(state, alone)
+        yield state
+    return state
+
+
+def with_memory(study: Study, state: SearchState) -> Stage[SearchState]:
+    """The state with an unknown that remembers, in the place of what was found or beside it, where that pays; else as it is."""
+    if not _asked(study, state):
+        return state
+    alone = state.memory or _linear(study, state.at(state.plain), state.current)
+    much_is_left = far_above_noise(state.current, study.settings)
+    alone = _curved_if_farther(study, alone, state.current) if much_is_left else alone
+    state = replace(state, plain=alone.plain, memory=alone)
+    if alone.took_one and _goes_farther(study, state, alone):
+        state = _in_place(state, alone)
+        yield state
+    elif state.effects and not state.has_curve and len(state.effects) < study.budget.most_effects:
+        beside = _linear(study, state, state.current, study.settings.curve_promise * _above_noise_share(study, state))
+        beside = _curved_if_farther(study, beside, state.current) if much_is_left else beside
+        if beside.took_one and completes(beside.current, study.settings):
+            state = beside
+            yield state
+    return state
+
+
+def _asked(study: Study, state: SearchState) -> bool:
+    """Whether more than noise is left, and more than a finding is; where nothing was found, so much that something is surely missing."""
+    settings = study.settings
+    seen = mismatch_share(state.plain, settings) >= settings.least_mismatch
+    least = settings.above_noise if state.effects else settings.far_above_noise
+    return seen and times_noise(study.problem, state.current, settings) > least and not little_is_left(study, state)
+
+
+def _in_place(state: SearchState, alone: SearchState) -> SearchState:
+    """The residual instead of what was found, which is kept at hand for held-out experiments to prefer it."""
+    return replace(alone, memory=alone, named=replace(state, named=None) if state.effects else None)
+
+
+def _goes_farther(study: Study, state: SearchState, alone: SearchState) -> bool:
+    """Whether the residual alone is as much better than all that was found as a curve must be than a name."""
+    settings = study.settings
+    reached, farther = (alone.plain.score - s.current.score for s in (state, alone))
+    much = farther > settings.curve_gain_ratio * reached or alone_at_noise(alone.current, state.current, settings)
+    return not state.effects or (much and farther > reached + settings.curve_margin)
+
+
+def _above_noise_share(study: Study, state: SearchState) -> float:
+    """The share of the squared error that has to go for the model to be complete, where that is most."""
+    settings = study.settings
+    return 1.0 - (settings.above_noise / times_noise(study.problem, state.current, settings)) ** 2
+
+
+def _linear(study: Study, state: SearchState, to_beat: Hypothesis, promise: float = 0.0) -> SearchState:
+    """The step to a linear residual, tried as far as it can come near to what stands, and where the screen holds as much promise."""
+    return result_of(_step(study, state, to_beat, promise))
+
+
+def _curved_if_farther(study: Study, linear: SearchState, to_beat: Hypothesis) -> SearchState:
+    """``linear`` or, where that leaves much more than noise, the step to a residual with a curve in front, if that goes farther."""
+    before = linear.at(linear.steps[-1].parent)
+    if linear.took_one and not far_above_noise(linear.current, study.settings):
+        return linear
+    curved = result_of(_step(study, replace(before, steps=before.steps[:-1]), to_beat, knots=study.budget.knots))
+    least = study.settings.curve_margin if linear.took_one else 0.0
+    return curved if curved.took_one and curved.current.score < linear.current.score - least else linear
+
+
+def _step(
+    study: Study, state: SearchState, to_beat: Hypothesis, promise: float = 0.0, knots: int = 0
+) -> Stage[SearchState]:
+    """A step in which nothing but residuals with memory are offered; with ``knots``, those with a curve in front."""
+    screened = memory_scores(study, state, knots)
+    found: list[Candidate] = []
+    for modes in (1, 2):
+        of_kind = [[s for s in at if getattr(s.attachment.mechanism, "modes", 0) == modes] for at in screened]
+        found += shortlist(study, of_kind, state.current.fits)
+    hopeful = [candidate for candidate in found if candidate.explained > promise]
+    best = sorted(hopeful, key=lambda candidate: -candidate.explained)[: study.budget.finalists]
+    ranked = rank(study, state.current, best, to_beat)
+    return (yield from take_best(study, state, screened, ranked))
