@@ -10,14 +10,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
-from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
 from greybox_torch.diagnosis.refit.rank import rank
 from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
 from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.forward_step import little_is_left, take_best
 from greybox_torch.diagnosis.select.offered import memory_scores
-from greybox_torch.diagnosis.select.remaining import completes
+from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage, result_of
 from greybox_torch.diagnosis.study import Study
@@ -30,7 +29,7 @@ def completed_by_memory(study: Study, state: SearchState) -> Stage[SearchState]:
     """
     if state.memory is not None or len(state.effects) < study.budget.names_before_memory or not _asked(study, state):
         return state
-    alone = _linear(study, state.at(state.plain), state.current)
+    alone = _linear(study, state.at(state.plain), state)
     state = replace(state, plain=alone.plain, memory=alone)
     if alone.took_one and completes(alone.current, study.settings) and _goes_farther(study, state, alone):
         state = _in_place(state, alone)
@@ -42,16 +41,16 @@ def with_memory(study: Study, state: SearchState) -> Stage[SearchState]:
     """The state with an unknown that remembers, in the place of what was found or beside it, where that pays; else as it is."""
     if not _asked(study, state):
         return state
-    alone = state.memory or _linear(study, state.at(state.plain), state.current)
+    alone = state.memory or _linear(study, state.at(state.plain), state)
     much_is_left = far_above_noise(state.current, study.settings)
-    alone = _curved_if_farther(study, alone, state.current) if much_is_left else alone
+    alone = _curved_if_farther(study, alone, state) if much_is_left else alone
     state = replace(state, plain=alone.plain, memory=alone)
     if alone.took_one and _goes_farther(study, state, alone):
         state = _in_place(state, alone)
         yield state
     elif state.effects and not state.has_curve and len(state.effects) < study.budget.most_effects:
-        beside = _linear(study, state, state.current, study.settings.curve_promise * _above_noise_share(study, state))
-        beside = _curved_if_farther(study, beside, state.current) if much_is_left else beside
+        beside = _linear(study, state, state)
+        beside = _curved_if_farther(study, beside, state) if much_is_left else beside
         if beside.took_one and completes(beside.current, study.settings):
             state = beside
             yield state
@@ -79,37 +78,42 @@ def _goes_farther(study: Study, state: SearchState, alone: SearchState) -> bool:
     return not state.effects or (much and farther > reached + settings.curve_margin)
 
 
-def _above_noise_share(study: Study, state: SearchState) -> float:
-    """The share of the squared error that has to go for the model to be complete, where that is most."""
-    settings = study.settings
-    return 1.0 - (settings.above_noise / times_noise(study.problem, state.current, settings)) ** 2
+def _linear(study: Study, state: SearchState, standing: SearchState) -> SearchState:
+    """The step from a state to a linear residual, which has to come as far as what stands."""
+    return result_of(_step(study, state, standing))
 
 
-def _linear(study: Study, state: SearchState, to_beat: Hypothesis, promise: float = 0.0) -> SearchState:
-    """The step to a linear residual, tried as far as it can come near to what stands, and where the screen holds as much promise."""
-    return result_of(_step(study, state, to_beat, promise))
-
-
-def _curved_if_farther(study: Study, linear: SearchState, to_beat: Hypothesis) -> SearchState:
+def _curved_if_farther(study: Study, linear: SearchState, standing: SearchState) -> SearchState:
     """``linear`` or, where that leaves much more than noise, the step to a residual with a curve in front, if that goes farther."""
     before = linear.at(linear.steps[-1].parent)
     if linear.took_one and not far_above_noise(linear.current, study.settings):
         return linear
-    curved = result_of(_step(study, replace(before, steps=before.steps[:-1]), to_beat, knots=study.budget.knots))
+    curved = result_of(_step(study, replace(before, steps=before.steps[:-1]), standing, study.budget.knots))
     least = study.settings.curve_margin if linear.took_one else 0.0
     return curved if curved.took_one and curved.current.score < linear.current.score - least else linear
 
 
-def _step(
-    study: Study, state: SearchState, to_beat: Hypothesis, promise: float = 0.0, knots: int = 0
-) -> Stage[SearchState]:
-    """A step in which nothing but residuals with memory are offered; with ``knots``, those with a curve in front."""
+def _step(study: Study, state: SearchState, standing: SearchState, knots: int = 0) -> Stage[SearchState]:
+    """A step in which nothing but residuals with memory are offered; with ``knots``, those with a curve in front.
+
+    Only the few are refitted that by the screen may come as far as what stands: their refits are slow.
+    """
     screened = memory_scores(study, state, knots)
     found: list[Candidate] = []
     for modes in (1, 2):
         of_kind = [[s for s in at if getattr(s.attachment.mechanism, "modes", 0) == modes] for at in screened]
         found += shortlist(study, of_kind, state.current.fits)
-    hopeful = [candidate for candidate in found if candidate.explained > promise]
+    least = study.settings.curve_promise * _share_to_remove(study, state, standing)
+    hopeful = [candidate for candidate in found if candidate.explained > least]
     best = sorted(hopeful, key=lambda candidate: -candidate.explained)[: study.budget.finalists]
-    ranked = rank(study, state.current, best, to_beat)
+    ranked = rank(study, state.current, best, standing.current)
     return (yield from take_best(study, state, screened, ranked))
+
+
+def _share_to_remove(study: Study, state: SearchState, standing: SearchState) -> float:
+    """The share of a state's squared error that has to go: all that what stands removes of it or, beside that, all but the noise."""
+    if state.effects != standing.effects:
+        return 1.0 - remaining_share(standing.plain, standing.current, study.settings)
+    if not state.effects:
+        return 0.0
+    return 1.0 - (study.settings.above_noise / times_noise(study.problem, state.current, study.settings)) ** 2
