@@ -96,7 +96,7 @@ def _memory_sentence(done: SelectionStep) -> str:
     """What residuals with memory would do alone, in the place of what was found."""
     asked = "As neither laws nor curves reach the noise, residuals with one and two hidden states were asked for at every port"
     if not done.ranked:
-        return f"{asked}; none explains anything."
+        return f"{asked}; none comes near."
     best = done.ranked[0]
     return (
         f"{asked}: the best, {_name(best.candidate.attachment)}, alone lowers the mean squared error of the model as it stands by a factor "
