@@ -10,14 +10,13 @@ FAIR_START = 3
 
 @dataclass(frozen=True)
 class Rival:
-    """A fit of mean squared error ``mean_square`` that another one competes with: while that has ``left`` iterations to go it may be
-    ``ratio`` times as far behind, and ``pace`` times more for every iteration; one that is farther behind is given up.
+    """A fit of mean squared error ``mean_square`` that another one competes with; one that would not come level with it in the iterations
+    that are left is given up, were every one of them to gain as much as ``pace`` times its last.
     """
 
     mean_square: float
-    ratio: float
     pace: float
 
-    def lost(self, mean_square: float, done: int, left: int) -> bool:
-        """Whether a fit is given up after ``done`` iterations."""
-        return done >= FAIR_START and mean_square > self.mean_square * self.ratio * self.pace**left
+    def lost(self, mean_square: float, change: float, done: int, left: int) -> bool:
+        """Whether a fit is given up after ``done`` iterations, the last of which lowered its cost by the share ``change``."""
+        return done >= FAIR_START and mean_square * (1.0 - change) ** (self.pace * left) > self.mean_square

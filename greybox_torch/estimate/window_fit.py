@@ -31,6 +31,9 @@ NEGLIGIBLE = 1e-2
 LEAST_GAIN_RATIO = 1e-4
 """Share of the predicted gain that a step must bring to be accepted."""
 
+FIRST_DAMPING = 1e-2
+"""Damping that a descent begins with, as a share of the curvature."""
+
 CARRY_EVERY = 4
 """Accepted steps after which carried states are brought along anew, with the parameters as they then are."""
 
@@ -38,7 +41,8 @@ CARRY_EVERY = 4
 @dataclass(frozen=True)
 class WindowFit:
     """Result: the problem with its parameters improved, window starts (W, n_x), mean squared weighted error, energy of the error per
-    window (W,), evaluations used; ``along``, the starts with carried states brought along (W, n_x), where that is known.
+    window (W,), evaluations used; ``along``, the starts with carried states brought along (W, n_x), where that is known; ``damping``,
+    with which the descent would go on.
     """
 
     problem: Problem
@@ -48,6 +52,7 @@ class WindowFit:
     energies: np.ndarray
     evaluations: int
     along: np.ndarray | None = None
+    damping: float = FIRST_DAMPING
 
 
 def fit_windows(
@@ -60,6 +65,7 @@ def fit_windows(
     settings: Settings = ROUGH,
     size: float | None = None,
     rival: Rival | None = None,
+    damping: float = FIRST_DAMPING,
 ) -> WindowFit | None:
     """Estimate the free parameters on windows of ``length`` samples with free start states; None where even these overflow.
 
@@ -69,6 +75,7 @@ def fit_windows(
         shorter: a fit on shorter windows, of this model or of the model that it extends.
         size: the size at which a shrunk parameter costs :data:`SHRINKING` samples' worth of error; the largest start value by default.
         rival: a fit of the same windows from another start, beside which this one is given up early where it is far behind.
+        damping: to begin with; that of a fit which is carried on.
     """
     windows = cut(problem.records, length)
     states = starts
@@ -81,9 +88,9 @@ def fit_windows(
         return None
     hold = _weak_hold(problem, states, here.mean_square, windows.steps, size)
     here = held(here, hold)
-    evaluations, accepted_steps, damping, growth, along = 1, 0, 1e-2, 2.0, None
+    evaluations, accepted_steps, growth, change, along = 1, 0, 2.0, 1.0, None
     for iteration in range(settings.iterations):
-        if rival is not None and rival.lost(here.mean_square, iteration, settings.iterations - iteration):
+        if rival is not None and rival.lost(here.mean_square, change, iteration, settings.iterations - iteration):
             break
         accepted = False
         for _ in range(settings.trials):
@@ -98,7 +105,7 @@ def fit_windows(
             if there is not None and gain > LEAST_GAIN_RATIO:
                 change = (here.cost - there.cost) / here.cost
                 problem, states, here, accepted, along = trial, trial_states, there, True, None
-                damping, growth = max(damping * max(0.1, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3), 1e-9), 2.0
+                damping, growth = max(damping * max(1 / 3, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3), 1e-9), 2.0
                 accepted_steps += 1
                 break
             damping, growth = damping * growth, growth * 2.0
@@ -109,10 +116,10 @@ def fit_windows(
             evaluations += 1
             if again is not None and again.cost < here.cost:
                 still = still and again.cost > (1 - settings.tolerance) * here.cost
-                states, here, damping = along, again, min(damping, 1e-2)
+                states, here, damping = along, again, min(damping, FIRST_DAMPING)
         if still:
             break
-    return WindowFit(problem, windows, states, here.mean_square, here.energies, evaluations, along)
+    return WindowFit(problem, windows, states, here.mean_square, here.energies, evaluations, along, damping)
 
 
 def _starts_of(shorter: WindowFit, problem: Problem, simulator: Simulator, windows: Windows) -> np.ndarray:

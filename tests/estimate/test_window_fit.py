@@ -82,8 +82,8 @@ def test_a_fit_far_behind_its_rival_is_given_up(data_set: Any) -> None:
     problem = recorded(data_set, 0.7)
     simulator = Simulator.of(problem.model, problem.free_names)
     plain = fit_windows(problem, simulator, 100, settings=TIGHT)
-    beside_worse = fit_windows(problem, simulator, 100, settings=TIGHT, rival=Rival(1e6, 1.0, 1.0))
-    beside_better = fit_windows(problem, simulator, 100, settings=TIGHT, rival=Rival(1e-30, 1.0, 1.0))
+    beside_worse = fit_windows(problem, simulator, 100, settings=TIGHT, rival=Rival(1e6, 1.0))
+    beside_better = fit_windows(problem, simulator, 100, settings=TIGHT, rival=Rival(1e-30, 1.0))
     assert plain is not None
     assert beside_worse is not None
     assert beside_better is not None

@@ -21,6 +21,7 @@ from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import SimulationOptions, Simulator
+from greybox_torch.simulation.windows import Windows, cut
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +81,9 @@ def hypothesis(
     budget: SearchBudget = SearchBudget(),
     simulator: Simulator | None = None,
     frozen: frozenset[str] = frozenset(),
+    early: Sequence[Mapping[str, float]] = (),
+    before: Hypothesis | None = None,
+    rough: bool = False,
 ) -> Hypothesis | None:
     """Fit ``base`` with ``effects`` attached, on windows of every length, from each of several start values; None where none simulates.
 
@@ -87,23 +91,27 @@ def hypothesis(
 
     Args:
         starts: parameter values by name, of the base and of the effects.
+        early: further ones, for the shortest windows only.
+        before: a rougher fit of the same effects with the same free parameters, which is carried on at the lengths that it has.
         at: window lengths; by default :func:`window_lengths`.
         limits: how far the best of the starts is followed; by default ``budget.window_iterations``.
         shorter: a fit on shorter windows that the start states are taken from.
         options: of the simulator, where none is given.
         simulator: one made for this model and these ``frozen`` parameters before.
         frozen: parameters that are to keep their start values.
+        rough: whether the fit only chooses what is fitted further.
     """
     model = augmented(base, effects, surroundings)
     problems = [without_free(problem_for(base, model, start), frozen) for start in starts]
+    first = [without_free(problem_for(base, model, start), frozen) for start in early]
     simulator = simulator or Simulator.of(model, problems[0].free_names, options)
     limits, fits = limits or budget.window_iterations, []
+    as_far = partial(_as_far_as_counts, base, limits, settings, budget, rough)
     at = at or window_lengths(base, budget)
     for length in at:
-        trials = _distinct([*([fits[-1].problem] if fits else []), *problems])
-        fit = _best_fit(
-            trials, simulator, length, shorter, partial(_as_far_as_counts, base, limits, settings, budget), budget
-        )
+        known = None if before is None else _over(cut(base.records, length), before.fits)
+        trials = _distinct([f.problem for f in fits[-1:]] + problems + ([] if fits else first), known)
+        fit = _best_fit(trials, known, simulator, length, shorter, as_far, budget)
         if fit is None:
             return None
         if fits and reaches_noise(base, fits[-1], settings) and not reaches_noise(base, fit, settings):
@@ -129,20 +137,23 @@ def _floor(base: Problem, settings: DiagnosisSettings) -> float:
     return float(np.mean((settings.negligible_error * spread) ** 2)) + 1e-300
 
 
+def _over(windows: Windows, fits: Sequence[WindowFit]) -> WindowFit | None:
+    """The one of ``fits`` that is over these windows."""
+    return next((fit for fit in fits if np.array_equal(fit.windows.start, windows.start)), None)
+
+
 def _best_fit(
     trials: Sequence[Problem],
+    known: WindowFit | None,
     simulator: Simulator,
     length: int,
     shorter: WindowFit | None,
     limits_of: Callable[[WindowFit], Settings],
     budget: SearchBudget,
 ) -> WindowFit | None:
-    if not trials:
-        return None  # none is admissible
-    first, *others = trials
     begin = partial(fit_windows, simulator=simulator, length=length, shorter=shorter, settings=budget.first_iterations)
-    leading = begin(first)
-    rival = None if leading is None else Rival(leading.mean_square, budget.rival_start, budget.rival_pace)
+    leading, others = (known, trials) if known is not None else (begin(trials[0]), trials[1:]) if trials else (None, ())
+    rival = None if leading is None else Rival(leading.mean_square, budget.rival_pace)
     begun = [leading, *side_by_side(partial(begin, t, rival=rival) for t in others)]
     found = sorted((fit for fit in begun if fit is not None), key=lambda f: f.mean_square)
     if not found:
@@ -154,12 +165,16 @@ def _best_fit(
 
 
 def _as_far_as_counts(
-    base: Problem, limits: Settings, settings: DiagnosisSettings, budget: SearchBudget, fit: WindowFit
+    base: Problem, limits: Settings, settings: DiagnosisSettings, budget: SearchBudget, rough: bool, fit: WindowFit
 ) -> Settings:
-    """``limits`` with the tolerance that decisions can still see: at the noise all samples count, where more is left they do not."""
+    """``limits`` with the tolerance that decisions can still see: at the noise all samples count, where more is left they do not, and far
+    above it only what is large counts.
+    """
     if reaches_noise(base, fit, settings, settings.above_noise) or not floor_known(base, settings):
         return limits
-    return replace(limits, tolerance=max(limits.tolerance, budget.mismatch_tolerance))
+    rough = rough or not reaches_noise(base, fit, settings, settings.far_above_noise)
+    tolerance = budget.rough_mismatch_tolerance if rough else budget.mismatch_tolerance
+    return replace(limits, tolerance=max(limits.tolerance, tolerance))
 
 
 def _states_first(
@@ -202,7 +217,7 @@ def continued(fit: WindowFit, simulator: Simulator, length: int, limits: Setting
     for _ in range(budget.most_turns):
         along = fit.along
         starts = carried_starts(fit.problem, simulator, fit.windows, fit.starts) if along is None else along
-        again = fit_windows(fit.problem, simulator, length, starts=starts, settings=limits)
+        again = fit_windows(fit.problem, simulator, length, starts=starts, settings=limits, damping=fit.damping)
         if again is None or again.mean_square > fit.mean_square:
             break
         gained, fit = again.mean_square < (1 - budget.least_turn_gain) * fit.mean_square, again
@@ -211,9 +226,10 @@ def continued(fit: WindowFit, simulator: Simulator, length: int, limits: Setting
     return fit
 
 
-def _distinct(problems: Sequence[Problem]) -> list[Problem]:
-    kept: list[Problem] = []
+def _distinct(problems: Sequence[Problem], known: WindowFit | None) -> list[Problem]:
+    """Those that are admissible and begin where no other does, nor ``known`` has led."""
+    kept: list[Problem] = [] if known is None else [known.problem]
     for p in problems:
         if p.admissible(p.values) and not any(np.allclose(p.values, q.values, rtol=1e-3, atol=0) for q in kept):
             kept.append(p)
-    return kept
+    return kept if known is None else kept[1:]

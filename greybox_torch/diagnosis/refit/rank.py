@@ -78,7 +78,7 @@ def rank(
     simulators = _compiled(study, current, found, frozen)
     at = window_lengths(study.problem, budget)
     middle = at[min(1, len(at) - 1) :][:1]
-    refit = partial(fit, study, shorter=current.fits[0], frozen=frozen)
+    refit = partial(fit, study, shorter=current.fits[0], frozen=frozen, rough=True)
 
     def tried(candidate: Candidate, simulator: Simulator) -> Hypothesis | None:
         study.working_on(f"refitting {candidate.attachment.prefix}")
@@ -89,8 +89,14 @@ def rank(
 
     def in_full(candidate: Candidate, before: Hypothesis, simulator: Simulator) -> RankedCandidate | None:
         study.working_on(f"refitting {candidate.attachment.prefix} in full")
-        starts = [before.values(), *candidate.first_starts(budget.trial_starts)]
-        fitted = refit(before.effects, starts, limits=budget.window_iterations, simulator=simulator)
+        fitted = refit(
+            before.effects,
+            [before.values()],
+            early=candidate.first_starts(budget.trial_starts),
+            before=before,
+            limits=budget.window_iterations,
+            simulator=simulator,
+        )
         return None if fitted is None else judged(candidate, current, fitted, study.settings)
 
     pairs = list(zip(found, simulators, strict=True))

@@ -24,8 +24,8 @@ def refitted(
 
 def polished(study: Study, fitted: Hypothesis, starts: Sequence[Mapping[str, float]] = ()) -> Hypothesis:
     """``fitted`` refitted to convergence, also from further start values; the better of the two."""
-    simulator = None if fitted.frozen else fitted.simulator
-    again = fit(study, fitted.effects, [fitted.values(), *starts], fitted.fits[0], simulator=simulator)
+    simulator, before = (None, None) if fitted.frozen else (fitted.simulator, fitted)
+    again = fit(study, fitted.effects, [fitted.values(), *starts], fitted.fits[0], simulator=simulator, before=before)
     return fitted if again is None or again.score > fitted.score else again
 
 

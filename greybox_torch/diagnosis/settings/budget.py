@@ -67,6 +67,12 @@ class SearchBudget:
         unit="share of the cost",
         chosen_by="a tenth of the price of a parameter",
     )
+    rough_mismatch_tolerance: float = share(
+        3e-3,
+        "The same for fits that only choose what is fitted further, or that leave many times the noise.",
+        unit="share of the cost",
+        chosen_by="a tenth of the difference up to which hypotheses tie",
+    )
     record_first_iterations: Settings = iteration(
         Settings(iterations=12, tolerance=1e-3),
         "How far every start of the final fit on whole records is followed.",
@@ -93,10 +99,10 @@ class SearchBudget:
         chosen_by=TIME,
     )
     rival_pace: float = ratio(
-        1.6,
-        "The factor that a start far behind is expected to gain on the best in every iteration still to come; "
-        "where that would not bring it near enough, it is given up.",
-        unit="times the mean squared error per iteration",
+        2.0,
+        "How many times as fast as in its last iteration a start is expected to gain in those still to come; "
+        "where that would not bring it level with the best, it is given up.",
+        unit="times its last gain",
         chosen_by=TIME,
     )
     most_turns: int = count(
