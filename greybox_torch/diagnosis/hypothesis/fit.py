@@ -61,10 +61,17 @@ def score_of(fits: Sequence[WindowFit], floor: float) -> float:
 
 
 def window_lengths(problem: Problem, budget: SearchBudget = SearchBudget()) -> list[int]:
-    """Window lengths for a problem's records, in samples."""
-    longest = int(problem.records.lengths.max())
+    """Window lengths for a problem's records, in samples: none so long that there would be fewer than ``budget.least_windows``."""
+    lengths = problem.records.lengths
+    longest = int(lengths.max())
     shortest = max(budget.shortest_window, round(longest / budget.windows_of_longest))
-    return [shortest * factor for factor in budget.window_factors if shortest * factor <= longest // 2] or [shortest]
+    found = [shortest]
+    for length in (shortest * factor for factor in budget.window_factors):
+        if np.floor(lengths / length + 0.5).sum() < budget.least_windows:
+            length = int(lengths.sum()) // budget.least_windows
+        if 1.5 * found[-1] <= length <= longest // 2:
+            found.append(length)
+    return found
 
 
 def hypothesis(
