@@ -20,6 +20,7 @@ from greybox_torch.diagnosis.confirm.holding import Judged, holding
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.promotion import promote_validation, serves
 from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains
+from greybox_torch.diagnosis.excerpts import excerpts
 from greybox_torch.diagnosis.hypothesis.final import Final, finish, from_longest_windows
 from greybox_torch.diagnosis.schedule import Schedule
 from greybox_torch.diagnosis.select.backward import drop_superfluous
@@ -29,7 +30,7 @@ from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import best_so_far, or_else
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study
-from greybox_torch.estimate.problem import all_starts_free, make_problem
+from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
 from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.model import GreyBoxModel
 
@@ -71,16 +72,17 @@ def find(
         make_study: :class:`Study` with everything but the problem and how it is simulated.
         end: when the answer has to stand.
     """
-    problem = all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
-    study = make_study(problem)
-    study = replace(study, options=simulator_for(problem, study.options).options)
+    study = make_study(_problem(dataset, model))
+    used = excerpts(dataset, study.budget.most_samples)
+    study = replace(study, problem=_problem(used.dataset, model))
+    study = replace(study, options=simulator_for(study.problem, study.options).options)
     free_runs = FreeRuns(study, dataset)
     clock.lap("preparing")
     begun = fit_plain_model(study)
     schedule = Schedule.within(end, free_runs.seconds, study.budget)
     study, state, complete = _searched(*begun, schedule.searching)
     clock.lap(SEARCH)
-    others = HeldOut(dataset, study) if dataset.validation() else None
+    others = HeldOut(used.dataset, study) if dataset.validation() else None
     state, gains, confirmed = _confirmed(study, state, others, schedule.confirming)
     clock.lap(CONFIRMING)
     (plain, augmented), fitted = _finished(study, state, schedule.fitting)
@@ -90,7 +92,13 @@ def find(
     clock.lap(JUDGING)
     ended = {SEARCH: complete, CONFIRMING: confirmed, FITTING: fitted, JUDGING: held and whole}
     cut = tuple(stage for stage, whole in ended.items() if not whole)
-    return Findings(dataset, study, state, None if cut else others, gains, judged, not cut, told, cut)
+    return Findings(
+        dataset, study, state, None if cut else others, gains, judged, not cut, (*used.sentences, *told), cut
+    )
+
+
+def _problem(dataset: DataSet, model: GreyBoxModel) -> Problem:
+    return all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
 
 
 def find_with_more(

@@ -47,6 +47,7 @@ class FreeRuns:
         if final is not None:
             initial = started.initial.copy()
             for row, name in zip(final.problem.initial, final.problem.records.names, strict=True):
-                initial[started.records.names.index(name)] = row
+                if name in started.records.names:  # else a stretch from within a recording
+                    initial[started.records.names.index(name)] = row
             started = replace(started, initial=initial)
         return compare(started, self.recordings, simulator, estimate_starts=False)

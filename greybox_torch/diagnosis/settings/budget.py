@@ -31,6 +31,13 @@ class SearchBudget:
         chosen_by=TIME,
     )
 
+    most_samples: int = count(
+        100_000,
+        "Samples of all recordings of one role that are searched; of longer ones the stretch that moves most is.",
+        unit="samples",
+        chosen_by=TIME,
+        least=1000,
+    )
     window_factors: tuple[int, ...] = counts(
         (1, 4, 16),
         "Window lengths as multiples of the shortest: short windows forgive a wrong trajectory, long ones show slow effects.",
