@@ -17,7 +17,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,7 @@ import numpy as np
 
 from experiments.fleets.generate import write_fleet
 from experiments.fleets.plan import draw_fleet
+from experiments.whole_files import is_whole, named_files
 
 SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 PATIENCE = 30.0
@@ -33,17 +34,6 @@ PATIENCE = 30.0
 
 LIMITS = (0, 4, 32, 128)
 """kB that a file may have, where the disk is full."""
-
-WHOLE: dict[str, Callable[[bytes], bool]] = {
-    ".json": lambda content: _reads(json.loads, content),
-    ".jsonl": lambda content: all(_reads(json.loads, line) for line in content.splitlines()),
-    ".html": lambda content: content.rstrip().endswith(b"</html>"),
-    ".png": lambda content: content.endswith(b"IEND\xaeB`\x82"),
-    ".fmu": lambda content: b"PK\x05\x06" in content[-100:],
-    ".parquet": lambda content: content.endswith(b"PAR1"),
-    ".safetensors": lambda content: len(content) > 8,
-}
-"""By suffix, whether a file is all there."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +100,7 @@ def killed(case: Case, usual: float, answer: Any, sent: signal.Signals, rng: np.
         os.killpg(process.pid, signal.SIGKILL)
     if "Traceback" in errors:
         wrong.append(f"a traceback: {errors.strip().splitlines()[-1]}")
-    wrong += [f"half-written: {file.relative_to(case.out)}" for file in _files(case.out) if not _whole(file)]
+    wrong += [f"half-written: {file.relative_to(case.out)}" for file in named_files(case.out) if not is_whole(file)]
     again = _run([*case.arguments, "--out", str(case.out)], os.environ)
     if again.returncode != 0 or case.answer(case.out) != answer:
         wrong.append(f"the next run: exit {again.returncode}, {again.stderr.strip()[-200:]}")
@@ -151,7 +141,7 @@ def full_disk(case: Case, folder: Path, kilobytes: int) -> dict[str, Any]:
         text=True,
         check=False,
     )
-    wrong = [f"half-written: {f.relative_to(out)}" for f in _files(out) if not _whole(f)]
+    wrong = [f"half-written: {f.relative_to(out)}" for f in named_files(out) if not is_whole(f)]
     if "Traceback" in run.stderr:
         wrong.append("a traceback")
     if run.returncode not in (0, 2, 3):
@@ -190,24 +180,6 @@ def _lingering(group: int) -> bool:
     return True
 
 
-def _files(folder: Path) -> Iterator[Path]:
-    """Files under names of their own, not the temporary ones."""
-    return (file for file in folder.rglob("*") if file.is_file() and not file.name.startswith("."))
-
-
-def _whole(file: Path) -> bool:
-    content = file.read_bytes()
-    return bool(content) and WHOLE.get(file.suffix, lambda _: True)(content)
-
-
-def _reads(read: Callable[[bytes], Any], content: bytes) -> bool:
-    try:
-        read(content)
-    except ValueError:
-        return False
-    return True
-
-
 def _json(file: Path) -> Any:
     return json.loads(file.read_text())
 
@@ -222,7 +194,7 @@ def _named(verdict: dict[str, Any]) -> Any:
 
 
 def _contents(folder: Path) -> dict[str, bytes]:
-    return {str(file.relative_to(folder)): file.read_bytes() for file in _files(folder)}
+    return {str(file.relative_to(folder)): file.read_bytes() for file in named_files(folder)}
 
 
 def main(arguments: list[str] | None = None) -> int:
