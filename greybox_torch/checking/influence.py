@@ -33,7 +33,7 @@ def influence(model: GreyBoxModel, points: Points) -> Influence:
     x, u, p, f = points.signals(model)
     count = points.x.shape[1]
     rates = [_row(value, count) for value in _ordered(model.derivative(x, u, p, f), [s.name for s in model.states])]
-    outputs = [_row(value, count) for value in _ordered(model.output(x, u, p), [o.name for o in model.outputs])]
+    outputs = [_row(v, count) for v in _ordered(model.outputs_with(x, u, p, f), [o.name for o in model.outputs])]
     leaves = (points.x, points.u, points.p, points.f)
     of_rates = [_depends(rate, leaves) for rate in rates]
     of_outputs = [_depends(output, leaves) for output in outputs]

@@ -11,7 +11,7 @@ from pathlib import Path
 from greybox_torch.model import GreyBoxModel
 
 KINDS = ("state", "input", "parameter", "port")
-"""What the arguments of ``derivative`` hold, in their order; ``output`` has no ports."""
+"""What the arguments of ``derivative`` hold, in their order; ``output`` may do without ports."""
 
 
 @dataclass(frozen=True)

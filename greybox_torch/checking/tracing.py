@@ -67,7 +67,7 @@ def traced(model: GreyBoxModel, file: Path | None) -> Traced:
     zero = torch.zeros((), dtype=torch.float64)
     port = Signals("port", {q.name: declared.get(q.name, zero) for q in model.all_ports})
     with torch.no_grad():
-        rates, outputs = model.derivative(x, u, p, port), model.output(x, u, p)
+        rates, outputs = model.derivative(x, u, p, port), model.outputs_with(x, u, p, port)
         signals = {
             (site.name, name): _node(graph, value_of(signal, x, u, p))
             for site in model.ports

@@ -73,27 +73,22 @@ class AugmentedModel(GreyBoxModel):
     def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
         seen = self._seen_states(x, u, p)
         acting = self._acting_inputs(x, u, p)
-        forces = dict(port)
+        forces = self._forces(seen, u, acting, p, port)
         extra: dict[str, Any] = {}
         for a in self.attachments:
-            site = self.local.ports[a.port]
-            local, own, memory = self._given(a, seen, u if isinstance(site, Actuator) else acting, p)
-            if not a.mechanism.kinematic and not isinstance(site, Actuator | Sensor):
-                forces[a.port] = forces[a.port] + self._share(a, p) * a.mechanism.force(local, own, memory)
-            for place, force in (*_kinematic_forces(a, local, own), *a.mechanism.elsewhere(local, own, memory).items()):
-                forces[place] = forces[place] + self._share(a, p) * force
-            for name, rate in a.mechanism.rates(local, own, memory).items():
+            given = self._given(a, seen, u if isinstance(self.local.ports[a.port], Actuator) else acting, p, forces)
+            for name, rate in a.mechanism.rates(*given).items():
                 extra[f"{a.prefix}.{name}"] = rate
-        rates = dict(self.base.derivative(seen, acting, p, Signals("port", forces)))
+        rates = dict(self.base.derivative(seen, acting, p, forces))
         for name in self.local.integrated_bodies():
             rates[f"{name}.position"] = value_of(self.local.body(name).speed, x, u, p)
         if self.local.need("time"):
             rates["time"] = torch.ones_like(x[self.states[0].name])
         return {**rates, **extra}
 
-    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
-        values = dict(self.base.output(x, self._acting_inputs(x, u, p), p))
-        true = dict(values)
+    def output(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        true = self._true_outputs(x, u, p, port)
+        values = dict(true)
         for a in self.attachments:
             site = self.local.ports[a.port]
             if isinstance(site, Sensor):
@@ -103,6 +98,33 @@ class AugmentedModel(GreyBoxModel):
                 own, memory = self.local.parameters(a, p), self.local.memory(a, x)
                 values[site.output] = values[site.output] + self._share(a, p) * a.mechanism.force(local, own, memory)
         return values
+
+    def _true_outputs(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        """The outputs before what sensors add; where they are forces, with those that act at the ports."""
+        acting = self._acting_inputs(x, u, p)
+        if not self.base.shows_forces:
+            return dict(self.base.output(x, acting, p))
+        forces = self._forces(self._seen_states(x, u, p), u, acting, p, port)
+        return dict(self.base.outputs_with(x, acting, p, forces))
+
+    def _forces(self, seen: Any, u: Any, acting: Any, p: Any, port: Any) -> Signals:
+        """The forces at the ports: ``port``, and what the attached laws add to them.
+
+        Args:
+            seen: the states with the deflections changed by kinematic laws.
+            acting: the inputs as actuators pass them on; ``u`` as they are recorded.
+        """
+        forces = dict(port)
+        for a in self.attachments:
+            site = self.local.ports[a.port]
+            if isinstance(site, Sensor):
+                continue  # it shows forces, and adds none
+            local, own, memory = self._given(a, seen, u if isinstance(site, Actuator) else acting, p)
+            if not a.mechanism.kinematic and not isinstance(site, Actuator):
+                forces[a.port] = forces[a.port] + self._share(a, p) * a.mechanism.force(local, own, memory)
+            for place, force in (*_kinematic_forces(a, local, own), *a.mechanism.elsewhere(local, own, memory).items()):
+                forces[place] = forces[place] + self._share(a, p) * force
+        return Signals("port", forces)
 
     def admissible(self, p: Any) -> dict[str, Any]:
         return self.base.admissible(p)
@@ -135,7 +157,9 @@ class AugmentedModel(GreyBoxModel):
         result = states.copy()
         result[:, : own[0]] = self.base.begun(states[:, : own[0]], records, samples, values[: own[1]])
         for a in self.attachments:
-            for name, value in a.mechanism.starts(self.local.at(a, x, u, p)).items():
+            for name, value in a.mechanism.starts(
+                self.local.at(a, x, u, p, self._forces(x, u, u, p, self.local.no_forces()))
+            ).items():
                 result[:, names.index(f"{a.prefix}.{name}")] = np.asarray(value)
         return result
 
@@ -166,7 +190,9 @@ class AugmentedModel(GreyBoxModel):
 
     def local_signals(self, attachment: Attachment, x: Any, u: Any, p: Any) -> Signals:
         """The signals that an attached mechanism sees."""
-        return self.local.at(attachment, self._seen_states(x, u, p), u, p)
+        seen = self._seen_states(x, u, p)
+        forces = self._forces(seen, u, self._acting_inputs(x, u, p), p, self.local.no_forces())
+        return self.local.at(attachment, seen, u, p, forces)
 
     def _seen_states(self, x: Signals, u: Any, p: Any) -> Signals:
         """States with the deflections changed by kinematic mechanisms."""
@@ -190,9 +216,11 @@ class AugmentedModel(GreyBoxModel):
                 acting = acting.replaced(**{name: acting[name] + share * change for name, change in changes.items()})
         return acting
 
-    def _given(self, a: Attachment, x: Signals, u: Signals, p: Signals) -> tuple[Signals, Signals, Signals]:
+    def _given(
+        self, a: Attachment, x: Signals, u: Signals, p: Signals, forces: Signals | None = None
+    ) -> tuple[Signals, Signals, Signals]:
         """What a law is a function of: local signals, own parameters, memory."""
-        return self.local.at(a, x, u, p), self.local.parameters(a, p), self.local.memory(a, x)
+        return self.local.at(a, x, u, p, forces), self.local.parameters(a, p), self.local.memory(a, x)
 
     def _share(self, a: Attachment, p: Signals) -> Any:
         return p[f"{a.prefix}.{SHARE}"] if a.prefix in self.probed else 1.0

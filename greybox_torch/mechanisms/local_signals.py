@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
+import torch
+
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.delayed_input import channels
 from greybox_torch.mechanisms.mechanism import Surroundings
@@ -24,8 +26,8 @@ class LocalSignals:
         self.ports: dict[str, Port] = {port.name: port for port in base.all_ports}
         self._grouped: tuple[tuple[str, ...], dict[str, dict[str, str]]] = ((), {})
 
-    def at(self, a: Attachment, x: Any, u: Any, p: Any) -> Signals:
-        """The signals at the port of an attachment."""
+    def at(self, a: Attachment, x: Any, u: Any, p: Any, forces: Signals | None = None) -> Signals:
+        """The signals at the port of an attachment; ``forces`` at the ports, where others are attached (a sensor may show them)."""
         site = self.ports[a.port]
         values: dict[str, Any] = {
             name: value_of(signal, x, u, p) for name, signal in site.signals.items() if name != "position"
@@ -44,7 +46,7 @@ class LocalSignals:
         ):
             values["speed"] = value_of(driving.speed, x, u, p)
         if isinstance(site, Sensor):
-            values["output"] = self.base.output(x, u, p)[site.output]
+            values["output"] = self.base.outputs_with(x, u, p, forces or self.no_forces())[site.output]
         values |= self.sampling(a.port)
         if "delayed" in a.mechanism.needs:
             for names in channels(a.mechanism):
@@ -100,6 +102,10 @@ class LocalSignals:
         body = self.ports[name]
         assert isinstance(body, Body)
         return body
+
+    def no_forces(self) -> Signals:
+        """The forces at all ports where nothing acts."""
+        return Signals("port", dict.fromkeys(self.ports, torch.zeros((), dtype=torch.float64)))
 
     def _position(self, name: str, x: Signals, u: Signals, p: Signals) -> Any:
         signal = self.body(name).position

@@ -10,6 +10,7 @@ import torch
 from greybox_torch.errors import UserError
 from greybox_torch.model.constraints import parameter_scale, project
 from greybox_torch.model.declarations import Input, Output, Parameter, State
+from greybox_torch.model.force_outputs import output_asks_for_forces
 from greybox_torch.model.ports import Port, actuators, sensors
 from greybox_torch.model.signals import Signals
 from greybox_torch.model.unseen_states import unseen_states
@@ -36,11 +37,14 @@ class GreyBoxModel(torch.nn.Module):
     name: ClassVar[str] = ""
     starts_free: bool = False
     """Whether every start state is estimated, also those that the states declare as fixed; a card that speaks of one still wins."""
+    shows_forces: ClassVar[bool] = False
+    """Whether the outputs are handed the forces at the ports: defined as ``output(self, x, u, p, port)``."""
     loaded_as: str = ""
     """The name that :func:`greybox_torch.load_model` found the model by; empty where it was made in Python."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
+        cls.shows_forces = output_asks_for_forces(cls)
         declared = cls.__dict__.get("parameters")
         if isinstance(declared, list | tuple):
             cls.declared_parameters = tuple(declared)
@@ -60,9 +64,17 @@ class GreyBoxModel(torch.nn.Module):
         """Rates of all states by name, in state unit per second."""
         raise NotImplementedError(f"{type(self).__name__} does not define derivative(x, u, p, port)")
 
-    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
-        """Outputs by name."""
+    def output(self, x: Any, u: Any, p: Any, *port: Any) -> dict[str, Any]:
+        """Outputs by name.
+
+        Defined as ``output(self, x, u, p, port)`` it is handed the forces at the ports as well: a force that is measured under a prescribed
+        motion shows what acts at a port without any state in between.
+        """
         raise NotImplementedError(f"{type(self).__name__} does not define output(x, u, p)")
+
+    def outputs_with(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        """Outputs by name, with forces at the ports where :meth:`output` asks for them."""
+        return self.output(x, u, p, port) if self.shows_forces else self.output(x, u, p)
 
     def admissible(self, p: Any) -> dict[str, Any]:
         """Quantities that must stay positive, by a name for messages (for constraints that join several parameters)."""
@@ -152,15 +164,18 @@ class GreyBoxModel(torch.nn.Module):
     def rates(self, x: torch.Tensor, u: torch.Tensor, p: Any) -> torch.Tensor:
         """The right-hand side on stacked tensors: x (n_x, *batch), u (n_u, *batch) -> (n_x, *batch)."""
         xs, us = self.named_signals(x, u)
-        none = x.new_zeros(()).expand(x.shape[1:])
-        ports = Signals("port", {port.name: none for port in self.all_ports})
-        rates = self.derivative(xs, us, _spread(p, x), ports)
+        rates = self.derivative(xs, us, _spread(p, x), self._no_forces(x))
         return _stacked(rates, [s.name for s in self.states], x, f"{self.title}.derivative()")
 
     def measured(self, x: torch.Tensor, u: torch.Tensor, p: Any) -> torch.Tensor:
         """The outputs on stacked tensors: x (n_x, *batch), u (n_u, *batch) -> (n_y, *batch)."""
         xs, us = self.named_signals(x, u)
-        return _stacked(self.output(xs, us, _spread(p, x)), [o.name for o in self.outputs], x, f"{self.title}.output()")
+        outputs = self.outputs_with(xs, us, _spread(p, x), self._no_forces(x))
+        return _stacked(outputs, [o.name for o in self.outputs], x, f"{self.title}.output()")
+
+    def _no_forces(self, x: torch.Tensor) -> Signals:
+        none = x.new_zeros(()).expand(x.shape[1:])
+        return Signals("port", {port.name: none for port in self.all_ports})
 
     def named_signals(self, x: torch.Tensor, u: torch.Tensor) -> tuple[Signals, Signals]:
         """States and inputs by name, from stacked tensors: x (n_x or more, *batch), u (n_u or more, *batch)."""

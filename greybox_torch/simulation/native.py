@@ -194,4 +194,6 @@ def _filled_up(count: int, lanes: int) -> np.ndarray:
 def _windows(packed: np.ndarray, count: int) -> np.ndarray:
     """(groups, ..., lanes) -> (W, ...), a view where there is one group."""
     moved = packed.transpose(0, -1, *range(1, packed.ndim - 1))
-    return moved.reshape(-1, *moved.shape[2:])[:count] if len(packed) > 1 else moved[0, :count]
+    return (
+        moved.reshape(len(packed) * moved.shape[1], *moved.shape[2:])[:count] if len(packed) > 1 else moved[0, :count]
+    )

@@ -64,4 +64,4 @@ class PackedNormals:
     def _unpacked(self, values: np.ndarray) -> np.ndarray:
         """(groups, ..., lanes) -> (W, ...)."""
         moved = np.moveaxis(values, -1, 1)
-        return moved.reshape(-1, *moved.shape[2:])[: self.windows]
+        return moved.reshape(moved.shape[0] * moved.shape[1], *moved.shape[2:])[: self.windows]
