@@ -13,7 +13,7 @@ import argparse
 import json
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -61,13 +61,24 @@ def verdicts(cases: Sequence[Case], out: Path, *, workers: int, time_limit: floa
 def chosen(names: str) -> list[Case]:
     """The cases of a comma-separated list, all where it is empty. Raises UserError where a name is unknown."""
     by_name = {case.name: case for case in CASES}
-    wanted = [name.strip() for name in names.split(",") if name.strip()] or list(by_name)
+    wanted = _listed(names, by_name) or list(by_name)
     unknown = [name for name in wanted if name not in by_name]
     if unknown:
         raise UserError(
             f"--only: no recording is called {unknown[0]}{did_you_mean(unknown[0], by_name)}; expected some of {', '.join(by_name)}"
         )
     return [by_name[name] for name in wanted]
+
+
+def _listed(names: str, known: Collection[str]) -> list[str]:
+    """The names of a list, some of which have commas of their own; what is no name stays in one piece up to the next comma."""
+    parts, found = [name.strip() for name in names.split(",") if name.strip()], []
+    while parts:
+        lengths = (n for n in range(len(parts), 0, -1) if ", ".join(parts[:n]) in known)
+        taken = next(lengths, 1)
+        found.append(", ".join(parts[:taken]))
+        parts = parts[taken:]
+    return found
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

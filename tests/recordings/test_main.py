@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from experiments.recordings import __main__ as command
+from experiments.recordings.__main__ import chosen
 from experiments.recordings.cases import CASES, Case, Concealed, Reading
 from experiments.recordings.table import row, table
 
@@ -156,3 +157,9 @@ def test_a_damper_is_read_from_a_law_that_saturates() -> None:
     found = row(arm, verdict(effect("arm_spring", "nonlinear_damping", d_0=0.02, r_0=8.0)), fit)
     assert found["estimates"][0]["found"]["value"] == pytest.approx(0.0025)
     assert not found["estimates"][0]["shown"]  # a deviation that is not known
+
+
+def test_names_with_commas_can_be_chosen() -> None:
+    names = ["Silverbox, published model", "pendulum", "double pendulum, joint 1 without Coulomb friction"]
+    assert [case.name for case in chosen(", ".join(names))] == names
+    assert [case.name for case in chosen("Silverbox,EMPS")] == ["Silverbox", "EMPS"]
