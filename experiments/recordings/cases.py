@@ -213,6 +213,7 @@ CASES = (
     _joint(2),
     _complete("double pendulum", "elsewhere/double_pendulum", str(SHARED / "elsewhere" / "double_pendulum" / "complete.toml")),
     _elsewhere("joint of a seven-axis arm", "arm_joint"),
+    Case("joint of a seven-axis arm, torque measured", "elsewhere/arm_joint", "arm_joint_torque.toml", answered=True),
     _elsewhere("cogging motor", "cogging"),
     _elsewhere("screw drive", "screw_drive"),
     _complete("screw drive", "elsewhere/screw_drive", str(SHARED / "elsewhere" / "screw_drive" / "complete.toml")),

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
+from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
 from greybox_torch.diagnosis.confirm.simpler_laws import with_simpler_laws
 from greybox_torch.diagnosis.confirm.take_back import _idle
 from greybox_torch.diagnosis.refit.rank import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.state import SelectionStep
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias
@@ -67,3 +68,14 @@ def test_what_only_frees_the_other_parameters_is_idle_on_other_experiments(
     found = _idle(state, {effect.prefix: Gain(0.5, 0.1)}, held_out.fits(state.current), held_out)
     assert found == (None if elsewhere_too else effect.prefix)
     assert _idle(state, {effect.prefix: Gain(0.95, 0.1)}, held_out.fits(state.current), held_out) is None
+
+
+@pytest.mark.parametrize(("whole", "idle"), [(Gain(0.6, 0.1), None), (Gain(0.6, 0.3), "rotor.law")])
+def test_few_windows_alone_do_not_make_an_effect_idle_whose_gain_is_beyond_chance(stub, whole: Gain, idle) -> None:
+    """Left out, all else as it is, 2.5 standard errors are lost: less than what is beyond chance by itself."""
+    full = (stub(energies=np.ones(8)),)
+    left_out = (stub(energies=np.array([5.0, 1.0, 1.0, 1.0, 1.0, 1.0, 3.0, 1.0])),)
+    assert 1.0 < gain(left_out, full).errors_away < 3.0
+    state = stub(current=stub(values=dict), without={"rotor.law": None})
+    others = stub(fits_at=lambda hypothesis, values: left_out, study=stub(settings=DiagnosisSettings()))
+    assert _idle(state, {"rotor.law": whole}, full, others) == idle
