@@ -75,7 +75,7 @@ class AugmentedModel(GreyBoxModel):
         acting = self._acting_inputs(x, u, p)
         forces = self._forces(seen, u, acting, p, port)
         extra: dict[str, Any] = {}
-        for a in self.attachments:
+        for a in (a for a in self.attachments if a.mechanism.states(self.surroundings[a.port])):
             given = self._given(a, seen, u if isinstance(self.local.ports[a.port], Actuator) else acting, p, forces)
             for name, rate in a.mechanism.rates(*given).items():
                 extra[f"{a.prefix}.{name}"] = rate
@@ -106,6 +106,10 @@ class AugmentedModel(GreyBoxModel):
             return dict(self.base.output(x, acting, p))
         forces = self._forces(self._seen_states(x, u, p), u, acting, p, port)
         return dict(self.base.outputs_with(x, acting, p, forces))
+
+    def _shown_forces(self, seen: Any, u: Any, acting: Any, p: Any, port: Any) -> Signals | None:
+        """:meth:`_forces` where an output shows them; else no law asks for them, and evaluating every law would take long."""
+        return self._forces(seen, u, acting, p, port) if self.base.shows_forces else None
 
     def _forces(self, seen: Any, u: Any, acting: Any, p: Any, port: Any) -> Signals:
         """The forces at the ports: ``port``, and what the attached laws add to them.
@@ -156,10 +160,9 @@ class AugmentedModel(GreyBoxModel):
         own = len(self.base.states), len(self.base.declared_parameters)
         result = states.copy()
         result[:, : own[0]] = self.base.begun(states[:, : own[0]], records, samples, values[: own[1]])
+        forces = self._shown_forces(x, u, u, p, self.local.no_forces())
         for a in self.attachments:
-            for name, value in a.mechanism.starts(
-                self.local.at(a, x, u, p, self._forces(x, u, u, p, self.local.no_forces()))
-            ).items():
+            for name, value in a.mechanism.starts(self.local.at(a, x, u, p, forces)).items():
                 result[:, names.index(f"{a.prefix}.{name}")] = np.asarray(value)
         return result
 
@@ -191,7 +194,7 @@ class AugmentedModel(GreyBoxModel):
     def local_signals(self, attachment: Attachment, x: Any, u: Any, p: Any) -> Signals:
         """The signals that an attached mechanism sees."""
         seen = self._seen_states(x, u, p)
-        forces = self._forces(seen, u, self._acting_inputs(x, u, p), p, self.local.no_forces())
+        forces = self._shown_forces(seen, u, self._acting_inputs(x, u, p), p, self.local.no_forces())
         return self.local.at(attachment, seen, u, p, forces)
 
     def _seen_states(self, x: Signals, u: Any, p: Any) -> Signals:
