@@ -61,17 +61,10 @@ def score_of(fits: Sequence[WindowFit], floor: float) -> float:
 
 
 def window_lengths(problem: Problem, budget: SearchBudget = SearchBudget()) -> list[int]:
-    """Window lengths for a problem's records, in samples: none so long that there would be fewer than ``budget.least_windows``."""
-    lengths = problem.records.lengths
-    longest = int(lengths.max())
+    """Window lengths for a problem's records, in samples."""
+    longest = int(problem.records.lengths.max())
     shortest = max(budget.shortest_window, round(longest / budget.windows_of_longest))
-    found = [shortest]
-    for length in (shortest * factor for factor in budget.window_factors):
-        if np.floor(lengths / length + 0.5).sum() < budget.least_windows:
-            length = int(lengths.sum()) // budget.least_windows
-        if 1.5 * found[-1] <= length <= longest // 2:
-            found.append(length)
-    return found
+    return [shortest * factor for factor in budget.window_factors if shortest * factor <= longest // 2] or [shortest]
 
 
 def hypothesis(
@@ -174,12 +167,9 @@ def _best_fit(
 def _as_far_as_counts(
     base: Problem, limits: Settings, settings: DiagnosisSettings, budget: SearchBudget, rough: bool, fit: WindowFit
 ) -> Settings:
-    """``limits`` with the tolerance that decisions can still see: at the noise all samples count, where more is left they do not, and far
-    above it only what is large counts.
-    """
+    """``limits`` with the tolerance that decisions can still see: at the noise all samples count, where more is left they do not."""
     if reaches_noise(base, fit, settings, settings.above_noise) or not floor_known(base, settings):
         return limits
-    rough = rough or not reaches_noise(base, fit, settings, settings.far_above_noise)
     tolerance = budget.rough_mismatch_tolerance if rough else budget.mismatch_tolerance
     return replace(limits, tolerance=max(limits.tolerance, tolerance))
 

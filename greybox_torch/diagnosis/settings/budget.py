@@ -47,12 +47,6 @@ class SearchBudget:
     windows_of_longest: int = count(
         64, "How many of the shortest windows the longest record has.", unit="windows", chosen_by=TIME
     )
-    least_windows: int = count(
-        8,
-        "Windows of all records together that there are at least, also of the longest: of fewer, the deviation of their mean says little.",
-        unit="windows",
-        chosen_by="the lanes that the processor computes at once",
-    )
     shortest_window: int = count(20, "Samples that a window has at least.", unit="samples", chosen_by=TIME, least=2)
 
     first_iterations: Settings = iteration(
@@ -82,7 +76,7 @@ class SearchBudget:
     )
     rough_mismatch_tolerance: float = share(
         3e-3,
-        "The same for fits that only choose what is fitted further, or that leave many times the noise.",
+        "The same for fits that only choose what is fitted further.",
         unit="share of the cost",
         chosen_by="a tenth of the difference up to which hypotheses tie",
     )
