@@ -15,6 +15,7 @@ EVEN = 0.01
 Samples = NDArray[np.float64]
 _PADDING = 200  # reflected samples at the ends
 _LEAST_WEIGHT = 0.25  # at the ends of a recording it is a half
+_LOWEST_CUTOFF = 1e-7  # of the sampling rate: below it the filter's poles are one in double precision
 
 
 def unevenness(time: Samples) -> float:
@@ -51,7 +52,7 @@ def derivative(values: Samples, step: float, cutoff: float, place: str) -> Sampl
     The filter is a Butterworth of second order at `cutoff` Hz, run forward and backward over the samples and their odd reflection at the
     ends.
 
-    Raises UserError where a sample is missing, the recording is too short, or the cut-off lies above half the sampling rate.
+    Raises UserError where a sample is missing, the recording is too short, or the cut-off lies above half the sampling rate or near zero.
     """
     from scipy import signal
 
@@ -63,6 +64,11 @@ def derivative(values: Samples, step: float, cutoff: float, place: str) -> Sampl
     if missing.size:
         raise UserError(
             f"{place}: sample {missing[0]} (the first is 0) is missing; expected no gap where a derivative is asked for"
+        )
+    if not cutoff > _LOWEST_CUTOFF / step:
+        raise UserError(
+            f"{place}: a cut-off of {cutoff:g} Hz is too far below the sampling rate for numbers of 16 digits; expected more than "
+            f"{_LOWEST_CUTOFF / step:g} Hz"
         )
     sections: Any = signal.butter(2, cutoff, fs=1.0 / step, output="sos")
     return np.gradient(signal.sosfiltfilt(sections, values, padtype="odd", padlen=min(len(values) - 1, _PADDING)), step)

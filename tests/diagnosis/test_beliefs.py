@@ -89,23 +89,24 @@ def hypotheses(found: gt.DiagnosisResult) -> set[tuple[str, str]]:
     return told
 
 
-@pytest.mark.parametrize("side", ["actuator", "sensor"])
-def test_a_lag_is_placed_where_it_is_believed_to_be(motor_data, motor, side: str) -> None:
+def test_a_lag_is_placed_where_it_is_believed_to_be(motor_data, motor) -> None:
     """From voltage to speed a lag of the input is one of the output: the leading member follows the belief, the other one stays."""
     data = motor_data(600, acting=lambda v: lfilter([0.6], [1.0, -0.4], v))
-    found = gt.diagnose(motor, data, beliefs={f"{side}/*": "likely", "rotor/*": 0.0})
-    (effect,) = found.effects
-    lags = {"actuator": "input_lag", "sensor": "sensor_lag"}
-    assert (effect.port, effect.mechanism) == (side, lags[side])
-    (other,) = (a for a in effect.alternatives if a.mechanism in lags.values())
-    assert effect.probability / other.probability == pytest.approx(9.0, rel=0.3)
-    assert effect.one_of is not None and effect.one_of.probability > 0.9
-    assert not any(port == "rotor" for port, _ in hypotheses(found))
-    (b, j), verdict = sorted(found.verdict.parameters, key=lambda p: p.name, reverse=True)[:2], found.verdict
-    assert {p.name for p in verdict.parameters} == {"J", "b"} and b.augmented is not None
-    assert b.augmented[0] == found.parameters["b"].value and (b.augmented[1] or 0.0) > 0.0 and j.unit == "kg m^2"
-    assert found.to_dict()["beliefs"] == {f"{side}/*": 0.9, "rotor/*": 0.0}
-    assert any("what is believed beforehand decides" in s for s in found.verdict.evidence) == (side == "actuator")
+    lags, decided = {"actuator": "input_lag", "sensor": "sensor_lag"}, []
+    for side, lag in lags.items():
+        found = gt.diagnose(motor, data, beliefs={f"{side}/*": "likely", "rotor/*": 0.0})
+        (effect,) = found.effects
+        assert (effect.port, effect.mechanism) == (side, lag)
+        (other,) = (a for a in effect.alternatives if a.mechanism in lags.values())
+        assert effect.probability / other.probability == pytest.approx(9.0, rel=0.3)
+        assert effect.one_of is not None and effect.one_of.probability > 0.9
+        assert not any(port == "rotor" for port, _ in hypotheses(found))
+        (b, j), verdict = sorted(found.verdict.parameters, key=lambda p: p.name, reverse=True)[:2], found.verdict
+        assert {p.name for p in verdict.parameters} == {"J", "b"} and b.augmented is not None
+        assert b.augmented[0] == found.parameters["b"].value and (b.augmented[1] or 0.0) > 0.0 and j.unit == "kg m^2"
+        assert found.to_dict()["beliefs"] == {f"{side}/*": 0.9, "rotor/*": 0.0}
+        decided.append(any("what is believed beforehand decides" in s for s in verdict.evidence))
+    assert sum(decided) == 1  # the recordings alone put one of the two first, by next to nothing
 
 
 def test_friction_in_the_place_of_a_bias(motor_data, motor) -> None:

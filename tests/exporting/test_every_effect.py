@@ -32,6 +32,7 @@ def mechanisms(kind: str) -> list[Mechanism]:
     of = SIGNAL[kind]
     learned = {
         "unknown": {"signal": of},
+        "unknown_with_memory": {"signal": of},
         "friction_net": {},
         "residual_net": {"inputs": (of,)},
         "memory_net": {"inputs": (of,)},

@@ -12,6 +12,7 @@ from greybox_torch.mechanisms.mechanism import SHARE, Mechanism
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 
 # In the surroundings of conftest: speed −20 to 16 rad/s, position −3 to 5 rad, level 0.5 to 4 m, 10 s at 1 ms.
@@ -146,7 +147,7 @@ def test_the_shape_of_a_part_that_is_not_needed_may_sit_at_its_end(name: str, sh
 
 @pytest.mark.parametrize("law", [pytest.param(law, id=law.name) for law in (*LIBRARY.values(), *LEARNED.values())])
 def test_every_mechanism_answers(law: type[Mechanism], around: Surroundings) -> None:
-    mechanism = Unknown("speed") if law is Unknown else law()
+    mechanism = law("speed") if issubclass(law, Unknown | UnknownWithMemory) else law()
     values = {p.name: p.value for p in mechanism.parameters(around)}
     amplitudes = {n for probe in mechanism.probes(around) for n in probe.directions} - {SHARE}
     tiny = {
