@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.hypothesis.significance import overall_significance, white_samples
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
 from greybox_torch.diagnosis.select.remaining import completes, difference
@@ -13,8 +14,12 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 
 def least_gain(fitted: Hypothesis, settings: DiagnosisSettings) -> float:
-    """The improvement that an effect of ``fitted`` has to bring to be claimed."""
-    return settings.least_gain_far_above_noise if far_above_noise(fitted, settings) else settings.least_gain
+    """The improvement that an effect of ``fitted`` has to bring to be claimed.
+
+    Where the recordings do not tell how much noise there is, what is left may be anything, and a law that bends a little to it is none.
+    """
+    anything = far_above_noise(fitted, settings) or not floor_known(fitted.problem, settings)
+    return settings.least_gain_far_above_noise if anything else settings.least_gain
 
 
 def chosen(ranked: Sequence[RankedCandidate], plain: Hypothesis, settings: DiagnosisSettings) -> RankedCandidate | None:

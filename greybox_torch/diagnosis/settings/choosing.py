@@ -140,7 +140,7 @@ class SelectionSettings:
     least_gain: float = share(0.01, "Improvement below which nothing is claimed.", unit=GAIN)
     least_gain_far_above_noise: float = share(
         0.05,
-        "The same where much more than noise is left: some law always bends a little to a real machine.",
+        "The same where much more than noise is left, or nobody knows how much is noise: some law always bends a little to a real machine.",
         unit=GAIN,
     )
     least_significance: float = number(
