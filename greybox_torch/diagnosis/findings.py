@@ -74,7 +74,8 @@ def find(
     """
     study = make_study(_problem(dataset, model))
     used = excerpts(dataset, study.budget.most_samples)
-    study = replace(study, problem=_problem(used.dataset, model))
+    if used.dataset is not dataset:
+        study = replace(study, problem=_problem(used.dataset, model))
     study = replace(study, options=simulator_for(study.problem, study.options).options)
     free_runs = FreeRuns(study, dataset)
     clock.lap("preparing")

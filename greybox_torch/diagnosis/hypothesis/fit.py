@@ -152,7 +152,9 @@ def _best_fit(
     budget: SearchBudget,
 ) -> WindowFit | None:
     begin = partial(fit_windows, simulator=simulator, length=length, shorter=shorter, settings=budget.first_iterations)
-    leading, others = (known, trials) if known is not None else (begin(trials[0]), trials[1:]) if trials else (None, ())
+    leading, others = known, trials
+    if known is None and trials:
+        leading, others = begin(trials[0]), trials[1:]
     rival = None if leading is None else Rival(leading.mean_square, budget.rival_pace)
     begun = [leading, *side_by_side(partial(begin, t, rival=rival) for t in others)]
     found = sorted((fit for fit in begun if fit is not None), key=lambda f: f.mean_square)
