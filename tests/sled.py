@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 import pytest
 
-from greybox_torch.data import DataSet
+from greybox_torch.data import DataSet, Role
 
 
 class SledRun(Protocol):
@@ -19,6 +19,8 @@ class SledRun(Protocol):
         noise: float = ...,
         experiments: int = ...,
         travel: float = ...,
+        roles: list[Role] | None = ...,
+        samples: int = ...,
     ) -> DataSet: ...
 
 
@@ -29,8 +31,8 @@ def sled_run(data_set) -> SledRun:
     ``missing`` of position and speed is a force on the sled that the model does not know; ``noise`` of the position sensor.
     """
 
-    def make(missing=lambda q, v: 0.0 * q, *, noise=1e-5, experiments=2, travel=1.0):
-        step, n, rng, runs = 2e-3, 4000, np.random.default_rng(0), []
+    def make(missing=lambda q, v: 0.0 * q, *, noise=1e-5, experiments=2, travel=1.0, roles=None, samples=4000):
+        step, n, rng, runs = 2e-3, samples, np.random.default_rng(0), []
         t = step * np.arange(n)
         for e in range(experiments):
             waves = [(0.30 * travel, 2.1 + 0.3 * e, 0.4), (0.12 * travel, 5.3, 1.0 + e), (0.02 * travel, 11.7, 0.2)]
@@ -39,6 +41,6 @@ def sled_run(data_set) -> SledRun:
             acceleration = sum(-a * w**2 * np.sin(w * t + f) for a, w, f in waves)
             force = 2.5 * acceleration + 0.8 * v - missing(q, v)
             runs.append({"F": force, "q": q + rng.normal(0, noise, n)})
-        return data_set({"F": "N", "q": "m"}, runs, sample_time=step, hold="foh")
+        return data_set({"F": "N", "q": "m"}, runs, sample_time=step, hold="foh", roles=roles)
 
     return make

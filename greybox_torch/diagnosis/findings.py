@@ -18,6 +18,7 @@ from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
 from greybox_torch.diagnosis.confirm.holding import Judged, holding
 from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.confirm.longer_windows import explains_free_runs, longer_windows, sentence
 from greybox_torch.diagnosis.confirm.promotion import promote_validation, serves
 from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains
 from greybox_torch.diagnosis.excerpts import excerpts
@@ -41,6 +42,7 @@ CONFIRMING = "confirming on held-out experiments"
 FITTING = "final fits on whole records"
 JUDGING = "validation and report data"
 AGAIN = "searching again with a held-out experiment to choose with"
+LONGER = "searching again over longer windows"
 
 
 @dataclass(frozen=True)
@@ -129,6 +131,35 @@ def find_with_more(
     if best.complete and not last.complete:
         return replace(best, complete=False, cut=(AGAIN,))
     return best
+
+
+def find_what_is_slow(
+    first: Findings, model: GreyBoxModel, make_study: MakeStudy, clock: Stopwatch, end: Deadline = Deadline()
+) -> Findings:
+    """``first``, or what is found over longer windows, where free runs show what the others do not and that explains most of it.
+
+    Args:
+        end: when all of it has to be known.
+    """
+    if not first.complete or first.others is None:
+        return first
+    budget = longer_windows(first.study, first.state, first.judged)
+    if budget is None:
+        return first
+    found = bool(first.state.effects)
+    try:
+        with until(end):
+            first.study.working_on("searching again over longer windows for what acts slowly")
+            longer = partial(make_study, budget=budget)
+            last = find_with_more(find(first.dataset, model, longer, clock, end), model, longer, clock, end)
+    except (TimeIsUp, KeyboardInterrupt):
+        return replace(first, complete=False, others=None, cut=(*first.cut, LONGER))
+    told = sentence(first.judged, first.state, last.state)
+    if last.state.effects and explains_free_runs(first.judged, found, last.judged, first.study.settings):
+        return replace(last, more=(*first.more, *last.more, told))
+    if not last.complete:
+        return replace(first, complete=False, cut=(LONGER,))
+    return replace(first, more=(*first.more, told))
 
 
 def _searched(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState, bool]:

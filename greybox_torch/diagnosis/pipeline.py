@@ -23,7 +23,7 @@ from greybox_torch.diagnosis.describe.ranking import ranking
 from greybox_torch.diagnosis.describe.residual_tests import detect
 from greybox_torch.diagnosis.describe.rivals import Rival, rivals
 from greybox_torch.diagnosis.effect import Effect
-from greybox_torch.diagnosis.findings import Findings, find, find_with_more
+from greybox_torch.diagnosis.findings import Findings, find, find_what_is_slow, find_with_more
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
@@ -115,7 +115,9 @@ def diagnose(
         journal=journal,
     )
     found = find(dataset, model, make_study, clock, end)
-    found = find_with_more(found, model, make_study, clock, Deadline(end.at - budget.seconds_for_writing))
+    before_writing = Deadline(end.at - budget.seconds_for_writing)
+    found = find_with_more(found, model, make_study, clock, before_writing)
+    found = find_what_is_slow(found, model, make_study, clock, before_writing)
     told = partial(_diagnosis, found, dataset, model, seed, clock)
     return or_else(told, told)[0]
 

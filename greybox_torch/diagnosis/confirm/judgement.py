@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -98,12 +98,27 @@ class Judgement:
         noise, the largest root mean square error in units of the noise, and in which experiment; NaN where no output shows the noise.
         """
         final = self.with_effects if effects else self.refit
-        beyond = [self._energy(c, self._floors()) for c in (self.refit, final)]
         times = np.where(self._judging(), self._times_noise(final), np.nan)
+        share = _share_left(self.mismatch(False), self.mismatch(effects))
         if not np.isfinite(times).any():
-            return _share_left(*beyond), np.nan, ""
+            return share, np.nan, ""
         worst = int(np.nanargmax(times))
-        return _share_left(*beyond), float(times[worst]), self.recordings[worst].name
+        return share, float(times[worst]), self.recordings[worst].name
+
+    @property
+    def judges(self) -> set[str]:
+        """The names of the experiments that judge."""
+        return {r.name for r, judging in zip(self.recordings, self._judging(), strict=True) if judging}
+
+    def mismatch(self, effects: bool, among: Collection[str] | None = None) -> float:
+        """Sum of the mean squared errors beyond the noise of the recommended model, outputs in units of their spread.
+
+        Args:
+            among: of these experiments; by default of all that judge.
+        """
+        final = self.with_effects if effects else self.refit
+        chosen = np.array([r.name in (self.judges if among is None else among) for r in self.recordings])
+        return float(self._beyond(final, self._floors())[chosen].sum())
 
     def comparisons(self, effects: bool) -> dict[str, Comparison]:
         """The models by the names that a verdict gives them; without ``effects`` the recommended one is the plain refit."""
@@ -159,8 +174,7 @@ class Judgement:
 
     def _judged(self, comparison: Comparison) -> Comparison:
         """The validation experiments alone, where there are any."""
-        names = {r.name for r, judging in zip(self.recordings, self._judging(), strict=True) if judging}
-        return replace(comparison, scores=tuple(s for s in comparison.scores if s.experiment in names))
+        return replace(comparison, scores=tuple(s for s in comparison.scores if s.experiment in self.judges))
 
     def _judging(self) -> np.ndarray:
         """Which experiments (E,) judge: those of validation, all where there is none."""

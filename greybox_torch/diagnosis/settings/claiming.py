@@ -73,6 +73,13 @@ class ConfirmationSettings:
         unit="share of the plain model's error",
         chosen_by="cases simulated elsewhere: from less, searching again never bettered what was found",
     )
+    slow_share: float = share(
+        0.25,
+        "Part of the mismatch of free runs that must be left, where windows show noise alone, for longer ones to be searched; "
+        "what those find has to leave less than this part of it.",
+        unit="share of the mean squared error of free validation runs beyond the noise",
+        chosen_by="most of it: disturbances that add up may take some",
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

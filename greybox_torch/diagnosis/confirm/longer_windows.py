@@ -1,0 +1,59 @@
+"""Where free runs leave what windows do not show, a slow effect is looked for over longer windows.
+
+Over a window the start states take up whatever acts slowly: a constant force moves an inertia by the square of the time. Free runs show it;
+they also show how disturbances of the machine add up where nothing pulls it back. So what longer windows find has to explain most of it on
+experiments that had no part in choosing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
+from greybox_torch.diagnosis.hypothesis.fit import window_lengths
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
+from greybox_torch.diagnosis.study import Study
+
+
+def longer_windows(study: Study, state: SearchState, judged: Judgement) -> SearchBudget | None:
+    """The budget with windows twice as long beside the others.
+
+    None where free runs leave little, or windows show it, or none are longer.
+    """
+    settings, budget = study.settings, study.budget
+    share, times, _ = judged.left(bool(state.effects))
+    if not (times > settings.far_above_noise and share > settings.slow_share):
+        return None
+    if times_noise(study.problem, state.current, settings) > settings.above_noise:
+        return None
+    longer = replace(budget, window_factors=(*budget.window_factors, 2 * budget.window_factors[-1]))
+    more = len(window_lengths(study.problem, longer)) > len(window_lengths(study.problem, budget))
+    return longer if more else None
+
+
+def explains_free_runs(before: Judgement, found: bool, after: Judgement, settings: DiagnosisSettings) -> bool:
+    """Whether the effects of ``after`` leave so little of what ``before`` leaves of free runs that most of it is theirs.
+
+    By experiments that had no part in choosing either.
+
+    Args:
+        found: whether there are effects before, too.
+    """
+    both = before.judges & after.judges
+    return after.mismatch(True, both) <= settings.slow_share * before.mismatch(found, both)
+
+
+def sentence(before: Judgement, state: SearchState, longer: SearchState) -> str:
+    """What the reader of a verdict has to know of it.
+
+    Args:
+        state: what was found before, ``longer`` over longer windows.
+    """
+    _, times, experiment = before.left(bool(state.effects))
+    shown, searched = (s.current.fits[-1].windows.steps for s in (state, longer))
+    return (
+        f"Free runs of what was found before leave {times:.2g} times the noise in {experiment}, which windows of up to {shown} samples "
+        f"do not show: what acts slowly was looked for over windows of {searched} samples, too."
+    )

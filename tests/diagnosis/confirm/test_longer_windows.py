@@ -1,0 +1,88 @@
+"""What acts so slowly that only free runs show it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.confirm import longer_windows as module
+from greybox_torch.diagnosis.confirm.longer_windows import explains_free_runs, longer_windows
+from greybox_torch.diagnosis.pipeline import diagnose
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
+from greybox_torch.systems.load import load_model
+
+ROLES = ["estimation", "validation", "validation"]
+SETTINGS = DiagnosisSettings()
+QUICK = SearchBudget(
+    most_effects=1,
+    most_revisions=0,
+    named_per_length=2,
+    most_screen_ties=4,
+    curves_per_length=0,
+    from_motion=0,
+    finalists=1,
+)
+
+
+def test_a_weak_constant_force_is_found_over_longer_windows(sled_run, machines) -> None:
+    """Over a quarter of a record start states take up all of it but 15 % of the noise."""
+    pushed = sled_run(lambda q, v: 1e-4 + 0.0 * q, experiments=3, roles=ROLES)
+    verdict = diagnose(pushed, load_model(f"{machines / 'sled.py'}:Sled"), budget=QUICK).verdict
+    (effect,) = verdict.effects
+    members = effect.one_of.members if effect.one_of is not None else (effect,)
+    assert {m.mechanism for m in members} & {"constant_bias", "input_bias"}
+    assert any("which windows of up to 1024 samples do not show" in line for line in verdict.evidence)
+    assert verdict.left is not None and verdict.left.times_noise == pytest.approx(1.0, abs=0.1)
+
+
+def test_disturbances_that_add_up_are_no_law(sled_run, machines) -> None:
+    """White forces move a free mass ever farther from the model, on every record another way."""
+    rng = np.random.default_rng(1)
+    shaken = sled_run(lambda q, v: rng.normal(0, 1e-2, len(q)), experiments=3, roles=ROLES, samples=1600)
+    verdict = diagnose(shaken, load_model(f"{machines / 'sled.py'}:Sled"), budget=QUICK).verdict
+    assert not verdict.mismatch and not verdict.effects
+    assert any("what acts slowly was looked for" in line for line in verdict.evidence)
+
+
+def judgement(stub, share: float = 1.0, times: float = 10.0, **errors: float) -> Any:
+    """Free runs that leave ``errors`` by experiment."""
+    return stub(
+        left=lambda effects: (share, times, "run 2"),
+        judges=set(errors),
+        mismatch=lambda effects, among: sum(errors[name] for name in among),
+    )
+
+
+@pytest.mark.parametrize(
+    ("share", "times", "by_windows", "lengths", "searched"),
+    [
+        (1.0, 10.0, 1.1, 2, True),
+        (1.0, 2.9, 1.1, 2, False),
+        (0.2, 10.0, 1.1, 2, False),
+        (1.0, 10.0, 1.4, 2, False),
+        (1.0, 10.0, 1.1, 1, False),
+        (1.0, np.nan, 1.1, 2, False),
+    ],
+)
+def test_longer_windows_are_searched_where_free_runs_alone_show_more_than_noise(
+    monkeypatch, stub, share, times, by_windows, lengths, searched
+) -> None:
+    budget = SearchBudget()
+    lengths_of = {budget.window_factors: [10], (*budget.window_factors, 32): [10, 20][:lengths]}
+    monkeypatch.setattr(module, "window_lengths", lambda problem, budget: lengths_of[budget.window_factors])
+    monkeypatch.setattr(module, "times_noise", lambda problem, fitted, settings: by_windows)
+    study = stub(settings=SETTINGS, budget=budget, problem=stub())
+    longer = longer_windows(study, stub(effects=(), current=stub()), judgement(stub, share, times))
+    assert (longer is not None) is searched
+    assert longer is None or longer.window_factors == (1, 4, 16, 32)
+
+
+def test_what_longer_windows_find_has_to_explain_most_where_it_had_no_part_in_choosing(stub) -> None:
+    before = judgement(stub, run_2=10.0, run_3=4.0)
+    for left, explains in (({"run_2": 2.4, "run_3": 1.0}, True), ({"run_2": 2.7, "run_3": 1.0}, False)):
+        assert explains_free_runs(before, False, judgement(stub, **left), SETTINGS) is explains
+    # Run 2, which was taken to choose with, does not judge.
+    assert not explains_free_runs(before, False, judgement(stub, run_3=1.1), SETTINGS)
+    assert explains_free_runs(before, False, judgement(stub, run_3=0.9), SETTINGS)
