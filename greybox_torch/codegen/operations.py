@@ -169,13 +169,20 @@ HANDLERS: dict[str, Callable[..., Any]] = {
 
 AT_ONCE: dict[str, Callable[..., Any]] = {
     **{n: HANDLERS[n] for n in ("add", "sub", "mul", "div", "neg", "square", "clamp", "select", "stack", "new_zeros")},
+    **{n: HANDLERS[n] for n in ("cat", "zeros_like", "ones_like", "unsqueeze", "squeeze", "unbind")},
     **{name: HANDLERS[name] for name in ("where", "maximum", "minimum", "lt", "le", "gt", "ge", *FUNCTIONS)},
     "__rsub__": HANDLERS["rsub"],
     "__rdiv__": lambda g, a, b: _divided(g, b, a),
     "__rtruediv__": lambda g, a, b: _divided(g, b, a),
     "true_divide": HANDLERS["div"],
+    "expand": lambda g, a, *shape: HANDLERS["expand"](g, a, shape if shape and isinstance(shape[0], int) else shape[0]),
+    "broadcast_tensors": lambda g, *several: tuple(np.broadcast_arrays(*[operand(g, a) for a in several], subok=True)),
     "pow": _power,
     "__pow__": _power,
     "__rpow__": lambda g, a, b: _power(g, b, a),
     **MATRICES_AT_ONCE,
 }
+"""Operations that are handled as they are called, by the names of torch's functions and methods."""
+
+NAMED_AT_ONCE = {"dim", "min", "max"}
+"""Arguments that these take by name, too."""

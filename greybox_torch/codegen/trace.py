@@ -14,7 +14,7 @@ import torch
 
 from greybox_torch.codegen.arrays import NodeArray, UnsupportedOperation, constants
 from greybox_torch.codegen.expression import Graph
-from greybox_torch.codegen.operations import AT_ONCE, HANDLERS
+from greybox_torch.codegen.operations import AT_ONCE, HANDLERS, NAMED_AT_ONCE
 from greybox_torch.errors import UserError
 from greybox_torch.model.check import NEEDS_A_VALUE
 
@@ -40,11 +40,12 @@ class Symbol(torch.Tensor):
         The first operation that goes there makes torch import its distributed tensors, half a second of the life of a process.
         """
         name = getattr(func, "__name__", "")
-        handler = None if kwargs else AT_ONCE.get(name)
+        kwargs = kwargs or {}
+        handler = AT_ONCE.get(name) if kwargs.keys() <= NAMED_AT_ONCE else None
         if handler is None:
-            return torch._C._disabled_torch_function_impl(func, types, args, kwargs or {})  # type: ignore[attr-defined]
-        graph = _graph_of(args, {})
-        return _symbols_of(graph, _handled(handler, name, graph, args, {}))
+            return torch._C._disabled_torch_function_impl(func, types, args, kwargs)  # type: ignore[attr-defined]
+        graph = _graph_of(args, kwargs)
+        return _symbols_of(graph, _handled(handler, name, graph, args, kwargs))
 
     @classmethod
     def __torch_dispatch__(cls, func: Any, types: Any, args: Any = (), kwargs: Any = None) -> Any:

@@ -12,6 +12,8 @@ import pytest
 import torch
 
 from greybox_torch.codegen import build
+from greybox_torch.codegen.lower import lower
+from greybox_torch.codegen.trace import Symbol
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.simulation.eager import EagerStepper
@@ -21,7 +23,7 @@ from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.simulator import make_stepper
 from greybox_torch.simulation.stepper import Stepper
 from greybox_torch.simulation.windows import whole_records
-from greybox_torch.systems import RobotArm
+from greybox_torch.systems import RobotArm, load_model
 
 
 def lag(rate: Any) -> GreyBoxModel:
@@ -215,3 +217,16 @@ def test_the_compiler_of_a_package(records: Records, monkeypatch: pytest.MonkeyP
     assert isinstance(other, NativeStepper)
     for one, two in zip(simulated(compiled, records), simulated(other, records), strict=True):
         np.testing.assert_allclose(one, two, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["arm", "motor", "two_link"])
+def test_usual_equations_are_traced_without_torch_taking_them_apart(monkeypatch, machines, name) -> None:
+    """The first operation that torch takes apart makes it import its distributed tensors, half a second of every command."""
+
+    def taken_apart(cls, func, types, args=(), kwargs=None):
+        raise AssertionError(f"{func} went by way of torch's dispatcher")
+
+    classes = {"motor": "Motor", "two_link": "TwoLink"}
+    model = RobotArm() if name == "arm" else load_model(f"{machines / name}.py:{classes[name]}")
+    monkeypatch.setattr(Symbol, "__torch_dispatch__", classmethod(taken_apart))
+    assert lower(model, [p.name for p in model.declared_parameters][:1])
