@@ -16,7 +16,7 @@ demo: $(INSTALLED)
 	$(BIN)/greybox demo --out results/demo
 
 test: $(INSTALLED)
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .

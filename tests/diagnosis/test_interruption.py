@@ -60,6 +60,9 @@ def remembered() -> Any:
         "_compiled",
         lambda study, current, found, *rest: (id(current), fingerprint([c.attachment for c in found])),
     )
+    once(
+        offered, "candidates_from_motion", lambda study, current, accepted, wanted: (id(current), fingerprint(accepted))
+    )
     once(offered, "scan_orders", lambda study, effects, free, fits: tuple(map(id, fits)))
     once(Screen, "of", lambda model, effects, there, *rest, **how: (fingerprint(effects), fingerprint(there)))
     once(Screen, "scores", lambda screen, fit, *rest: (id(screen), id(fit)))
