@@ -25,9 +25,9 @@ def named_files(folder: Path) -> Iterator[Path]:
 
 
 def is_whole(file: Path) -> bool:
-    """Whether a file is all there, by its suffix."""
+    """Whether a file is all there, by its suffix. Nothing in it is a file begun, but for lines that are yet to come."""
     content = file.read_bytes()
-    return bool(content) and WHOLE.get(file.suffix, lambda _: True)(content)
+    return (bool(content) or file.suffix == ".jsonl") and WHOLE.get(file.suffix, lambda _: True)(content)
 
 
 def _reads(read: Callable[[bytes], Any], content: bytes) -> bool:

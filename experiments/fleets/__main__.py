@@ -29,6 +29,9 @@ from experiments.fleets.plan import draw_fleet
 from experiments.fleets.running import FleetFailed
 from experiments.speed.settings import header
 
+FEWEST = 4
+"""Data sets that throughput can be measured with."""
+
 
 def main(arguments: list[str] | None = None) -> int:
     """0 where all was measured."""
@@ -85,7 +88,12 @@ def _parsed(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--only", choices=["throughput"], help="measure nothing else")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/fleets"))
-    return parser.parse_args(arguments)
+    chosen = parser.parse_args(arguments)
+    if chosen.throughput < FEWEST:
+        parser.error(
+            f"--throughput: found {chosen.throughput}, expected at least {FEWEST}: the first of every worker do not count"
+        )
+    return chosen
 
 
 if __name__ == "__main__":

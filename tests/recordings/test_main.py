@@ -35,6 +35,10 @@ role = "validation"
 name = "{machine}:Motor"
 [model.parameters]
 b = {{ value = {b} }}
+[diagnosis]
+named_per_length = 2
+curves_per_length = 0
+finalists = 2
 """
 DAMPING = Concealed(
     "viscous friction", "b", 0.03, "N m s/rad",

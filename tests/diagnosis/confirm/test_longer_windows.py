@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.pipeline import diagnose
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.systems.load import load_model
 
-ROLES = ["estimation", "validation", "validation"]
+ROLES = ["estimation", "validation"]
 SETTINGS = DiagnosisSettings()
 QUICK = SearchBudget(
     most_effects=1,
@@ -28,7 +28,7 @@ QUICK = SearchBudget(
 
 def test_a_weak_constant_force_is_found_over_longer_windows(sled_run, machines) -> None:
     """Over a quarter of a record start states take up all of it but 15 % of the noise."""
-    pushed = sled_run(lambda q, v: 1e-4 + 0.0 * q, experiments=3, roles=ROLES)
+    pushed = sled_run(lambda q, v: 1e-4 + 0.0 * q, experiments=2, roles=ROLES)
     verdict = diagnose(pushed, load_model(f"{machines / 'sled.py'}:Sled"), budget=QUICK).verdict
     (effect,) = verdict.effects
     members = effect.one_of.members if effect.one_of is not None else (effect,)
@@ -40,7 +40,7 @@ def test_a_weak_constant_force_is_found_over_longer_windows(sled_run, machines) 
 def test_disturbances_that_add_up_are_no_law(sled_run, machines) -> None:
     """White forces move a free mass ever farther from the model, on every record another way."""
     rng = np.random.default_rng(1)
-    shaken = sled_run(lambda q, v: rng.normal(0, 1e-2, len(q)), experiments=3, roles=ROLES, samples=1600)
+    shaken = sled_run(lambda q, v: rng.normal(0, 1e-2, len(q)), experiments=2, roles=ROLES, samples=1600)
     verdict = diagnose(shaken, load_model(f"{machines / 'sled.py'}:Sled"), budget=QUICK).verdict
     assert not verdict.mismatch and not verdict.effects
     assert any("what acts slowly was looked for" in line for line in verdict.evidence)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from greybox_torch.diagnosis.hypothesis.fit import hypothesis
 from greybox_torch.diagnosis.refit.rank import judged
@@ -30,6 +31,12 @@ from greybox_torch.mechanisms.unknown import Unknown
 SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
 
 
+@pytest.fixture(scope="module")
+def two_lacking(motor_data, motor, begun):
+    """A search on a motor with quadratic drag and a bias that its model does not know."""
+    return begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v) + 0.05), motor)
+
+
 def score(motor, explained: float) -> ScreenScore:
     return ScreenScore(attach(motor, "rotor", ConstantBias()), Probe(("bias",)), 31, explained, np.ones(1))
 
@@ -45,10 +52,9 @@ def test_what_ties_with_the_best_look_is_followed_as_well(motor, stub) -> None:
     assert _with_ties(study, []) == []
 
 
-def test_an_early_wrong_choice_is_mended_beside_the_others(motor_data, motor, begun) -> None:
-    """Quadratic drag and a bias; the search is told a ripple in the place of the drag."""
-    data = motor_data(torque=lambda q, v: -0.004 * v * abs(v) + 0.05)
-    search = begun(data, motor)
+def test_an_early_wrong_choice_is_mended_beside_the_others(two_lacking, motor) -> None:
+    """The search is told a ripple in the place of the drag."""
+    search = two_lacking
     bias, wrong = attach(motor, "rotor", ConstantBias()), attach(motor, "rotor", TorqueRipple(3.0))
     without = {
         bias.prefix: search.refitted((wrong,), search.plain),
@@ -61,8 +67,8 @@ def test_an_early_wrong_choice_is_mended_beside_the_others(motor_data, motor, be
     assert revised.took_one and not told.steps, "a state is not changed by what follows from it"
 
 
-def test_what_stands_is_left_where_the_choice_is_the_same(motor_data, motor, begun) -> None:
-    search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v) + 0.05), motor)
+def test_what_stands_is_left_where_the_choice_is_the_same(two_lacking, motor) -> None:
+    search = two_lacking
     drag, bias = attach(motor, "rotor", QuadraticDrag()), attach(motor, "rotor", ConstantBias())
     whole = search.refitted((drag, bias), search.plain)
     without = {
@@ -146,8 +152,8 @@ def test_frozen_parameters_keep_their_values_and_are_free_again_when_polished(de
     assert free.score < frozen.score
 
 
-def test_what_no_rival_came_near_is_not_chosen_once_more(motor_data, motor, begun, monkeypatch) -> None:
-    search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v) + 0.05), motor)
+def test_what_no_rival_came_near_is_not_chosen_once_more(two_lacking, monkeypatch) -> None:
+    search = two_lacking
     state = result_of(forward_step(search.study, search.state))
     while state.took_one:
         state = result_of(forward_step(search.study, state))
