@@ -42,7 +42,8 @@ def least_squares(columns: np.ndarray, target: np.ndarray, rcond: float | None =
     sound, wanted = (np.nan_to_num(a, posinf=0.0, neginf=0.0) for a in (columns, target))
     scale = max(float(np.abs(sound).max(initial=0.0)), 1e-300)
     sound = sound / scale  # its square overflows later
-    return solve(sound.T @ sound + _ridge(sound.T @ sound), sound.T @ wanted) / scale
+    found = solve(sound.T @ sound + _ridge(sound.T @ sound), sound.T @ wanted) / scale
+    return np.nan_to_num(found, posinf=0.0, neginf=0.0)  # tiny columns and a large target: beyond the largest number
 
 
 def eigh(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
