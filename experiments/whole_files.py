@@ -25,9 +25,8 @@ def named_files(folder: Path) -> Iterator[Path]:
 
 
 def is_whole(file: Path) -> bool:
-    """Whether a file is all there, by its suffix. Nothing in it is a file begun, but for lines that are yet to come."""
-    content = file.read_bytes()
-    return (bool(content) or file.suffix == ".jsonl") and WHOLE.get(file.suffix, lambda _: True)(content)
+    """Whether a file is all there, by its suffix. Only one of lines, which may be yet to come, is whole with nothing in it."""
+    return WHOLE.get(file.suffix, bool)(file.read_bytes())
 
 
 def _reads(read: Callable[[bytes], Any], content: bytes) -> bool:

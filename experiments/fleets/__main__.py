@@ -89,9 +89,11 @@ def _parsed(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("results/fleets"))
     chosen = parser.parse_args(arguments)
-    if chosen.throughput < FEWEST:
+    drawn = chosen.recordings * min(chosen.machines, chosen.first or chosen.machines)
+    if min(drawn, chosen.throughput) < FEWEST:
         parser.error(
-            f"--throughput: found {chosen.throughput}, expected at least {FEWEST}: the first of every worker do not count"
+            f"--throughput: found {min(drawn, chosen.throughput)} data sets, expected at least {FEWEST}: the first of every worker do "
+            "not count"
         )
     return chosen
 

@@ -146,7 +146,6 @@ def find_what_is_slow(
     budget = longer_windows(first.study, first.state, first.judged)
     if budget is None:
         return first
-    found = bool(first.state.effects)
     try:
         with until(end):
             first.study.working_on("searching again over longer windows for what acts slowly")
@@ -155,7 +154,7 @@ def find_what_is_slow(
     except (TimeIsUp, KeyboardInterrupt):
         return replace(first, complete=False, others=None, cut=(*first.cut, LONGER))
     told = sentence(first.judged, first.state, last.state)
-    if last.state.effects and explains_free_runs(first.judged, found, last.judged, first.study.settings):
+    if last.state.effects and explains_free_runs(first.judged, last.judged, first.study.settings):
         return replace(last, more=(*first.more, *last.more, told))
     if not last.complete:
         return replace(first, complete=False, cut=(LONGER,))

@@ -54,7 +54,7 @@ def test_a_linear_machine_is_begun_exactly(series: Series) -> None:
 def test_training_lowers_the_error_of_the_simulation(series: Series) -> None:
     """Over the held-out windows, on which no step is taken."""
     hardly, fully = (train_black_box([series], seed=0, passes=passes)[1] for passes in (0.001, 0.3))
-    assert fully < 0.9 * hardly
+    assert fully < 0.8 * hardly
 
 
 def test_the_same_seed_gives_the_same_network(series: Series) -> None:

@@ -117,7 +117,8 @@ class Judgement:
             among: of these experiments; by default of all that judge.
         """
         final = self.with_effects if effects else self.refit
-        chosen = np.array([r.name in (self.judges if among is None else among) for r in self.recordings])
+        names = self.judges if among is None else among
+        chosen = np.array([r.name in names for r in self.recordings])
         return float(self._beyond(final, self._floors())[chosen].sum())
 
     def comparisons(self, effects: bool) -> dict[str, Comparison]:
@@ -174,7 +175,8 @@ class Judgement:
 
     def _judged(self, comparison: Comparison) -> Comparison:
         """The validation experiments alone, where there are any."""
-        return replace(comparison, scores=tuple(s for s in comparison.scores if s.experiment in self.judges))
+        names = self.judges
+        return replace(comparison, scores=tuple(s for s in comparison.scores if s.experiment in names))
 
     def _judging(self) -> np.ndarray:
         """Which experiments (E,) judge: those of validation, all where there is none."""

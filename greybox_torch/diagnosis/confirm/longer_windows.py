@@ -33,16 +33,12 @@ def longer_windows(study: Study, state: SearchState, judged: Judgement) -> Searc
     return longer if more else None
 
 
-def explains_free_runs(before: Judgement, found: bool, after: Judgement, settings: DiagnosisSettings) -> bool:
+def explains_free_runs(before: Judgement, after: Judgement, settings: DiagnosisSettings) -> bool:
     """Whether the effects of ``after`` leave so little of what ``before`` leaves of free runs that most of it is theirs.
 
-    By experiments that had no part in choosing either.
-
-    Args:
-        found: whether there are effects before, too.
+    By experiments that had no part in choosing either: those that judge ``after``, which may have taken one more to choose with.
     """
-    both = before.judges & after.judges
-    return after.mismatch(True, both) <= settings.slow_share * before.mismatch(found, both)
+    return after.mismatch(True) <= settings.slow_share * before.mismatch(True, after.judges)
 
 
 def sentence(before: Judgement, state: SearchState, longer: SearchState) -> str:

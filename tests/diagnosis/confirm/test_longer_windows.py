@@ -51,7 +51,7 @@ def judgement(stub, share: float = 1.0, times: float = 10.0, **errors: float) ->
     return stub(
         left=lambda effects: (share, times, "run 2"),
         judges=set(errors),
-        mismatch=lambda effects, among: sum(errors[name] for name in among),
+        mismatch=lambda effects, among=None: sum(errors[name] for name in among or errors),
     )
 
 
@@ -82,7 +82,7 @@ def test_longer_windows_are_searched_where_free_runs_alone_show_more_than_noise(
 def test_what_longer_windows_find_has_to_explain_most_where_it_had_no_part_in_choosing(stub) -> None:
     before = judgement(stub, run_2=10.0, run_3=4.0)
     for left, explains in (({"run_2": 2.4, "run_3": 1.0}, True), ({"run_2": 2.7, "run_3": 1.0}, False)):
-        assert explains_free_runs(before, False, judgement(stub, **left), SETTINGS) is explains
+        assert explains_free_runs(before, judgement(stub, **left), SETTINGS) is explains
     # Run 2, which was taken to choose with, does not judge.
-    assert not explains_free_runs(before, False, judgement(stub, run_3=1.1), SETTINGS)
-    assert explains_free_runs(before, False, judgement(stub, run_3=0.9), SETTINGS)
+    assert not explains_free_runs(before, judgement(stub, run_3=1.1), SETTINGS)
+    assert explains_free_runs(before, judgement(stub, run_3=0.9), SETTINGS)
