@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.random import Generator
 
 import greybox_torch as gt
 from experiments.concealed.excitation import multisine
@@ -19,8 +20,12 @@ from greybox_torch.files import json_text, write_text
 from greybox_torch.systems import load_model
 
 OUTCOME = "outcome.json"
-SMALLER = 0.8
-"""Factor on a random input until the machine keeps within its limits."""
+FURTHER = 18
+"""Beside the seed and the number of a case: draws the random input, and the noise of further recordings."""
+PHASES, SMALLER = 10, 0.8
+"""Draws of a random input's phases before it is made smaller, and the factor on it."""
+RAISED = 20
+"""Times that a random input is raised for what the limits of the input cut from it."""
 
 
 def run_case(folder: Path, seed: int, number: int) -> None:
@@ -31,11 +36,11 @@ def run_case(folder: Path, seed: int, number: int) -> None:
     outcome: dict[str, Any] = bench.key | {"number": number, "open": is_open(found.to_dict()), "said": found.sentence}
     _keep(folder, "first", found, seconds)
     if outcome["open"]:
-        outcome |= _asked(bench, folder, found, seed)
+        outcome |= _asked(bench, folder, found, seed, np.random.default_rng([seed, FURTHER, number]))
     write_text(folder / OUTCOME, json_text(outcome))
 
 
-def _asked(bench: Bench, folder: Path, found: gt.DiagnosisResult, seed: int) -> dict[str, Any]:
+def _asked(bench: Bench, folder: Path, found: gt.DiagnosisResult, seed: int, rng: Generator) -> dict[str, Any]:
     right = {(port, mechanism) for port, mechanism in bench.key["accept"]}
     began, used = time.perf_counter(), time.process_time()
     try:
@@ -57,7 +62,7 @@ def _asked(bench: Bench, folder: Path, found: gt.DiagnosisResult, seed: int) -> 
         "before": probability_of(found.to_dict(), wanted),
     }
     inputs = np.stack([designed.inputs[c.name] for c in bench.machine.inputs], axis=1)
-    return told | _recorded(bench, folder, designed, inputs, wanted, pairs, seed)
+    return told | _recorded(bench, folder, designed, inputs, wanted, pairs, rng)
 
 
 def _recorded(
@@ -67,12 +72,12 @@ def _recorded(
     inputs: Array,
     wanted: set[tuple[str, str]],
     pairs: dict[str, tuple[str, str]],
-    seed: int,
+    rng: Generator,
 ) -> dict[str, Any]:
     """The machine on the designed input and on a random one of the same power, and the diagnoses with each."""
     told: dict[str, Any] = {"limits_kept": bench.within(inputs), "limits_kept_in_simulation": _inside(designed)}
-    for name, values in (("designed", inputs), ("random", random_input(bench, inputs, seed))):
-        card = bench.add(folder, name, bench.record(values, seed + 1))
+    for name, values in (("designed", inputs), ("random", random_input(bench, inputs, rng))):
+        card = bench.add(folder, name, bench.record(values, int(rng.integers(2**31))))
         found, seconds = _diagnosed(card)
         _keep(folder, name, found, seconds)
         told[name] = {"said": found.sentence, "probability": probability_of(found.to_dict(), wanted)}
@@ -89,17 +94,31 @@ def _recorded(
     return told
 
 
-def random_input(bench: Bench, like: Array, seed: int) -> Array:
-    """A multisine over the frequencies that a design may use, of the same mean square, made smaller until the machine allows it."""
-    samples, step = len(like), bench.machine.sample_time
-    rng = np.random.default_rng([seed, samples])
-    found = np.empty_like(like)
+def random_input(bench: Bench, like: Array, rng: Generator) -> Array:
+    """A multisine over the frequencies that a design may use, of the same mean square.
+
+    Phases are drawn anew until the machine keeps its limits; only where none of so many keep them, it is made smaller.
+    """
+    factor = 1.0
+    while True:
+        for _ in range(PHASES):
+            found = _multisines(bench, factor * np.sqrt(np.mean(like**2, axis=0)), len(like), rng)
+            if bench.within(found):
+                return found
+        factor *= SMALLER
+
+
+def _multisines(bench: Bench, wanted: Array, samples: int, rng: Generator) -> Array:
+    """Inputs (samples, inputs) of so large a root mean square (inputs,) after their peaks were cut to the limits."""
+    step = bench.machine.sample_time
+    found = np.empty((samples, len(wanted)))
     for i, channel in enumerate(bench.machine.inputs):
         low, high = bench.machine.limits[channel.name]
-        power = float(np.sqrt(np.mean(like[:, i] ** 2)))
-        found[:, i] = np.clip(power * multisine(rng, samples, step, 0.9 / (samples * step), 0.125 / step), low, high)
-    while not bench.within(found):
-        found = SMALLER * found
+        shape = multisine(rng, samples, step, 0.9 / (samples * step), 0.125 / step)
+        gain = wanted[i]
+        for _ in range(RAISED):
+            found[:, i] = np.clip(gain * shape, low, high)
+            gain *= wanted[i] / np.sqrt(np.mean(found[:, i] ** 2))
     return found
 
 

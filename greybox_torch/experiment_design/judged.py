@@ -14,7 +14,9 @@ from greybox_torch.experiment_design.limits import Limits
 from greybox_torch.experiment_design.simulated import input_records, within
 
 DRAWS = 2
-"""Draws of every hypothesis' parameters from what is known of them, beside its estimates."""
+"""Draws of every hypothesis' parameters from what is known of them, beside its estimates, under which an input is judged."""
+SAFE = 20
+"""Draws under which an input should keep the limits: of what keeps them in all, one machine in seven leaves them at most (95 %)."""
 OUTSIDE = 1.0
 """What an input loses that keeps the limits at the estimates and not at a draw: it is taken where there is no other."""
 
@@ -24,12 +26,12 @@ Draws = Sequence[Sequence[Contender]]
 def draws_of(aim: Aim, seed: int) -> Draws:
     """The hypotheses at their estimates, and at draws of their parameters, the same for every input."""
     rng = np.random.default_rng(seed)
-    return [aim.contenders, *(tuple(c.drawn(rng) for c in aim.contenders) for _ in range(DRAWS))]
+    return [aim.contenders, *(tuple(c.drawn(rng) for c in aim.contenders) for _ in range(SAFE))]
 
 
 def judged(aim: Aim, draws: Draws, trial: Trial, time: np.ndarray, limits: Limits, effort: Effort = QUICK) -> Trial:
     """The trial with its evidence, typical of the draws (the mean of its logarithm), and its score by that."""
-    found = [_nats(aim, own, trial, time, effort) for own in draws]
+    found = [_nats(aim, own, trial, time, effort) for own in draws[: 1 + DRAWS]]
     nats = np.expm1(np.mean([np.log1p(n) for n in found], axis=0))
     fine = all(within(own, limits, [trial.inputs], time)[0] for own in draws[1:])
     score = float(np.mean([aim.decided(n) for n in found])) - (0.0 if fine else OUTSIDE)
