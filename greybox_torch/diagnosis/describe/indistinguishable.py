@@ -24,7 +24,8 @@ def one_of(
     """The finding of a step with its rivals whose fitted outputs differ from its own by less than could be seen, or between which these
     recordings are undecided; None where it stands alone.
 
-    A law that contains the whole force of the one found says the same, where it fits as well: it is no rival. Nor is a free curve.
+    A law that contains the whole force of the one found says the same where what it has more is not seen: it is a rival only where the
+    recordings are undecided between the two. A free curve is none.
 
     Args:
         model: the plain one, whose inputs and outputs the ports belong to.
@@ -36,10 +37,12 @@ def one_of(
     found = [(taken, probability)]
     for rival, share in shares(taken, step.ranked, settings, beliefs, step.led):
         attachment = rival.candidate.attachment
-        same_law = taken.candidate.attachment.mechanism.name in attachment.mechanism.includes
-        if rival.unknown or (same_law and attachment.port == taken.candidate.attachment.port):
+        if rival.unknown:
             continue
-        if share >= settings.least_class_share or divergence(taken.fitted, rival.fitted) < settings.visible_divergence:
+        contains = taken.candidate.attachment.mechanism.name in attachment.mechanism.includes
+        says_the_same = contains and attachment.port == taken.candidate.attachment.port
+        undecided = share >= settings.least_class_share
+        if undecided or (not says_the_same and divergence(taken.fitted, rival.fitted) < settings.visible_divergence):
             found.append((rival, share))
     if len(found) == 1:
         return None

@@ -11,6 +11,7 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction, StribeckFriction
+from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.unknown import Unknown
 
 SETTINGS = DiagnosisSettings()
@@ -60,11 +61,19 @@ def test_a_finding_that_stands_alone(told) -> None:
 
 
 def test_a_law_that_contains_the_whole_of_the_one_found_says_the_same(told) -> None:
-    assert told(("motor", CoulombFriction(), 0.9, 0.0), ("motor", StribeckFriction(), 0.05, 0.0)) is None
+    assert told(("motor", CoulombFriction(), 0.9, 0.0), ("motor", StribeckFriction(), 0.046, 0.0)) is None
     elsewhere = told(("motor", CoulombFriction(), 0.9, 0.0), ("arm", StribeckFriction(), 0.05, 0.0))
     assert elsewhere is not None
     another = told(("motor", ConstantBias(), 0.5, 0.0), ("motor", CoulombAsymmetry(), 0.4, 0.0))
     assert another is not None and another.statement == "constant bias or Coulomb asymmetry at motor"
+
+
+def test_a_law_that_contains_the_one_found_and_may_as_well_be_right_is_told_with_it(told) -> None:
+    found = told(
+        ("motor", CoulombFriction(), 0.49, 0.0), ("motor", PreslidingHysteresis(), 0.45, 9.0), probability=0.49
+    )
+    assert found is not None and found.statement == "dry friction at motor"
+    assert found.probability == pytest.approx(0.94)
 
 
 def test_curves_are_no_rivals_and_have_none(told) -> None:
