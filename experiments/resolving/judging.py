@@ -8,17 +8,11 @@ from typing import Any
 import numpy as np
 
 import greybox_torch as gt
+from experiments.verdicts.answers import Pair, hypotheses
 from greybox_torch.data import DataSet
 
-Pair = tuple[str, str]
 SURE = 0.9
 """Probability at which a question counts as decided."""
-
-
-def shares(effect: Mapping[str, Any]) -> dict[Pair, float]:
-    """The probabilities of all hypotheses of one finding, by port and mechanism."""
-    listed = [*effect["alternatives"], *effect.get("one_of", {}).get("members", []), effect]
-    return {(e["port"], e["mechanism"]): float(e["probability"]) for e in listed}
 
 
 def is_open(verdict: Mapping[str, Any]) -> bool:
@@ -29,7 +23,7 @@ def is_open(verdict: Mapping[str, Any]) -> bool:
 
 def probability_of(verdict: Mapping[str, Any], right: Collection[Pair]) -> float:
     """What a verdict gives to any of the answers that are right, in the finding that gives most; nothing where it finds nothing."""
-    given = [sum(p for pair, p in shares(e).items() if pair in right) for e in verdict["effects"]]
+    given = [sum(p for pair, p in hypotheses(e).items() if pair in right) for e in verdict["effects"]]
     return max(given, default=0.0)
 
 

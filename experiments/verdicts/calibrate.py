@@ -1,18 +1,19 @@
 """Do the probabilities of the verdicts mean what they say? Reliability, Brier score, and the map that would make them right.
 
-    python -m experiments.verdicts.calibrate OUT CASES VERDICTS [CASES VERDICTS]
+    python -m experiments.verdicts.calibrate OUT CASES VERDICTS [CASES VERDICTS …] [--page FILE --about TEXT]
 
-Of names, and of statements: the whole class (``one_of``) that a finding is told as, its own name where it stands alone. The map
-p' = 1 / (1 + exp(−(a + b·logit p))) is fitted on the first pair of folders; both pairs are scored with it (where there is one pair only,
-the map is fitted on every other finding and scored on the rest). Writes OUT/calibration.json, OUT/reliability.png and OUT/classes.png.
+Of names, of answers (names that the key accepts are one), and of statements: the whole class (``one_of``) that a finding is told as, its
+own name where it stands alone. The map p' = 1 / (1 + exp(−(a + b·logit p))) is fitted on all pairs of folders but the last, and tried on
+the last (where there is one pair only, it is fitted on every other finding and tried on the rest). Writes OUT/calibration.json and
+OUT/calibration.png, and with --page a page of what the last pair shows, with its figure beside it.
 
 Source: J. C. Platt, "Probabilistic outputs for support vector machines", 1999; G. W. Brier, 1950.
 """
 
 from __future__ import annotations
 
+import argparse
 import json
-import sys
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -20,18 +21,32 @@ from typing import Any
 
 import numpy as np
 
+from experiments.verdicts.answers import Claim
 from experiments.verdicts.rates import Rate
-from experiments.verdicts.scoring import score_all
+from experiments.verdicts.scoring import Finding, score_all
 
 EDGES = (0.0, 0.3, 0.5, 0.7, 0.9, 1.0)
 STEPS = 100
+NAMES, ANSWERS, CLASSES = "names", "answers", "classes"
 
 
-def collect(cases: Path, verdicts: Path, *, classes: bool = False) -> tuple[np.ndarray, np.ndarray]:
-    """Claimed probabilities (n,) of all findings, and whether each is right (n,); of their classes where these are asked for."""
-    findings = [f for scored in score_all(cases, verdicts) for f in scored.findings]
-    told = [(f.class_probability, f.class_right) if classes else (f.probability, f.right) for f in findings]
+def collect(folders: Sequence[Path], what: str = NAMES) -> tuple[np.ndarray, np.ndarray]:
+    """Claimed probabilities (n,) of names, answers or classes, over all pairs of folders, and whether each came true (n,)."""
+    findings = [f for cases, verdicts in _pairs(folders) for s in score_all(cases, verdicts) for f in s.findings]
+    told = [claim for f in findings for claim in _claims(f, what)]
     return np.array([p for p, _ in told], dtype=float), np.array([right for _, right in told], dtype=float)
+
+
+def _claims(finding: Finding, what: str) -> Sequence[Claim]:
+    if what == ANSWERS:
+        return finding.answers
+    if what == CLASSES:
+        return [(finding.class_probability, finding.class_right)]
+    return [(finding.probability, finding.right)]
+
+
+def _pairs(folders: Sequence[Path]) -> list[tuple[Path, Path]]:
+    return list(zip(folders[::2], folders[1::2], strict=True))
 
 
 def fitted_map(claimed: np.ndarray, right: np.ndarray) -> tuple[float, float]:
@@ -74,47 +89,18 @@ def reliability(claimed: np.ndarray, right: np.ndarray) -> list[dict[str, float]
     return rows
 
 
-def draw(rows: Sequence[tuple[str, list[dict[str, float]]]], file: Path) -> None:
-    """The reliability diagram: claimed against observed, areas by the number of findings."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    figure, axes = pyplot.subplots(figsize=(5.2, 5.0), layout="constrained")
-    axes.plot([0, 1], [0, 1], color="0.7", lw=1)
-    looks = (
-        ("tab:blue", (6, -12)),
-        ("tab:orange", (-18, -12)),
-    )  # labels on either side, as points of both series fall together
-    for (label, bins), (colour, beside) in zip(rows, looks[: len(rows)], strict=True):
-        claimed, right = [b["claimed"] for b in bins], [b["right"] for b in bins]
-        axes.plot(claimed, right, color=colour, lw=1, label=label)
-        axes.scatter(claimed, right, s=[12 + 6 * b["findings"] for b in bins], color=colour, alpha=0.7)
-        for b in bins:
-            axes.annotate(
-                f"{b['findings']:.0f}", (b["claimed"], b["right"]), beside, textcoords="offset points", color=colour
-            )
-    axes.set(
-        xlim=(0, 1.03), ylim=(-0.03, 1.06), xlabel="probability claimed", ylabel="share of findings that are right"
-    )
-    axes.legend(loc="upper left", frameon=False)
-    figure.savefig(file, dpi=150)
-    pyplot.close(figure)
-
-
 def _logit(p: np.ndarray) -> np.ndarray:
     bounded = np.clip(p, 1e-3, 1 - 1e-3)
     return np.log(bounded / (1 - bounded))
 
 
-def scored(out: Path, folders: Sequence[Path], *, classes: bool) -> dict[str, Any]:
-    """What is claimed against what is right, fitted on the first pair of folders, and the diagram."""
-    claimed, right = collect(*folders[:2], classes=classes)
+def scored(folders: Sequence[Path], what: str) -> dict[str, Any]:
+    """What is claimed against what is right, and the map, fitted on all pairs of folders but the last."""
+    tested = collect(folders[-2:], what)
     if len(folders) > 2:
-        fit_on, test_on = (claimed, right), collect(*folders[2:4], classes=classes)
+        fit_on, test_on = collect(folders[:-2], what), tested
     else:
-        fit_on, test_on = (claimed[::2], right[::2]), (claimed[1::2], right[1::2])
+        fit_on, test_on = (tested[0][::2], tested[1][::2]), (tested[0][1::2], tested[1][1::2])
     weights = fitted_map(*fit_on)
     result: dict[str, Any] = {"map": {"a": weights[0], "b": weights[1]}}
     for name, (p, r) in (("fitted on", fit_on), ("tested on", test_on)):
@@ -125,19 +111,33 @@ def scored(out: Path, folders: Sequence[Path], *, classes: bool) -> dict[str, An
             "brier mapped": brier(mapped(p, weights), r),
             "reliability": reliability(p, r),
         }
-    out.mkdir(parents=True, exist_ok=True)
-    tested = (("as claimed", reliability(*test_on)), ("mapped", reliability(mapped(test_on[0], weights), test_on[1])))
-    draw(tested, out / ("classes.png" if classes else "reliability.png"))
     return result
 
 
-def main(out: Path, folders: Sequence[Path]) -> None:
-    result = scored(out, folders, classes=False) | {"classes": scored(out, folders, classes=True)}
+def main(out: Path, folders: Sequence[Path], page: Path | None = None, about: str = "") -> None:
+    from experiments.verdicts.calibration_page import draw, panels_of, write_page
+
+    result = {what: scored(folders, what) for what in (NAMES, ANSWERS, CLASSES)}
+    out.mkdir(parents=True, exist_ok=True)
     (out / "calibration.json").write_text(json.dumps(result, indent=1) + "\n")
+    draw(panels_of(result), out / "calibration.png")
+    if page is not None:
+        write_page(page, result, score_all(*folders[-2:]), about)
     print(json.dumps(result, indent=1))
 
 
+def _parsed() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m experiments.verdicts.calibrate")
+    parser.add_argument("out", type=Path)
+    parser.add_argument("folders", type=Path, nargs="+", metavar="CASES VERDICTS")
+    parser.add_argument("--page", type=Path, help="a page in Markdown, its figure beside it")
+    parser.add_argument("--about", default="", help="what the page says of the verdicts: which, of which commit")
+    chosen = parser.parse_args()
+    if len(chosen.folders) % 2:
+        parser.error(f"expected pairs of folders, cases and verdicts; found {len(chosen.folders)} folders")
+    return chosen
+
+
 if __name__ == "__main__":
-    if len(sys.argv) not in (4, 6):
-        sys.exit(__doc__)
-    main(Path(sys.argv[1]), [Path(a) for a in sys.argv[2:]])
+    given = _parsed()
+    main(given.out, given.folders, given.page, given.about)

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from experiments.verdicts.answers import Claim, claims
 from experiments.verdicts.running import RUN, VERDICT, has_verdict, sentence
 from greybox_torch.diagnosis import contradictions, worse_than_refit
 
@@ -34,7 +35,8 @@ STEPS = (("accept", True), ("near", False), ("ports", False))
 class Finding:
     """One effect of a verdict: what it said, with which probability, and whether it is right, at the right place, or neither.
 
-    ``class_probability`` and ``class_right`` are those of the whole class (``one_of``), its own where it has none.
+    ``class_probability`` and ``class_right`` are those of the whole class (``one_of``), its own where it has none; ``answers`` what it
+    claims of each answer, of which names that the key accepts are one.
     """
 
     port: str
@@ -45,6 +47,7 @@ class Finding:
     spurious: bool
     class_probability: float
     class_right: bool
+    answers: tuple[Claim, ...]
 
 
 @dataclass(frozen=True)
@@ -183,6 +186,7 @@ def _findings(effects: Sequence[Mapping[str, Any]], key: Mapping[str, Any]) -> t
                 spurious=hit < 0,
                 class_probability=float(whole.get("probability", effect["probability"])),
                 class_right=any(_among(member, answers) for member in members for answers in key["accept"]),
+                answers=claims(effect, {(port, name) for port, name in key["accept"][hit]} if hit >= 0 else ()),
             )
         )
     return tuple(found)

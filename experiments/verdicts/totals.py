@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from experiments.verdicts.answers import half_brier
 from experiments.verdicts.calibrate import brier
 from experiments.verdicts.scoring import KINDS, OUTSIDE, Finding, Scored
 
@@ -46,7 +47,8 @@ def table(scored: Sequence[Scored]) -> str:
 def closing(scored: Sequence[Scored]) -> Iterator[str]:
     """Brier scores, and what should be zero: verdicts that are missing, that recommend a worse model, that contradict themselves."""
     findings = [f for s in scored for f in s.findings]
-    yield f"Brier {brier_of(findings):.3f}, of classes {brier_of_classes(findings):.3f}, over {len(findings)} findings"
+    scores = f"{brier_of(findings):.3f}, of answers {brier_of_answers(findings):.3f}, of classes {brier_of_classes(findings):.3f}"
+    yield f"Brier {scores}, over {len(findings)} findings"
     for what, cases in (
         ("without a verdict", [f"{s.name} ({s.said})" for s in scored if s.verdict is None]),
         ("validation worse than the re-estimated model's", [s.name for s in scored if s.worse]),
@@ -66,6 +68,11 @@ def brier_of(findings: Sequence[Finding]) -> float:
 def brier_of_classes(findings: Sequence[Finding]) -> float:
     """The same of the classes, each right where any of its members is."""
     return brier(np.array([f.class_probability for f in findings]), np.array([float(f.class_right) for f in findings]))
+
+
+def brier_of_answers(findings: Sequence[Finding]) -> float:
+    """The same over all answers of each finding, of which names that the key accepts are one (half of Brier's sum of squares)."""
+    return float(np.mean([half_brier(f.answers) for f in findings])) if findings else float("nan")
 
 
 def _totals(kind: str, scored: Sequence[Scored]) -> str:

@@ -10,6 +10,7 @@ import pytest
 
 import greybox_torch as gt
 from experiments.resolving import bench, judging, machines
+from experiments.resolving.loop import PHASES, SMALLER, random_input
 from experiments.resolving.machines import MACHINES, QUESTIONS
 from experiments.resolving.page import is_counted, text
 
@@ -47,6 +48,19 @@ def test_a_further_recording_begins_as_the_first_and_is_read_with_it(car, tmp_pa
 def test_limits_of_the_machine(car) -> None:
     assert car.within(car.runs[0].inputs)
     assert not car.within(np.full_like(car.runs[0].inputs, 5.0))
+
+
+def test_a_random_input_has_the_mean_square_of_the_designed_one(car, monkeypatch) -> None:
+    """Also where the limits of the input cut its peaks off; it is made smaller only where no phases keep the machine within its limits."""
+    square = np.where(np.arange(car.machine.samples) % 40 < 20, 0.4, -0.4)[:, None]
+    monkeypatch.setattr(bench.Bench, "within", lambda self, inputs: True)
+    found = random_input(car, square, np.random.default_rng(0))
+    assert np.mean(found**2) == pytest.approx(0.16, rel=1e-3) and np.abs(found).max() == 0.5
+    tried = []
+    monkeypatch.setattr(bench.Bench, "within", lambda self, inputs: tried.append(inputs) or len(tried) > PHASES)
+    smaller = random_input(car, square, np.random.default_rng(0))
+    assert np.mean(tried[PHASES - 1] ** 2) == pytest.approx(0.16, rel=1e-3)
+    assert np.mean(smaller**2) == pytest.approx(0.16 * SMALLER**2, rel=1e-3)
 
 
 VERDICT = {

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from experiments.verdicts.calibrate import brier, fitted_map, main, mapped, reliability
+from experiments.verdicts.calibrate import NAMES, brier, fitted_map, main, mapped, reliability, scored
 from experiments.verdicts.scoring import score, score_all
 from experiments.verdicts.totals import table
 from greybox_torch.diagnosis.contradictions import contradictions
@@ -164,18 +164,34 @@ def test_the_whole_script(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     (tmp_path / "cases" / "unanswered").mkdir()
     (tmp_path / "cases" / "unanswered" / "key.json").write_text(json.dumps(KEY))
     assert [s.verdict is None for s in score_all(tmp_path / "cases", tmp_path / "verdicts")] == [*[False] * 12, True]
-    main(tmp_path / "out", [tmp_path / "cases", tmp_path / "verdicts"])
+    main(tmp_path / "out", [tmp_path / "cases", tmp_path / "verdicts"], tmp_path / "page.md")
     printed = json.loads(capsys.readouterr().out)
     assert printed == json.loads((tmp_path / "out" / "calibration.json").read_text())
-    assert printed["fitted on"]["findings"] == printed["tested on"]["findings"] == 6
+    named = printed["names"]
+    assert named["fitted on"]["findings"] == named["tested on"]["findings"] == 6
     of_classes = printed["classes"]["tested on"]
     assert of_classes["brier"] == pytest.approx(0.03**2) and of_classes["right"] == 1.0
     assert of_classes["reliability"][0]["upper"] == 1.0
     assert of_classes["reliability"][0]["lower"] == pytest.approx(
         0.025 ** (1 / 6)
     )  # Clopper and Pearson, of six of six
-    for name in ("reliability.png", "classes.png"):
-        assert (tmp_path / "out" / name).stat().st_size > 5000
+    for file in (tmp_path / "out" / "calibration.png", tmp_path / "calibration.png"):
+        assert file.stat().st_size > 5000
+    page = (tmp_path / "page.md").read_text()
+    assert "12 findings of 13 cases" in page and "| classes | 0.9 and 1 | 6 | 0.970 | 6/6" in page
+
+
+def test_the_map_is_fitted_on_all_folders_but_the_last(tmp_path: Path) -> None:
+    folders = []
+    for name, found in (("one", "coulomb_friction"), ("two", "coulomb_friction"), ("last", "gravity")):
+        for part in ("cases", "verdicts"):
+            folders.append(tmp_path / name / part)
+            (folders[-1] / "c0").mkdir(parents=True)
+        (folders[-2] / "c0" / "key.json").write_text(json.dumps(KEY))
+        (folders[-1] / "c0" / "verdict.json").write_text(json.dumps(verdict(("motor", found, 0.6))))
+    told = scored(folders, NAMES)
+    assert (told["fitted on"]["findings"], told["tested on"]["findings"]) == (2, 1)
+    assert told["tested on"]["right"] == 0.0 and told["tested on"]["brier mapped"] > told["tested on"]["brier"]
 
 
 def test_the_table_counts_by_kind_and_shows_misses() -> None:

@@ -11,8 +11,8 @@ import numpy as np
 
 from experiments.concealed.proof.confusion import matrix
 from experiments.concealed.visibility import DOMINANT, MODERATE, OVERWHELMING
-from experiments.verdicts.calibrate import draw as draw_reliability
 from experiments.verdicts.calibrate import reliability
+from experiments.verdicts.calibration_page import draw as draw_reliability
 from experiments.verdicts.rates import Rate
 from experiments.verdicts.scoring import Scored
 
@@ -147,7 +147,11 @@ def _reliability(found: Sequence[Scored], file: Path) -> bool:
     findings = [f for r in found for f in r.findings]
     if not findings:
         return False
-    claimed = np.array([f.probability for f in findings])
-    right = np.array([float(f.right) for f in findings])
-    draw_reliability([("findings of the proof", reliability(claimed, right))], file)
+    told = {
+        "names": [(f.probability, f.right) for f in findings],
+        "answers": [claim for f in findings for claim in f.answers],
+        "classes": [(f.class_probability, f.class_right) for f in findings],
+    }
+    bins = {what: reliability(*np.array(claims, dtype=float).T) for what, claims in told.items()}
+    draw_reliability(list(bins.items()), file)
     return True

@@ -23,7 +23,7 @@ CAPTIONS = {
     "diagonal, whichever of its twins it names.",
     "strength.png": "Detected, located and named against how visible the effect is. Ticks: the cases.",
     "closure.png": "How many cases have at least so much of their validation error closed.",
-    "reliability.png": "Claimed probability of a finding against the share of such findings that is right.",
+    "reliability.png": "What came true of what was claimed (95 %): names; answers, those that the key accepts being one; classes.",
 }
 BESIDE = (
     (

@@ -6,7 +6,8 @@ The rules, fixed before the seal is opened (their hash is on the record), beside
   noises included, by the visibility that the key gives, not by what was aimed at.
 - spurious: as a share of all findings.
 - Brier: mean squared difference between the probability of a finding and whether its name is right. Beside it, for people: that of the
-  classes, of hypotheses that the data cannot tell apart.
+  answers, of which names that the key accepts are one (`experiments.verdicts.answers`), and that of the classes, of hypotheses that the
+  data cannot tell apart.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from typing import Any
 
 from experiments.verdicts.rates import Rate
 from experiments.verdicts.scoring import Scored, score
-from experiments.verdicts.totals import brier_of, brier_of_classes
+from experiments.verdicts.totals import brier_of, brier_of_answers, brier_of_classes
 
 LEAST_WITHOUT = 45
 """Cases without an effect that it takes to say that there are no false alarms."""
@@ -108,7 +109,8 @@ def _spurious(what: str, found: Sequence[Scored], most: float) -> Promise:
 
 def _brier(found: Sequence[Scored]) -> Promise:
     findings = [f for s in found for f in s.findings]
-    measured = f"{brier_of(findings):.3f} ({brier_of_classes(findings):.3f} of the classes)"
+    others = f"{brier_of_answers(findings):.3f} of the answers, {brier_of_classes(findings):.3f} of the classes"
+    measured = f"{brier_of(findings):.3f} ({others})"
     return Promise(
         "Brier score of the probabilities", "at most 0.05", measured, brier_of(findings) <= 0.05 if findings else None
     )

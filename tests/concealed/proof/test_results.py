@@ -80,7 +80,7 @@ def test_brier_score_beside_is_that_of_the_classes():
     said["effects"][0]["one_of"] = {"probability": 0.9, "members": members}
     row = scored_cases({"c": ANSWERS["c004"]}, {"c": said}, {"c": ENTRIES["c004"]})
     kept = {p.what: p for p in promises(row)}
-    assert kept["Brier score of the probabilities"].measured == "0.250 (0.010 of the classes)"
+    assert kept["Brier score of the probabilities"].measured == "0.250 (0.010 of the answers, 0.010 of the classes)"
 
 
 def test_crashes_contradictions_and_worse_models_are_promised_to_be_none(found: list[Scored]):
