@@ -8,7 +8,7 @@ from pathlib import Path
 
 import torch
 
-from greybox_torch.codegen.expression import Graph, Node
+from greybox_torch.codegen.expression import Graph
 from greybox_torch.codegen.trace import nodes_of, symbols
 from greybox_torch.model import GreyBoxModel, Signals
 from greybox_torch.model.ports import value_of
@@ -22,9 +22,9 @@ class LinedGraph(Graph):
         self.lines: dict[int, int] = {}
         self._files = files
 
-    def _intern(self, node: Node) -> int:
-        index = super()._intern(node)
-        if index not in self.lines and node.operation not in ("leaf", "constant"):
+    def _intern(self, operation: str, arguments: tuple[int, ...] = (), value: float = 0.0, leaf: str = "") -> int:
+        index = super()._intern(operation, arguments, value, leaf)
+        if index not in self.lines and operation not in ("leaf", "constant"):
             line = self._line()
             if line is not None:
                 self.lines[index] = line

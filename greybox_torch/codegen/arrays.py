@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,17 +25,24 @@ def constants(graph: Graph, values: np.ndarray) -> np.ndarray:
 
 
 def operand(graph: Graph, value: Any) -> np.ndarray:
-    if isinstance(value, NodeArray):
+    if type(value) is NodeArray:
         return value
+    if type(value) in (float, int):
+        return single(graph.constant(value))
     return constants(graph, np.asarray(value))
+
+
+def single(node: int) -> np.ndarray:
+    """One node as an array without dimensions."""
+    array = NodeArray((), object)
+    array[()] = node
+    return array
 
 
 def mapped(function: Callable[..., Any], *arrays: np.ndarray) -> np.ndarray:
     """Apply ``function`` over broadcast arrays of objects."""
-    if all(np.ndim(a) == 0 for a in arrays):  # by far the most
-        single = np.empty((), dtype=object)
-        single[()] = function(*[np.asarray(a, dtype=object)[()] for a in arrays])
-        return single.view(NodeArray)
+    if not any(a.ndim for a in arrays):  # by far the most
+        return single(function(*[a.item() for a in arrays]))
     pieces = np.broadcast_arrays(*[np.asarray(a, dtype=object) for a in arrays])
     result = np.empty(pieces[0].shape, dtype=object)
     for index in np.ndindex(result.shape):
@@ -44,6 +52,6 @@ def mapped(function: Callable[..., Any], *arrays: np.ndarray) -> np.ndarray:
 
 def elementwise(operation: str) -> Callable[..., np.ndarray]:
     def handler(graph: Graph, *operands: Any, **_: Any) -> np.ndarray:
-        return mapped(lambda *n: graph.apply(operation, *n), *[operand(graph, o) for o in operands])
+        return mapped(partial(graph.apply, operation), *[operand(graph, o) for o in operands])
 
     return handler

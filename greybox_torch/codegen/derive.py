@@ -40,8 +40,12 @@ def _chain(graph: Graph, index: int, inner: list[Partials]) -> Partials:
         if not piece:
             continue
         outer = _LOCAL[node.operation](graph, index, position)
+        is_one = graph.value_of(outer) == 1.0
+        if is_one and not result:
+            result = piece.copy()
+            continue
         for variable, derivative in piece.items():
-            term = graph.apply("mul", outer, derivative)
+            term = derivative if is_one else graph.apply("mul", outer, derivative)
             result[variable] = graph.apply("add", result[variable], term) if variable in result else term
     return _nonzero(graph, result)
 

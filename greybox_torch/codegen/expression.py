@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 ARITHMETIC = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 COMPARISONS = {"lt": "<", "le": "<=", "gt": ">", "ge": ">=", "eq": "==", "ne": "!="}
@@ -16,8 +16,7 @@ FUNCTIONS = (
 BOOLEAN = frozenset({*COMPARISONS, *LOGIC, "not"})
 
 
-@dataclass(frozen=True)
-class Node:
+class Node(NamedTuple):
     """One operation: its name, its arguments (indices of earlier nodes), and the value of a constant or index of a leaf."""
 
     operation: str
@@ -27,28 +26,37 @@ class Node:
 
 
 class Graph:
-    """Nodes in order of creation, so that arguments always come before their use. Equal nodes are one node."""
+    """Nodes in order of creation, so that arguments always come before their use. Equal nodes are one node.
+
+    A screen's graph has tens of thousands of nodes and is made anew for every model, so that making one has to be quick.
+    """
 
     def __init__(self) -> None:
         self.nodes: list[Node] = []
-        self._index: dict[Node, int] = {}
+        self._index: dict[tuple[object, ...], int] = {}
+        self._values: list[float | None] = []  # of constants, None for all other nodes
+        self._depending: dict[frozenset[str], list[bool]] = {}
 
     def constant(self, value: float) -> int:
-        return self._intern(Node("constant", value=float(value)))
+        return self._intern("constant", value=float(value))
 
     def leaf(self, kind: str, index: int) -> int:
         """A variable: ``x``, ``u`` or ``p`` with its position."""
-        return self._intern(Node("leaf", value=float(index), leaf=kind))
+        return self._intern("leaf", value=float(index), leaf=kind)
 
     def apply(self, operation: str, *arguments: int) -> int:
         """The node of ``operation`` on ``arguments``, folded and simplified where that is exact."""
-        known = [self.value_of(a) for a in arguments]
-        if all(value is not None for value in known):
+        values = self._values
+        known = [values[a] for a in arguments]
+        unknown = known.count(None)
+        if unknown == len(known) and operation not in ("neg", "where"):  # by far the most
+            return self._intern(operation, arguments)
+        if unknown == 0:
             folded = _fold(operation, [v for v in known if v is not None])
             if folded is not None:
                 return self.constant(folded)
         simple = self._simplify(operation, arguments, known)
-        return simple if simple is not None else self._intern(Node(operation, arguments))
+        return simple if simple is not None else self._intern(operation, arguments)
 
     def power(self, base: int, exponent: float) -> int:
         """``base`` to a constant power, by multiplication where the exponent is a small integer."""
@@ -67,8 +75,7 @@ class Graph:
 
     def value_of(self, index: int) -> float | None:
         """The value of a constant node, None for any other."""
-        node = self.nodes[index]
-        return node.value if node.operation == "constant" else None
+        return self._values[index]
 
     def is_condition(self, index: int) -> bool:
         """Whether a node is true or false by its operation."""
@@ -76,27 +83,30 @@ class Graph:
 
     def needed(self, roots: Iterable[int], known: Collection[int] = frozenset()) -> list[int]:
         """All nodes that ``roots`` depend on, in order of evaluation, but for those ``known`` with all that they depend on."""
-        seen: set[int] = set()
-        stack = list(roots)
+        stack = [root for root in roots if root not in known]
+        seen = set(stack)
         while stack:
-            index = stack.pop()
-            if index not in seen and index not in known:
-                seen.add(index)
-                stack.extend(self.nodes[index].arguments)
+            for index in self.nodes[stack.pop()].arguments:
+                if index not in seen and index not in known:
+                    seen.add(index)
+                    stack.append(index)
         return sorted(seen)
 
     def depends_on(self, kinds: frozenset[str]) -> list[bool]:
         """Per node, whether it depends on a leaf of one of ``kinds``."""
-        result: list[bool] = []
-        for node in self.nodes:
-            result.append(node.leaf in kinds if node.operation == "leaf" else any(result[a] for a in node.arguments))
-        return result
+        result = self._depending.setdefault(kinds, [])
+        for node in self.nodes[len(result) :]:  # what was found before stays as it is
+            result.append(any(map(result.__getitem__, node.arguments)) or node.leaf in kinds)
+        return result.copy()
 
-    def _intern(self, node: Node) -> int:
-        if node not in self._index:
-            self._index[node] = len(self.nodes)
-            self.nodes.append(node)
-        return self._index[node]
+    def _intern(self, operation: str, arguments: tuple[int, ...] = (), value: float = 0.0, leaf: str = "") -> int:
+        key = (operation, arguments, value, leaf)
+        index = self._index.get(key)
+        if index is None:
+            index = self._index[key] = len(self.nodes)
+            self.nodes.append(Node(operation, arguments, value, leaf))
+            self._values.append(value if operation == "constant" else None)
+        return index
 
     def _simplify(self, operation: str, arguments: tuple[int, ...], known: list[float | None]) -> int | None:
         if operation == "where":

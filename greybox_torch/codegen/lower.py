@@ -10,7 +10,7 @@ import torch
 from greybox_torch.codegen.arrays import UnsupportedOperation
 from greybox_torch.codegen.derive import Partials, jacobian
 from greybox_torch.codegen.expression import Graph
-from greybox_torch.codegen.trace import nodes_of, symbols
+from greybox_torch.codegen.trace import nodes_of, separate_symbols, symbols
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel, Signals
 from greybox_torch.model.check import explain
@@ -54,8 +54,7 @@ def lower(model: GreyBoxModel, sensitive: Sequence[str], at_zero: Sequence[str] 
     names = [p.name for p in model.declared_parameters]
     x = symbols(graph, "x", len(model.states))
     u = symbols(graph, "u", len(model.inputs))
-    values = symbols(graph, "p", len(names))
-    p = Signals("parameter", {name: values.select(0, i) for i, name in enumerate(names)})
+    p = Signals("parameter", dict(zip(names, separate_symbols(graph, "p", len(names)), strict=True)))
     try:
         with torch.no_grad():
             rates, outputs = (nodes_of(graph, function(x, u, p)) for function in (model.rates, model.measured))
@@ -106,11 +105,15 @@ def _acting_states(rates_by_state: list[Partials], outputs_by_state: list[Partia
 def with_replaced(graph: Graph, roots: Sequence[int], other: Mapping[int, int]) -> dict[int, int]:
     """What every node that ``roots`` need becomes when some leaves give way to the nodes ``other`` (by leaf)."""
     place: dict[int, int] = {}
+    changed: set[int] = set()
     for index in graph.needed(roots):
         node = graph.nodes[index]
-        arguments = tuple(place[a] for a in node.arguments)
         if index in other:
             place[index] = other[index]
+        elif changed.isdisjoint(node.arguments):
+            place[index] = index
         else:
-            place[index] = index if arguments == node.arguments else graph.apply(node.operation, *arguments)
+            place[index] = graph.apply(node.operation, *[place[a] for a in node.arguments])
+        if place[index] != index:
+            changed.add(index)
     return place

@@ -167,19 +167,33 @@ HANDLERS: dict[str, Callable[..., Any]] = {
     **{name: elementwise(name) for name in ((*FUNCTIONS, "atan2"))},
 }
 
+OPERATORS: dict[str, Callable[..., Any]] = {
+    **{f"__{n}__": HANDLERS[n] for n in ("add", "sub", "mul", "neg", "rsub", "lt", "le", "gt", "ge", "pow")},
+    "__radd__": HANDLERS["add"],
+    "__rmul__": HANDLERS["mul"],
+    "__rpow__": lambda g, a, b: _power(g, b, a),
+    "__truediv__": _divided,
+    "__rtruediv__": lambda g, a, b: _divided(g, b, a),
+    "__rdiv__": lambda g, a, b: _divided(g, b, a),
+    "__and__": HANDLERS["logical_and"],
+    "__or__": HANDLERS["logical_or"],
+    "__invert__": HANDLERS["logical_not"],
+}
+"""Python's operators, by the names of their methods."""
+
 AT_ONCE: dict[str, Callable[..., Any]] = {
     **{n: HANDLERS[n] for n in ("add", "sub", "mul", "div", "neg", "square", "clamp", "select", "stack", "new_zeros")},
-    **{n: HANDLERS[n] for n in ("cat", "zeros_like", "ones_like", "unsqueeze", "squeeze", "unbind")},
+    **{n: HANDLERS[n] for n in ("cat", "zeros_like", "unsqueeze", "squeeze", "unbind")},
+    **{
+        n: HANDLERS[n] for n in ("sigmoid", "relu", "softplus", "reciprocal", "rsqrt", "sgn", "atan2", "rsub", "detach")
+    },
+    **{n: HANDLERS[n] for n in ("logical_and", "logical_or", "logical_not", "ones_like", "clamp_min", "clamp_max")},
     **{name: HANDLERS[name] for name in ("where", "maximum", "minimum", "lt", "le", "gt", "ge", *FUNCTIONS)},
-    "__rsub__": HANDLERS["rsub"],
-    "__rdiv__": lambda g, a, b: _divided(g, b, a),
-    "__rtruediv__": lambda g, a, b: _divided(g, b, a),
+    **OPERATORS,
     "true_divide": HANDLERS["div"],
     "expand": lambda g, a, *shape: HANDLERS["expand"](g, a, shape if shape and isinstance(shape[0], int) else shape[0]),
     "broadcast_tensors": lambda g, *several: tuple(np.broadcast_arrays(*[operand(g, a) for a in several], subok=True)),
     "pow": _power,
-    "__pow__": _power,
-    "__rpow__": lambda g, a, b: _power(g, b, a),
     **MATRICES_AT_ONCE,
 }
 """Operations that are handled as they are called, by the names of torch's functions and methods."""

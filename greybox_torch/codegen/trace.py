@@ -6,15 +6,15 @@ expression nodes, so that stacking, reshaping and small matrix products work as 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 import torch
 
-from greybox_torch.codegen.arrays import NodeArray, UnsupportedOperation, constants
+from greybox_torch.codegen.arrays import NodeArray, UnsupportedOperation, constants, single
 from greybox_torch.codegen.expression import Graph
-from greybox_torch.codegen.operations import AT_ONCE, HANDLERS, NAMED_AT_ONCE
+from greybox_torch.codegen.operations import AT_ONCE, HANDLERS, NAMED_AT_ONCE, OPERATORS
 from greybox_torch.errors import UserError
 from greybox_torch.model.check import NEEDS_A_VALUE
 
@@ -27,10 +27,11 @@ class Symbol(torch.Tensor):
 
     @staticmethod
     def of(graph: Graph, nodes: np.ndarray) -> Symbol:
-        conditions = nodes.size > 0 and all(graph.is_condition(n) for n in nodes.flat)
+        each = nodes.ravel().tolist()
+        conditions = each and all(map(graph.is_condition, each))
         kind = torch.bool if conditions else torch.float64
         symbol = torch.Tensor._make_wrapper_subclass(Symbol, nodes.shape, dtype=kind)  # type: ignore[attr-defined]
-        symbol.nodes, symbol.graph = nodes, graph
+        symbol.nodes, symbol.graph = nodes.view(NodeArray), graph
         return symbol
 
     @classmethod
@@ -59,10 +60,22 @@ class Symbol(torch.Tensor):
             raise UnsupportedOperation(f"torch operation '{func._schema.name}'")
         result = _handled(handler, func._schema.name, graph, args, kwargs)
         if func._schema.name.endswith("_") and isinstance(args[0], Symbol):
-            args[0].nodes = np.broadcast_to(
-                result, args[0].nodes.shape
-            )  # torch hands the argument back, not the result
+            # torch hands the argument back, not the result
+            args[0].nodes = np.broadcast_to(result, args[0].nodes.shape).view(NodeArray)
         return _symbols_of(graph, result)
+
+
+def _operator(name: str, handler: Callable[..., Any]) -> Callable[[Symbol, Any], Symbol]:
+    """An operator of symbols without torch in between: it takes longer to call back than the operation."""
+
+    def method(self: Symbol, *other: Any) -> Symbol:
+        return Symbol.of(self.graph, _handled(handler, name, self.graph, (self, *other), {}))
+
+    return method
+
+
+for _name, _handler in OPERATORS.items():
+    setattr(Symbol, _name, _operator(_name, _handler))
 
 
 def _symbols_of(graph: Graph, result: Any) -> Any:
@@ -71,10 +84,11 @@ def _symbols_of(graph: Graph, result: Any) -> Any:
 
 
 def _handled(handler: Callable[..., Any], name: str, graph: Graph, args: Any, kwargs: Any) -> Any:
-    operands, named = _mapped(lambda a: _nodes_of(graph, a), (args, kwargs))
+    operands = [_nodes_of(graph, a) for a in args]
+    named = {key: _nodes_of(graph, a) for key, a in kwargs.items()}
     try:
         result = handler(graph, *operands, **named)
-        return result if isinstance(result, tuple) else np.asarray(result, dtype=object)
+        return result if isinstance(result, tuple | NodeArray) else np.asarray(result, dtype=object)
     except (TypeError, ValueError, IndexError) as error:  # a form of the operation that its handler was not written for
         raise UnsupportedOperation(f"torch operation '{name}' in this form") from error
 
@@ -91,24 +105,31 @@ def symbols(graph: Graph, kind: str, count: int) -> Symbol:
     return Symbol.of(graph, nodes)
 
 
+def separate_symbols(graph: Graph, kind: str, count: int) -> list[Symbol]:
+    """The same leaves one by one."""
+    return [Symbol.of(graph, single(graph.leaf(kind, i))) for i in range(count)]
+
+
 def _graph_of(args: Any, kwargs: Any) -> Graph:
-    found: list[Graph] = []
-    _mapped(lambda a: found.append(a.graph) if isinstance(a, Symbol) else None, (args, kwargs))
-    return found[0]
+    graph = _first_graph(args) or _first_graph(kwargs.values())
+    assert graph is not None  # torch asks us because of a symbol
+    return graph
 
 
-def _mapped(function: Callable[[Any], Any], value: Any) -> Any:
-    """What ``function`` makes of an operation's arguments, within lists and dictionaries too; faster than torch's tree_map."""
-    if type(value) in (tuple, list):
-        return type(value)([_mapped(function, v) for v in value])
-    if type(value) is dict:
-        return {name: _mapped(function, v) for name, v in value.items()}
-    return function(value)
+def _first_graph(values: Iterable[Any]) -> Graph | None:
+    for value in values:
+        found = value.graph if type(value) is Symbol else _first_graph(value) if type(value) in (tuple, list) else None
+        if found is not None:
+            return found
+    return None
 
 
 def _nodes_of(graph: Graph, value: Any) -> Any:
-    if isinstance(value, Symbol):
-        return value.nodes.view(NodeArray)
+    """An argument of an operation with the nodes of its tensors, within lists, too."""
+    if type(value) is Symbol:
+        return value.nodes
+    if type(value) in (tuple, list):
+        return type(value)([_nodes_of(graph, v) for v in value])
     if isinstance(value, torch.Tensor):
         return constants(graph, value.detach().cpu().numpy())
     return value

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from greybox_torch.codegen.lower import lower
+from greybox_torch.codegen.trace import Symbol
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism
@@ -39,6 +41,22 @@ def test_changes_nothing_at_zero_amplitude(mechanism, around, plain) -> None:
     own = {f"{effect.prefix}.{name}": value for name, value in probe.values.items()}
     p = values_of(model, **own, **zero)
     assert np.array_equal(free_run(model, records_of(8), p, starts(model, x0, lagged=2.0)), plain[base.title])
+
+
+def test_laws_are_traced_without_torch_taking_them_apart(around, monkeypatch) -> None:
+    """The first operation that torch takes apart makes it import its distributed tensors, half a second of every diagnosis."""
+    found: list[tuple[str, str]] = []
+
+    def note(cls, func, types, args=(), kwargs=None):
+        found.append((effect.mechanism.name, str(func)))
+        return dispatched(cls, func, types, args, kwargs)
+
+    dispatched = Symbol.__torch_dispatch__.__func__
+    monkeypatch.setattr(Symbol, "__torch_dispatch__", classmethod(note))
+    for mechanism in LIBRARY.values():
+        base, _, effect = of_kind(mechanism())
+        assert lower(attached(base, around, effect, probed=[effect]), ())
+    assert not found
 
 
 @pytest.mark.parametrize("mechanism", [pytest.param(m(), id=m.name) for m in LIBRARY.values()])
