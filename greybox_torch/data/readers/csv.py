@@ -16,6 +16,7 @@ from typing import TextIO
 
 import numpy as np
 
+from greybox_torch.data.readers.clean_rows import clean_rows
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.readers.text_layout import Layout, encoding_of, layout_of
 from greybox_torch.data.readers.text_rows import UnreadableRow
@@ -28,6 +29,10 @@ def read_csv(path: Path, columns: Collection[str]) -> Table:
     try:
         with path.open(newline="", encoding=encoding_of(path)) as file:
             layout = layout_of(path, file, columns)
+            file.seek(0)
+            if (plain := clean_rows(file, layout)) is not None:
+                lines, values = plain
+                return Table(path, {name: np.array(samples) for name, samples in values.items()}, lines, layout.units)
             file.seek(0)
             return _read_samples(path, file, layout)
     except UnicodeError:

@@ -116,6 +116,8 @@ def _named(head: list[str], wanted: list[str], numbered: dict[str, int]) -> tupl
     best: tuple[str, int, list[str]] | None = None
     for delimiter in DELIMITERS:
         for line, row in rows_of(iter(head), delimiter, 0, strict=False):
+            if best is not None and line > best[1]:
+                break
             names = [name.strip() for name in row]
             names = names if set(wanted) <= set(names) and names[0] not in COMMENTS else uncommented(names)
             if set(wanted) <= set(names) and all(k < len(names) for k in numbered.values()):
