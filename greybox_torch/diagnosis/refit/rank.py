@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -13,6 +13,7 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, augmented, score_
 from greybox_torch.diagnosis.hypothesis.significance import white_samples, window_significance
 from greybox_torch.diagnosis.refit.curve import laws_on_curve
 from greybox_torch.diagnosis.refit.refitted import fit
+from greybox_torch.diagnosis.refit.twins import from_twin
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
@@ -80,11 +81,13 @@ def rank(
     middle = at[min(1, len(at) - 1) :][:1]
     refit = partial(fit, study, shorter=current.fits[0], frozen=frozen, rough=True)
 
-    def tried(candidate: Candidate, simulator: Simulator) -> Hypothesis | None:
+    def tried(
+        candidate: Candidate, simulator: Simulator, starts: Sequence[Mapping[str, float]] = ()
+    ) -> Hypothesis | None:
         study.working_on(f"refitting {candidate.attachment.prefix}")
         study.journal.begin(candidate.attachment.named)
         effects = (*current.effects, candidate.attachment)
-        starts = candidate.first_starts(budget.trial_starts)
+        starts = starts or candidate.first_starts(budget.trial_starts)
         return refit(effects, starts, at=middle, limits=budget.trial_iterations, simulator=simulator)
 
     def in_full(candidate: Candidate, before: Hypothesis, simulator: Simulator) -> RankedCandidate | None:
@@ -100,9 +103,19 @@ def rank(
         return None if fitted is None else judged(candidate, current, fitted, study.settings)
 
     pairs = list(zip(found, simulators, strict=True))
-    trials = zip(side_by_side(partial(tried, *pair) for pair in pairs), pairs, strict=True)
+    reached = side_by_side(partial(tried, *pair) for pair in pairs)
+    known = list(zip(found, reached, strict=True))
+
+    def tried_again(candidate: Candidate, simulator: Simulator, own: Hypothesis | None) -> Hypothesis | None:
+        start = from_twin(candidate, own, known, study.settings.score_tie)
+        again = tried(candidate, simulator, (start,)) if start else None
+        return again if again is not None and (own is None or again.score < own.score) else own
+
+    reached = side_by_side(partial(tried_again, *pair, own) for pair, own in zip(pairs, reached, strict=True))
     first = [
-        (trial.score, candidate, trial, simulator) for trial, (candidate, simulator) in trials if trial is not None
+        (trial.score, candidate, trial, simulator)
+        for trial, (candidate, simulator) in zip(reached, pairs, strict=True)
+        if trial is not None
     ]
     before, standing = (
         score_of([f for f in h.fits if f.windows.steps == cut(study.problem.records, middle[0]).steps], h.floor)

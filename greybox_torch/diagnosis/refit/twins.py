@@ -1,0 +1,41 @@
+"""Start values that a law takes over from its twin.
+
+A dead time is found from where the screen puts it, and of steps and reversals the error has a valley for every corner that a wrong delay
+brings near another one. Two laws that do nearly the same, such as a delay of the input and one of the output, are screened apart, and one
+may begin in the right valley and the other not: then they would be compared by where they began.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.screen.shortlist import Candidate
+
+Tried = tuple[Candidate, Hypothesis | None]
+
+
+def from_twin(candidate: Candidate, reached: Hypothesis | None, tried: Sequence[Tried], tie: float) -> dict[str, float]:
+    """The values that a twin of a candidate came to in its trial, as start values of the candidate; none where it is not clearly better.
+
+    Args:
+        reached: what the candidate came to itself, None where it could not be fitted.
+        tried: candidates with what they came to.
+        tie: difference of scores up to which two tie.
+    """
+    twins = candidate.attachment.mechanism.twins
+    better = [
+        (fitted.score, other, fitted.values())
+        for other, fitted in tried
+        if fitted is not None
+        and other.attachment.mechanism.name in twins
+        and (reached is None or fitted.score < reached.score - tie)
+    ]
+    if not better:
+        return {}
+    _, twin, values = min(better, key=lambda entry: entry[0])
+    return _renamed(values, f"{twin.attachment.prefix}.", f"{candidate.attachment.prefix}.")
+
+
+def _renamed(values: Mapping[str, float], old: str, new: str) -> dict[str, float]:
+    return {new + n.removeprefix(old) if n.startswith(old) else n: v for n, v in values.items()}

@@ -1,0 +1,40 @@
+"""Start values that a law takes over from its twin."""
+
+from __future__ import annotations
+
+import pytest
+
+from greybox_torch.diagnosis.refit.twins import from_twin
+from greybox_torch.diagnosis.screen.shortlist import Candidate
+from greybox_torch.mechanisms.actuator import InputDelay, InputLag
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.sensor import OutputDelay
+
+EARLY, LATE, LAG = (
+    Candidate(Attachment(port, law), (), 0.5)
+    for port, law in (("actuator", InputDelay()), ("sensor", OutputDelay()), ("actuator", InputLag()))
+)
+
+
+@pytest.fixture
+def reached(stub):
+    """What a candidate came to: its score, and its values."""
+    return lambda score, **values: stub(score=score, values=lambda: values)
+
+
+def test_what_a_twin_came_to_is_a_start_where_it_is_clearly_better(reached) -> None:
+    """Seen: a delay of 0.04 s that began at 0.2 s and stayed there, beside one of the output that began at 0.03 s and found it."""
+    stuck = reached(-3.7, **{"J": 0.3, "actuator.input_delay.T": 0.198})
+    found = reached(-5.1, **{"J": 0.2, "sensor.output_delay.T": 0.043})
+    tried = [(EARLY, stuck), (LATE, found), (LAG, reached(-9.0, **{"actuator.input_lag.T": 0.06}))]
+    start = from_twin(EARLY, stuck, tried, 0.03)
+    assert start == {"J": 0.2, "actuator.input_delay.T": 0.043}
+    assert from_twin(EARLY, None, tried, 0.03) == start  # also where it could not be fitted at all
+    assert from_twin(LATE, found, tried, 0.03) == {}
+    assert from_twin(LAG, tried[2][1], tried, 0.03) == {}  # a lag has no twin
+
+
+def test_twins_that_tie_are_left_alone(reached) -> None:
+    one, other = reached(-5.0), reached(-5.02, **{"sensor.output_delay.T": 0.04})
+    assert from_twin(EARLY, one, [(EARLY, one), (LATE, other)], 0.03) == {}
+    assert from_twin(EARLY, one, [(EARLY, one), (LATE, None)], 0.03) == {}
