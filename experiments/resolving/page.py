@@ -47,7 +47,10 @@ def text(outcomes: Sequence[Outcome], command: str, about: Mapping[str, str]) ->
         ("cases drawn; verdicts left open", f"{len(outcomes)}; {len(opened)}"),
         ("of them without a design, and why", _refused(opened)),
         ("of them nothing that an input decides is open, as the design says", str(len(designed) - len(counted))),
-        ("verdicts among these that were wrong: sure of another answer", str(sum(_wrong_before(o) for o in designed))),
+        (
+            "verdicts among these that were wrong: the right answer below 0.1",
+            str(sum(_wrong_before(o) for o in designed)),
+        ),
         ("left to decide", str(len(counted))),
         (f"**decided rightly at {SURE:g} or more, with the designed recording**", str(_right(counted, "designed"))),
         ("the same with a random multisine of the same power", str(_right(counted, "random"))),
@@ -72,7 +75,8 @@ def text(outcomes: Sequence[Outcome], command: str, about: Mapping[str, str]) ->
             "cannot be told apart, [`greybox design`](../howto/design.md) asks for a recording, the machine (code that shares nothing\n"
             "with the tool) is run with it, open loop, from where its first recording began, for as long; and old and new recordings are\n"
             "diagnosed together. Beside it the same with a random multisine of the same mean square over all frequencies that a design\n"
-            "may use, made smaller where the machine would leave its limits.",
+            "may use, raised for what the input's limits cut off; its phases are drawn until the machine keeps its limits, and only where ten\n"
+            "draws do not it is made smaller. It is drawn knowing the machine; the design knows the hypotheses alone.",
             head,
             _table(("measured", "found"), rows),
             "An answer is right where it names what is concealed, or what the design says no input within the limits tells from it. "

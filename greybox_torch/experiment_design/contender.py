@@ -76,7 +76,8 @@ class Contender:
         """The same with parameters drawn from what is known of them (normally distributed, within their bounds)."""
         size = len(self.free)
         values, covariance = self.problem.values.copy(), scaled_inverse(self.information)
-        values[self.free] += rng.multivariate_normal(np.zeros(size), covariance, method="eigh")
+        # What rounding makes of a covariance of very different units is no warning for anybody.
+        values[self.free] += rng.multivariate_normal(np.zeros(size), covariance, method="eigh", check_valid="ignore")
         values = np.clip(values, self.problem.lower, self.problem.upper)
         return self.at(values) if self.problem.admissible(values) else self
 
