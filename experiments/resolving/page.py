@@ -75,7 +75,7 @@ def text(outcomes: Sequence[Outcome], command: str, about: Mapping[str, str]) ->
             "cannot be told apart, [`greybox design`](../howto/design.md) asks for a recording, the machine (code that shares nothing\n"
             "with the tool) is run with it, open loop, from where its first recording began, for as long; and old and new recordings are\n"
             "diagnosed together. Beside it the same with a random multisine of the same mean square over all frequencies that a design\n"
-            "may use, raised for what the input's limits cut off; its phases are drawn until the machine keeps its limits, and only where ten\n"
+            "may use, raised for what the input's limits cut off; its phases are drawn until the machine keeps its limits; only where ten\n"
             "draws do not it is made smaller. It is drawn knowing the machine; the design knows the hypotheses alone.",
             head,
             _table(("measured", "found"), rows),
