@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import partial
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, size, timelines
+from greybox_torch.diagnosis.confirm.second_choice import second_choice
 from greybox_torch.diagnosis.confirm.simpler_laws import with_simpler_laws
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
@@ -24,6 +25,15 @@ def confirm(study: Study, state: SearchState, others: HeldOut) -> Stage[SearchSt
     study.working_on("confirming on held-out experiments")
     state = yield from _names_for_curve(study, state, others)
     state = yield from with_simpler_laws(study, state, others)
+    state = yield from _what_is_borne_out(study, state, others)
+    if not state.effects:
+        state = yield from second_choice(study, state, others)
+        state = yield from _what_is_borne_out(study, state, others)
+    return state
+
+
+def _what_is_borne_out(study: Study, state: SearchState, others: HeldOut) -> Stage[SearchState]:
+    """The state without the effects that held-out experiments take back, the weakest first."""
     while state.effects:
         taken_back = _to_take_back(state, held_out_gains(state, others), others)
         if taken_back is None:

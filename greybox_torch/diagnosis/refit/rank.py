@@ -78,17 +78,36 @@ def rank(
     )  # heights of a curve: many, and good already
     simulators = _compiled(study, current, found, frozen)
     at = window_lengths(study.problem, budget)
-    middle = at[min(1, len(at) - 1) :][:1]
+    middle = at[min(1, len(at) - 1)]
+    steps = {length: cut(study.problem.records, length).steps for length in at}
+    allowance = study.settings.trial_allowance
     refit = partial(fit, study, shorter=current.fits[0], frozen=frozen, rough=True)
 
     def tried(
-        candidate: Candidate, simulator: Simulator, starts: Sequence[Mapping[str, float]] = ()
+        candidate: Candidate, simulator: Simulator, starts: Sequence[Mapping[str, float]] = (), length: int = middle
     ) -> Hypothesis | None:
         study.working_on(f"refitting {candidate.attachment.prefix}")
         study.journal.begin(candidate.attachment.named)
         effects = (*current.effects, candidate.attachment)
         starts = starts or candidate.first_starts(budget.trial_starts)
-        return refit(effects, starts, at=middle, limits=budget.trial_iterations, simulator=simulator)
+        return refit(effects, starts, at=[length], limits=budget.trial_iterations, simulator=simulator)
+
+    def compared(trial: Hypothesis | None, length: int) -> list[tuple[float, Hypothesis]]:
+        """How far a trial is from the hypothesis before it (negative: better), where it is not hopeless."""
+        before, standing = (_score_over(h, steps[length]) for h in (current, to_beat or current))
+        hopeless = trial is None or trial.score >= standing + allowance
+        return [] if trial is None or hopeless else [(trial.score - before, trial)]
+
+    def where_it_shows(
+        candidate: Candidate, simulator: Simulator, own: Hypothesis | None
+    ) -> tuple[float, Hypothesis] | None:
+        """Its trial over windows of middle length, or over those where the screen promises much of it if it does not show there."""
+        found = compared(own, middle)
+        promised = candidate.explained >= study.settings.trial_promise
+        if promised and not (found and found[0][0] < -allowance):
+            for length in (n for n in at if n != middle and steps[n] == candidate.steps):
+                found += compared(tried(candidate, simulator, length=length), length)
+        return min(found, key=lambda pair: pair[0], default=None)
 
     def in_full(candidate: Candidate, before: Hypothesis, simulator: Simulator) -> RankedCandidate | None:
         study.working_on(f"refitting {candidate.attachment.prefix} in full")
@@ -112,25 +131,23 @@ def rank(
         return again if again is not None and (own is None or again.score < own.score) else own
 
     reached = side_by_side(partial(tried_again, *pair, own) for pair, own in zip(pairs, reached, strict=True))
-    first = [
-        (trial.score, candidate, trial, simulator)
-        for trial, (candidate, simulator) in zip(reached, pairs, strict=True)
-        if trial is not None
-    ]
-    before, standing = (
-        score_of([f for f in h.fits if f.windows.steps == cut(study.problem.records, middle[0]).steps], h.floor)
-        for h in (current, to_beat or current)
-    )
-    hopeless = standing + study.settings.trial_allowance
-    first = sorted((entry for entry in first if entry[0] < hopeless), key=lambda entry: entry[0])
+    shown = side_by_side(partial(where_it_shows, *pair, own) for pair, own in zip(pairs, reached, strict=True))
+    first = [(*trial, *pair) for trial, pair in zip(shown, pairs, strict=True) if trial is not None]
+    first = [(worse, candidate, trial, simulator) for worse, trial, candidate, simulator in first]
+    first.sort(key=lambda entry: entry[0])
     final: list[RankedCandidate] = []
-    for some in _leading_and_rest(_finalists(first, study), before, study.settings):
+    for some in _leading_and_rest(_finalists(first, study), study.settings):
         if any(_pays(study, r) for r in final):
             break
         # Curves take longest: begun last, they would leave the other cores idle.
         longest_first = sorted(some, key=lambda entry: not entry[1].unknown)
         final += [r for r in side_by_side(partial(in_full, *entry[1:]) for entry in longest_first) if r is not None]
     return in_order([*final, *_laws_behind_curve(study, current, final, frozen)], study.settings)
+
+
+def _score_over(fitted: Hypothesis, steps: int) -> float:
+    """The score over windows of one length, in steps."""
+    return score_of([f for f in fitted.fits if f.windows.steps == steps], fitted.floor)
 
 
 def judged(
@@ -151,15 +168,11 @@ def _pays(study: Study, ranked: RankedCandidate) -> bool:
 
 
 def _leading_and_rest(
-    entries: Sequence[tuple[float, Candidate, Hypothesis, Simulator]], before: float, settings: DiagnosisSettings
+    entries: Sequence[tuple[float, Candidate, Hypothesis, Simulator]], settings: DiagnosisSettings
 ) -> list[list[tuple[float, Candidate, Hypothesis, Simulator]]]:
-    """Those whose trial came within reach of the best, and the others.
-
-    Args:
-        before: the score without any of them.
-    """
-    best = min((entry[0] for entry in entries), default=before)
-    reach = before - settings.finalist_share * (before - best) + settings.trial_allowance
+    """Those whose trial came within reach of the best, and the others."""
+    best = min((entry[0] for entry in entries), default=0.0)
+    reach = settings.finalist_share * best + settings.trial_allowance
     leading = [entry for entry in entries if entry[0] <= reach]
     return [leading, [entry for entry in entries if entry[0] > reach]]
 

@@ -23,6 +23,8 @@ class Candidate:
     explained: float
     from_motion: tuple[dict[str, float], ...] = ()
     """Further start values, which the measured motion suggests."""
+    steps: int = 0
+    """Samples of the longest of the windows over which the screen saw it explain most; zero where no screen saw it."""
 
     def first_starts(self, count: int) -> tuple[dict[str, float], ...]:
         """The first ``count`` of the screen's start values, and those of the measured motion."""
@@ -98,11 +100,12 @@ def _followed(
                 )
             before = found.get(identity)
             if before is None:
-                found[identity] = Candidate(score.attachment, starts, score.explained)
+                found[identity] = Candidate(score.attachment, starts, score.explained, steps=score.length)
+            elif score.explained > before.explained:
+                order = (*starts, *before.starts)
+                found[identity] = Candidate(score.attachment, order, score.explained, steps=score.length)
             else:
-                explained = max(score.explained, before.explained)
-                order = (*starts, *before.starts) if score.explained > before.explained else (*before.starts, *starts)
-                found[identity] = Candidate(score.attachment, order, explained)
+                found[identity] = replace(before, starts=(*before.starts, *starts))
     return sorted(found.values(), key=lambda candidate: -candidate.explained)
 
 

@@ -116,6 +116,13 @@ class ComparisonSettings:
     trial_allowance: float = number(
         0.05, "How much worse than without it a candidate may be after its trial.", unit=LOG_ERROR
     )
+    trial_promise: float = share(
+        0.1,
+        "Share of the residual that the screen has to promise over other windows than those of trials, for a candidate that does not "
+        "show there to be tried over them, too.",
+        unit="share of the residual's energy",
+        chosen_by="a tank that overflows, which shows over long windows alone; less is promised by a law that is not there",
+    )
     finalist_share: float = share(
         0.25,
         "Share of the gain of the best trial, less the allowance for one, from which a rival is refitted in full; "

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from greybox_torch.diagnosis.hypothesis.fit import window_lengths
 from greybox_torch.diagnosis.refit.rank import rank
 from greybox_torch.diagnosis.screen.shortlist import shortlist
 from greybox_torch.diagnosis.select.offered import screen_scores
@@ -27,3 +28,30 @@ def test_far_behind_the_best_trial_none_is_refitted_unless_the_best_do_not_pay(d
     assert 0 < len(near) < len(everyone)
     unsure = refitted_in_full(dead_zone_search, finalist_share=0.9, least_significance=1e9)
     assert sorted(unsure) == sorted(everyone)
+
+
+def test_what_does_not_show_over_middle_windows_is_tried_where_the_screen_saw_it(dead_zone_search, monkeypatch) -> None:
+    """An overflow shows over windows that are long enough to run over; over others its trial says nothing."""
+    found, tried = dead_zone_search, []
+    study, current = found.study, found.state.current
+    shortest, middle = (f.windows.steps for f in current.fits[:2])
+    (one, *_) = shortlist(study, screen_scores(study, found.state, curves=False, fine=False), current.fits)
+
+    def fit(*given: Any, at: Any = None, **how: Any) -> Any:
+        tried.extend(at or ["in full"])
+        better = 0.5 if at is None or at == window_lengths(study.problem)[:1] else 1.0
+        own = [
+            f for f, length in zip(current.fits, window_lengths(study.problem), strict=True) if at in (None, [length])
+        ]
+        return replace(current, fits=tuple(replace(f, mean_square=better * f.mean_square) for f in own))
+
+    monkeypatch.setattr("greybox_torch.diagnosis.refit.rank.fit", fit)
+    monkeypatch.setattr("greybox_torch.diagnosis.refit.rank._pays", lambda study, ranked: True)
+    rank(study, current, [replace(one, steps=shortest)])
+    assert tried == [*window_lengths(study.problem)[1::-1], "in full"]
+    tried.clear()
+    rank(study, current, [replace(one, steps=middle)])
+    assert tried == [window_lengths(study.problem)[1], "in full"]
+    tried.clear()
+    rank(study, current, [replace(one, steps=shortest, explained=0.05)])  # what promises little is not followed there
+    assert tried == [window_lengths(study.problem)[1], "in full"]

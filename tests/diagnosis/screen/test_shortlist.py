@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -76,6 +78,13 @@ def test_the_same_at_two_lengths_is_one_hypothesis(found) -> None:
     (candidate,) = found([short], [long])
     assert candidate.explained == 0.6
     assert [s["rotor.constant_bias.bias"] for s in candidate.starts] == [0.4, 0.4, 0.3, 0.3]
+
+
+def test_it_is_known_over_which_windows_an_effect_shows_most(found) -> None:
+    weak, strong = (score(ConstantBias(), e, 0.3) for e in (0.1, 0.6))
+    for order in ([weak], [replace(strong, length=400)]), ([replace(strong, length=400)], [weak]):
+        (candidate,) = found(*order)
+        assert candidate.steps == 400
 
 
 def test_best_first_nothing_tiny_not_all_and_a_curve_beside_the_named(found) -> None:
