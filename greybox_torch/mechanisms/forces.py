@@ -137,6 +137,7 @@ class AdditionalMode(Mechanism):
     kinds = ("body",)
     needs = ("speed",)
     linear = True
+    essential = ("mass",)  # of one so heavy that the body does not move it the spring is seen, and no mode
     natural = ("zeta",)
     nature = "one more mass on a spring"
     explanation = "One more mass hangs on this body by a spring and a damper (an unmodelled resonance)."
