@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import compress
 from typing import Any
 
 from experiments.recordings.cases import Case, Concealed, key
-from experiments.verdicts.scoring import score
+from experiments.verdicts.scoring import NOTHING_CONCEALED, score
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+
+LEAST_BROUGHT = DiagnosisSettings().least_size
+"""Share of the squared validation error that the full published model has to remove for what it has more to be shown: a finding's."""
 
 
 def row(case: Case, verdict: Mapping[str, Any], fit: Mapping[str, Any] | None) -> dict[str, Any]:
@@ -19,6 +24,10 @@ def row(case: Case, verdict: Mapping[str, Any], fit: Mapping[str, Any] | None) -
     answers = key(case)
     scored = score(case.name, verdict, answers)
     near = [pair for pairs in answers["near"] for pair in pairs]
+    estimates = [_estimate(c, verdict, fit) for c in case.concealed if fit]
+    brings = _brought(verdict, fit) if case.concealed and fit else None
+    enough = brings is None or brings >= LEAST_BROUGHT
+    shown = [enough and e["shown"] for e in estimates] or [True] * len(scored.effects)
     findings = [
         {
             "port": f.port,
@@ -29,9 +38,12 @@ def row(case: Case, verdict: Mapping[str, Any], fit: Mapping[str, Any] | None) -
         }
         for f in scored.findings
     ]
+    among = score(case.name, verdict, _only(answers, shown))
     return {
         "recording": case.name,
         "concealed": list(scored.effects),
+        "brings": brings,
+        "shown": {"effects": sum(shown), "named": among.named, "located": among.located},
         "detected": scored.detected,
         "named": scored.named,
         "located": scored.located,
@@ -54,8 +66,26 @@ def row(case: Case, verdict: Mapping[str, Any], fit: Mapping[str, Any] | None) -
                 verdict["fit"], fit["fit"] if fit else [None] * len(verdict["fit"]), strict=True
             )
         ],
-        "estimates": [_estimate(c, verdict, fit) for c in case.concealed if fit],
+        "estimates": estimates,
     }
+
+
+def _only(answers: Mapping[str, Any], shown: Sequence[bool]) -> dict[str, Any]:
+    """An answer key with those of its effects alone that are ``shown``."""
+    if not any(shown):
+        return {**answers, **NOTHING_CONCEALED}
+    return {**answers, **{n: list(compress(answers[n], shown)) for n in ("effects", "accept", "near", "ports")}}
+
+
+def _brought(verdict: Mapping[str, Any], fit: Mapping[str, Any]) -> float:
+    """Share of the squared validation error of the re-estimated model that the full published one removes, mean over outputs."""
+    pairs = [
+        (row["refit"]["rmse"], full["refit"]["rmse"])
+        for row, full in zip(verdict["fit"], fit["fit"], strict=True)
+        if row["role"] == "validation"
+    ]
+    left = [(full / max(without, 1e-300)) ** 2 for without, full in pairs if without is not None and full is not None]
+    return 1.0 - sum(left) / len(left) if left else 0.0
 
 
 def _estimate(concealed: Concealed, verdict: Mapping[str, Any], fit: Mapping[str, Any]) -> dict[str, Any]:
@@ -80,18 +110,21 @@ def _estimate(concealed: Concealed, verdict: Mapping[str, Any], fit: Mapping[str
 
 
 def _shown(full: Mapping[str, Any]) -> bool:
-    """Whether the recordings show the quantity at all: fitted in the full model it is more than two standard deviations from zero.
+    """Whether the full model, fitted, has the quantity more than two standard deviations from zero.
 
-    What the publication measured in other ways and fixed is taken as shown.
+    What the publication measured in other ways and fixed is taken as shown, and so is what trades for other parameters so that no
+    deviation is known: there what the full model removes decides alone.
     """
-    return full["fixed"] or (full["std_sandwich"] is not None and abs(full["value"]) > 2 * full["std_sandwich"])
+    std = full["std_sandwich"]
+    return full["fixed"] or std is None or abs(full["value"]) > 2 * std
 
 
 def table(rows: Sequence[Mapping[str, Any]]) -> str:
     """Two Markdown tables: what was found and what it is worth, then the estimates."""
     lines = [
-        "| recording | concealed | found of it | besides | named | validation fit [%]: without, found, published model | s |",
-        "|---|---|---|---|---|---|---|",
+        "| recording | concealed | found of it | besides | named | validation fit [%]: without, found, published model "
+        "| published model removes [%] | s |",
+        "|---|---|---|---|---|---|---|---|",
     ]
     for r in rows:
         fits = "; ".join(
@@ -99,8 +132,8 @@ def table(rows: Sequence[Mapping[str, Any]]) -> str:
             for f in r["fit"]
             if f["role"] == "validation"
         )
-        shown = sum(e["shown"] for e in r["estimates"])
-        named = f"{r['named']}/{len(r['concealed'])}" + ("" if shown == len(r["estimates"]) else f" ({shown} shown)")
+        shown = r["shown"]["effects"]
+        named = f"{r['named']}/{len(r['concealed'])}" + ("" if shown == len(r["concealed"]) else f" ({shown} shown)")
         named = named if r["concealed"] else "right" if r["detected"] else "false alarm"
         cells = (
             r["recording"],
@@ -109,6 +142,7 @@ def table(rows: Sequence[Mapping[str, Any]]) -> str:
             _list(r["besides"]),
             named,
             fits,
+            "" if r["brings"] is None else f"{100 * r['brings']:.2g}",
             f"{r['seconds']:.0f}" + ("" if r["complete"] else ", time limit"),
         )
         lines.append(f"| {' | '.join(cells)} |")
@@ -134,6 +168,7 @@ def table(rows: Sequence[Mapping[str, Any]]) -> str:
 def _totals(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """What a reader wants to know first."""
     effects = sum(len(r["concealed"]) for r in rows)
+    shown, named, located = (sum(r["shown"][what] for r in rows) for what in ("effects", "named", "located"))
     complete = [r for r in rows if not r["concealed"]]
     alarms, worse = (
         [r["recording"] for r in complete if not r["detected"]],
@@ -142,6 +177,7 @@ def _totals(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     contradicted = [r["recording"] for r in rows if r["contradictions"]]
     return [
         f"- Effects left out: {effects}; named {sum(r['named'] for r in rows)}, rightly placed {sum(r['located'] for r in rows)}.",
+        f"- Of these the recordings show {shown}: named {named}, rightly placed {located}.",
         f"- Nothing left out: {len(complete)} cases; {_names(alarms)} said to lack something.",
         f"- Recommended model worse on validation than the re-estimated one: {_names(worse)}.",
         f"- Verdicts that contradict themselves: {_names(contradicted)}.",

@@ -142,9 +142,28 @@ def test_hits_near_ones_and_the_rest_are_told_apart_and_signs_turned() -> None:
     assert level["found"] == {"mechanism": "stribeck_friction", "value": 21.0, "std": 0.5}
     assert offset["found"] == {"mechanism": "input_bias", "value": -3.0, "std": 0.5}
     assert (level["shown"], offset["shown"]) == (True, False)
+    assert found["brings"] == pytest.approx(0.99)  # of an error of 1 the published model leaves 0.1
+    assert found["shown"] == {"effects": 1, "named": 1, "located": 1}
     text = table([found])
+    assert (
+        "- Effects left out: 2; named 2, rightly placed 2.\n- Of these the recordings show 1: named 1, rightly placed 1."
+        in text
+    )
     assert "| 2/2 (1 shown) |" in text
     assert "| EMPS | offset | N | -3.165 | -0.1 ± 0.3 | -3 ± 0.5 | input_bias |" in text
+
+
+def test_what_improves_nothing_in_the_published_model_is_not_shown() -> None:
+    """However many deviations from zero it is there."""
+    alone = next(case for case in CASES if case.name == "EMPS without Coulomb friction")
+    better, alike = (
+        row(alone, verdict(), {**FIT, "fit": [{**FIT["fit"][0], "refit": {"fit": 50.0, "rmse": r}}]})
+        for r in (0.9, 0.995)
+    )
+    assert better["estimates"][0]["shown"] and alike["estimates"][0]["shown"]
+    assert better["shown"] == {"effects": 1, "named": 0, "located": 0}
+    assert alike["shown"]["effects"] == 0
+    assert "| 0/1 (0 shown) |" in table([{**alike, "fit": []}])
 
 
 def test_a_finding_at_the_port_that_is_something_else_is_no_hit() -> None:
@@ -160,7 +179,7 @@ def test_a_damper_is_read_from_a_law_that_saturates() -> None:
     fit = {"fit": FIT["fit"], "parameters": {"d_a": {"value": 0.003, "std_sandwich": None, "fixed": False}}}
     found = row(arm, verdict(effect("arm_spring", "nonlinear_damping", d_0=0.02, r_0=8.0)), fit)
     assert found["estimates"][0]["found"]["value"] == pytest.approx(0.0025)
-    assert not found["estimates"][0]["shown"]  # a deviation that is not known
+    assert found["shown"]["effects"] == 1  # no deviation is known: what the published model removes decides
 
 
 def test_names_with_commas_can_be_chosen() -> None:
