@@ -189,7 +189,8 @@ def size(
     """The share of the mismatch of ``plain`` that leaving an effect out of ``full`` brings back: the mean over window lengths.
 
     The mismatch is the squared error beyond what the noise alone would leave. Where the plain model cannot be simulated, or leaves no
-    more than noise, the whole is what the model without the effect leaves.
+    more than noise, the whole is what the model without the effect leaves. A length over which neither leaves more says nothing of an
+    effect, as start states take up there what it does; where that is so of every length, its size is zero.
     """
     shares = []
     for level, new in enumerate(full):
@@ -199,11 +200,11 @@ def size(
             continue
         whole = plain[level] if level < len(plain) else old
         noise = noise_floor(new.problem, settings) * float(np.sum(~np.isnan(new.problem.records.y)))
-        mismatch = max(
-            float(whole.energies.sum()) - noise, float(old.energies.sum()) - float(new.energies.sum()), 1e-300
-        )
-        shares.append((float(old.energies.sum()) - float(new.energies.sum())) / mismatch)
-    return float(np.mean(shares)) if shares else float("nan")
+        brought_back = float(old.energies.sum()) - float(new.energies.sum())
+        mismatch = max(float(whole.energies.sum()) - noise, brought_back)
+        if mismatch > settings.no_mismatch * noise:
+            shares.append(brought_back / mismatch)
+    return float(np.mean(shares)) if shares else 0.0 if full else float("nan")
 
 
 def timelines(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> tuple[Timeline, ...]:

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.local_minima import no_worse_than_longer
-from greybox_torch.diagnosis.hypothesis.noise import floor_known, reaches_noise
+from greybox_torch.diagnosis.hypothesis.noise import at_floor, floor_known, reaches_noise
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for
@@ -107,11 +107,12 @@ def hypothesis(
     simulator = simulator or Simulator.of(model, problems[0].free_names, options)
     limits, fits = limits or budget.window_iterations, []
     as_far = partial(_as_far_as_counts, base, limits, settings, budget, rough)
+    at_end = partial(at_floor, base, settings=settings)
     at = at or window_lengths(base, budget)
     for length in at:
         known = None if before is None else _over(cut(base.records, length), before.fits)
         trials = _distinct([f.problem for f in fits[-1:]] + problems + ([] if fits else first), known)
-        fit = _best_fit(trials, known, simulator, length, shorter, as_far, budget)
+        fit = _best_fit(trials, known, simulator, length, shorter, as_far, at_end, budget)
         if fit is None:
             return None
         if fits and reaches_noise(base, fits[-1], settings) and not reaches_noise(base, fit, settings):
@@ -149,12 +150,20 @@ def _best_fit(
     length: int,
     shorter: WindowFit | None,
     limits_of: Callable[[WindowFit], Settings],
+    at_end: Callable[[WindowFit], bool],
     budget: SearchBudget,
 ) -> WindowFit | None:
+    """The best that the trials lead to.
+
+    Args:
+        at_end: whether no other start could lead farther.
+    """
     begin = partial(fit_windows, simulator=simulator, length=length, shorter=shorter, settings=budget.first_iterations)
     leading, others = known, trials
     if known is None and trials:
         leading, others = begin(trials[0]), trials[1:]
+    if leading is not None and at_end(leading):
+        others = []
     rival = None if leading is None else Rival(leading.mean_square, budget.rival_pace)
     begun = [leading, *side_by_side(partial(begin, t, rival=rival) for t in others)]
     found = sorted((fit for fit in begun if fit is not None), key=lambda f: f.mean_square)

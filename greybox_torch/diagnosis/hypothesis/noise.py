@@ -21,6 +21,11 @@ def reaches_noise(problem: Problem, fit: WindowFit, settings: DiagnosisSettings,
     return floor_known(problem, settings) and fit.mean_square < most**2 * noise_floor(problem, settings)
 
 
+def at_floor(problem: Problem, fit: WindowFit, settings: DiagnosisSettings) -> bool:
+    """Whether a fit leaves no more than the noise, as nearly as that is known: from no other start could it have come farther."""
+    return reaches_noise(problem, fit, settings, float(np.sqrt(1.0 + settings.no_mismatch)))
+
+
 def floor_known(problem: Problem, settings: DiagnosisSettings) -> bool:
     """Whether the recordings tell how much noise there is: differences of several orders agree on it.
 

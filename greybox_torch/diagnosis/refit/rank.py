@@ -10,11 +10,12 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, augmented, score_of, window_lengths, without_free
+from greybox_torch.diagnosis.hypothesis.noise import at_floor
 from greybox_torch.diagnosis.hypothesis.significance import white_samples, window_significance
 from greybox_torch.diagnosis.refit.curve import laws_on_curve
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.refit.twins import from_twin
-from greybox_torch.diagnosis.screen.shortlist import Candidate
+from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.problem import problem_for
@@ -136,7 +137,7 @@ def rank(
     first = [(worse, candidate, trial, simulator) for worse, trial, candidate, simulator in first]
     first.sort(key=lambda entry: entry[0])
     final: list[RankedCandidate] = []
-    for some in _leading_and_rest(_finalists(first, study), study.settings):
+    for some in _leading_and_rest(study, _finalists(first, study)):
         if any(_pays(study, r) for r in final):
             break
         # Curves take longest: begun last, they would leave the other cores idle.
@@ -168,11 +169,17 @@ def _pays(study: Study, ranked: RankedCandidate) -> bool:
 
 
 def _leading_and_rest(
-    entries: Sequence[tuple[float, Candidate, Hypothesis, Simulator]], settings: DiagnosisSettings
+    study: Study, entries: Sequence[tuple[float, Candidate, Hypothesis, Simulator]]
 ) -> list[list[tuple[float, Candidate, Hypothesis, Simulator]]]:
-    """Those whose trial came within reach of the best, and the others."""
+    """Those whose trial came within reach of the best, and the others.
+
+    Where a named one came to the noise, nothing that is clearly behind it can still win.
+    """
+    settings = study.settings
     best = min((entry[0] for entry in entries), default=0.0)
     reach = settings.finalist_share * best + settings.trial_allowance
+    if any(not c.unknown and at_floor(study.problem, trial.fits[-1], settings) for _, c, trial, _ in entries):
+        reach = min(reach, best + settings.trial_allowance + settings.score_tie)
     leading = [entry for entry in entries if entry[0] <= reach]
     return [leading, [entry for entry in entries if entry[0] > reach]]
 
@@ -180,10 +187,15 @@ def _leading_and_rest(
 def _laws_behind_curve(
     study: Study, current: Hypothesis, final: Sequence[RankedCandidate], frozen: frozenset[str]
 ) -> list[RankedCandidate]:
-    """Where a free curve leads: the named laws of the same signal at the same port, refitted from what the curve has learned."""
+    """Where a free curve leads: the named laws of the same signal at the same port, refitted from what the curve has learned.
+
+    Not those that have come as far as the curve by themselves.
+    """
     best = min(final, key=lambda r: r.fitted.score, default=None)
     if best is None or not isinstance(best.candidate.attachment.mechanism, Unknown):
         return []
+    within = best.fitted.score + study.settings.score_tie
+    there = {identity_of(r.candidate.attachment) for r in final if r.fitted.score < within}
 
     def tried(candidate: Candidate) -> RankedCandidate | None:
         study.working_on(f"refitting {candidate.attachment.prefix} from the curve")
@@ -193,7 +205,9 @@ def _laws_behind_curve(
         return None if fitted is None else judged(candidate, current, fitted, study.settings)
 
     laws = laws_on_curve(study.problem.model, best.fitted, best.candidate.attachment, study.surroundings, study.card)
-    allowed = [law for law in laws if not study.beliefs.exclude(law.attachment)]
+    allowed = [
+        law for law in laws if not study.beliefs.exclude(law.attachment) and identity_of(law.attachment) not in there
+    ]
     return [r for r in side_by_side(partial(tried, law) for law in allowed) if r is not None]
 
 

@@ -54,6 +54,14 @@ def _without(study: Study, state: SearchState, effect: Attachment) -> Hypothesis
     rest = tuple(e for e in state.effects if e is not effect)
     if not rest:
         return state.plain
+    done = state.step_of(effect.prefix)
+    if (
+        done is not None
+        and done.taken is not None
+        and done.taken.fitted is state.current
+        and done.parent.effects == rest
+    ):
+        return done.parent  # polished already, beside what was taken, from where that had led
     study.working_on(f"trying without {effect.prefix}")
     handed_over = absorbed(state.current, effect, study.surroundings)
     return refitted(study, rest, state.current, [] if handed_over is None else [handed_over]) or state.plain

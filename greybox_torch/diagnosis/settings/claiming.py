@@ -55,6 +55,12 @@ class ConfirmationSettings:
         unit="share of the plain model's held-out mismatch",
         chosen_by="cases simulated elsewhere: what a law lacks to be the machine's stays below 0.005, effects begin at 0.05",
     )
+    no_mismatch: float = share(
+        0.01,
+        "Squared error beyond the noise up to which windows of one length say nothing of an effect's size.",
+        unit="share of the noise's squared error",
+        chosen_by="how exactly recordings of some thousand samples tell their noise",
+    )
     least_size_at_noise: float = share(
         1e-3,
         "The same where with all effects hardly more than noise is left on held-out experiments: then nothing lacks that it could be.",

@@ -41,6 +41,14 @@ def test_a_model_that_does_not_simulate_without_it_leaves_the_whole(fits) -> Non
     assert size(fits(1.0), (), fits(4e-4), DiagnosisSettings()) == 1.0
 
 
+def test_lengths_over_which_nothing_is_missing_say_nothing_of_the_size(fits) -> None:
+    """Over short windows start states take up what an effect does: neither model leaves more than noise there."""
+    noise, settings = 4e-4, DiagnosisSettings()
+    plain, full = ((fits(noise)[0], *fits(1.0)[1:]), (fits(1.01 * noise)[0], *fits(noise)[1:]))
+    assert size(plain, plain, full, settings) == pytest.approx(1.0, rel=1e-2)
+    assert size(fits(noise), fits(noise), fits(1.001 * noise), settings) == 0.0
+
+
 def test_what_held_out_experiments_do_not_exercise_is_measured_where_it_was_found(dead_zone_search, fits) -> None:
     found = dead_zone_search
     state = replace(found.state, without={"rotor.x": found.plain})

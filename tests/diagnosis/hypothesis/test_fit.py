@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from greybox_torch.diagnosis.hypothesis import fit as fit_module
+from greybox_torch.diagnosis.hypothesis import noise as noise_module
 from greybox_torch.diagnosis.hypothesis.fit import hypothesis
+from greybox_torch.estimate.window_fit import fit_windows
 from greybox_torch.simulation.simulator import DEFAULT
 
 
@@ -30,3 +32,19 @@ def test_a_fit_that_is_carried_on_is_not_begun_anew(dead_zone_search, monkeypatc
     assert again is not None
     assert again.fits == plain.fits
     assert hypothesis(study.problem, (), {}, [plain.values()], options=study.options) is None
+
+
+def test_no_other_start_is_tried_where_the_noise_is_reached(dead_zone_search, monkeypatch) -> None:
+    study, plain, begun = dead_zone_search.study, dead_zone_search.plain, []
+
+    def counted(*fixed: Any, settings: Any, **how: Any) -> Any:
+        begun.append(settings == study.budget.first_iterations)
+        return fit_windows(*fixed, settings=settings, **how)
+
+    monkeypatch.setattr(fit_module, "fit_windows", counted)
+    starts = [plain.values(), {n: 1.1 * v for n, v in plain.values().items()}]
+    for noise, tried in ((0.0, 2), (1e9, 1)):
+        begun.clear()
+        monkeypatch.setattr(noise_module, "noise_floor", lambda *_, floor=noise: floor)
+        hypothesis(study.problem, (), {}, starts, options=study.options, at=[40])
+        assert sum(begun) == tried

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from greybox_torch.diagnosis.hypothesis.fit import window_lengths
-from greybox_torch.diagnosis.refit.rank import rank
-from greybox_torch.diagnosis.screen.shortlist import shortlist
+from greybox_torch.diagnosis.refit import rank as rank_module
+from greybox_torch.diagnosis.refit.rank import RankedCandidate, _laws_behind_curve, rank
+from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
 from greybox_torch.diagnosis.select.offered import screen_scores
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.friction import CoulombFriction
+from greybox_torch.mechanisms.unknown import Unknown
+
+NOISE_UNKNOWN = {"noise_floors_agree": 1.0 + 1e-9}
 
 
 def refitted_in_full(found: Any, **settings: float) -> list[str]:
@@ -22,11 +29,11 @@ def refitted_in_full(found: Any, **settings: float) -> list[str]:
 
 
 def test_far_behind_the_best_trial_none_is_refitted_unless_the_best_do_not_pay(dead_zone_search) -> None:
-    everyone = refitted_in_full(dead_zone_search, finalist_share=0.0)
-    near = refitted_in_full(dead_zone_search, finalist_share=0.9)
+    everyone = refitted_in_full(dead_zone_search, finalist_share=0.0, **NOISE_UNKNOWN)
+    near = refitted_in_full(dead_zone_search, finalist_share=0.9, **NOISE_UNKNOWN)
     assert near[0] == "refitting actuator.actuator_deadzone in full"
     assert 0 < len(near) < len(everyone)
-    unsure = refitted_in_full(dead_zone_search, finalist_share=0.9, least_significance=1e9)
+    unsure = refitted_in_full(dead_zone_search, finalist_share=0.9, least_significance=1e9, **NOISE_UNKNOWN)
     assert sorted(unsure) == sorted(everyone)
 
 
@@ -55,3 +62,19 @@ def test_what_does_not_show_over_middle_windows_is_tried_where_the_screen_saw_it
     tried.clear()
     rank(study, current, [replace(one, steps=shortest, explained=0.05)])  # what promises little is not followed there
     assert tried == [window_lengths(study.problem)[1], "in full"]
+
+
+def test_beside_one_at_the_noise_none_is_refitted_that_is_behind_it(dead_zone_search) -> None:
+    """However little of its gain a rival would have to bring."""
+    assert refitted_in_full(dead_zone_search, finalist_share=0.0) == ["refitting actuator.actuator_deadzone in full"]
+
+
+def test_a_law_that_is_there_already_is_not_refitted_from_the_curve(dead_zone_search, monkeypatch) -> None:
+    law, curve = Attachment("rotor", CoulombFriction()), Attachment("rotor", Unknown("speed"))
+    fitted = dead_zone_search.plain
+    ranked = [RankedCandidate(Candidate(a, ({},), 1.0), fitted, 1.0, 9.0) for a in (curve, law)]
+    monkeypatch.setattr(rank_module, "laws_on_curve", lambda *_: [Candidate(law, ({},), 1.0)])
+    monkeypatch.setattr(rank_module, "fit", lambda *_, **__: fitted)
+    behind = partial(_laws_behind_curve, dead_zone_search.study, fitted, frozen=frozenset())
+    assert [r.candidate.attachment for r in behind(ranked[:1])] == [law]
+    assert behind(ranked) == []
