@@ -14,6 +14,7 @@ from functools import partial
 
 from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, TimeIsUp, until
+from greybox_torch.diagnosis.coarser import coarser
 from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
 from greybox_torch.diagnosis.confirm.holding import Judged, holding
@@ -78,14 +79,16 @@ def find(
     used = excerpts(dataset, study.budget.most_samples)
     if used.dataset is not dataset:
         study = replace(study, problem=_problem(used.dataset, model))
-    study = replace(study, options=simulator_for(study.problem, study.options).options)
+    simulator, problem_of = simulator_for(study.problem, study.options), partial(_problem, model=model)
+    some = coarser(used.dataset, study.problem, simulator, problem_of, study.settings, study.budget)
+    study = replace(study, problem=some.problem, recorded=study.problem.records, options=simulator.options)
     free_runs = FreeRuns(study, dataset)
     clock.lap("preparing")
     begun = fit_plain_model(study)
     schedule = Schedule.within(end, free_runs.seconds, study.budget)
     study, state, complete = _searched(*begun, schedule.searching)
     clock.lap(SEARCH)
-    others = HeldOut(used.dataset, study) if dataset.validation() else None
+    others = HeldOut(some.dataset, study) if dataset.validation() else None
     state, gains, confirmed = _confirmed(study, state, others, schedule.confirming)
     clock.lap(CONFIRMING)
     (plain, augmented), fitted = _finished(study, state, schedule.fitting)
@@ -96,7 +99,15 @@ def find(
     ended = {SEARCH: complete, CONFIRMING: confirmed, FITTING: fitted, JUDGING: held and whole}
     cut = tuple(stage for stage, whole in ended.items() if not whole)
     return Findings(
-        dataset, study, state, None if cut else others, gains, judged, not cut, (*used.sentences, *told), cut
+        dataset,
+        study,
+        state,
+        None if cut else others,
+        gains,
+        judged,
+        not cut,
+        (*used.sentences, *some.sentences, *told),
+        cut,
     )
 
 
@@ -200,8 +211,9 @@ def _finished(study: Study, state: SearchState, deadline: Deadline) -> tuple[tup
 
     def fits() -> tuple[Final, Final]:
         study.working_on("fitting whole records")
-        plain = finish(state.plain, study.settings, study.budget)
-        return plain, finish(state.current, study.settings, study.budget) if state.effects else plain
+        fitted = partial(finish, settings=study.settings, budget=study.budget, records=study.recorded)
+        plain = fitted(state.plain)
+        return plain, fitted(state.current) if state.effects else plain
 
     def as_they_are() -> tuple[Final, Final]:
         plain = from_longest_windows(state.plain)

@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.reconstruction import Motion
 from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.simulator import DEFAULT, SimulationOptions
 
 
@@ -25,8 +26,8 @@ class Study:
 
     ``options`` are those of every simulation. ``surroundings`` and ``shifts`` are what mechanisms need to know of the ports: where signals
     moved, and which state carries the deflection of a coupling; both are known once the model as it stands is fitted. ``motion``: what the
-    outputs show of the states, or why they do not. ``beliefs``: what is known
-    beforehand. ``report`` is told what is being done, ``journal`` which candidates are tried.
+    outputs show of the states, or why they do not. ``recorded``: all samples of the estimation experiments, where ``problem`` has some of
+    them. ``beliefs``: what is known beforehand. ``report`` is told what is being done, ``journal`` which candidates are tried.
     """
 
     problem: Problem
@@ -34,6 +35,7 @@ class Study:
     surroundings: Mapping[str, Surroundings] = field(default_factory=dict)
     shifts: Mapping[str, str] = field(default_factory=dict)
     motion: Motion | str | None = None
+    recorded: Records | None = None
     settings: DiagnosisSettings = field(default_factory=DiagnosisSettings)
     budget: SearchBudget = field(default_factory=SearchBudget)
     beliefs: Beliefs = field(default_factory=Beliefs)

@@ -15,6 +15,7 @@ from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimise
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.uncertainty import Uncertainty, of_information, uncertainty
+from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.side_by_side import side_by_side
 
 
@@ -50,7 +51,10 @@ class Final:
 
 
 def finish(
-    hypothesis: Hypothesis, settings: DiagnosisSettings = DiagnosisSettings(), budget: SearchBudget = SearchBudget()
+    hypothesis: Hypothesis,
+    settings: DiagnosisSettings = DiagnosisSettings(),
+    budget: SearchBudget = SearchBudget(),
+    records: Records | None = None,
 ) -> Final:
     """Fit whole records by simulation error, from the values of every window length and from the card's; the best of the results.
 
@@ -58,9 +62,12 @@ def finish(
     are weighed by their spectrum. (The model as it stands is always fitted to simulation error as it is: the best that it can do.)
 
     Where no whole record can be simulated, the values of the longest windows stand.
+
+    Args:
+        records: of the same experiments, the first sample of each the same; by default those that the hypothesis was found on.
     """
-    problems = [from_windows(fit) for fit in reversed(hypothesis.fits)]
-    runs = whole_runs(hypothesis, [*problems, _from_the_card(hypothesis)])
+    problems = [*(from_windows(fit) for fit in reversed(hypothesis.fits)), _from_the_card(hypothesis)]
+    runs = whole_runs(hypothesis, [_on(records, problem) for problem in problems])
     begun = side_by_side(partial(_descended, run, run.start, budget.record_first_iterations) for run in runs)
     best, cost = None, np.inf
     for run, optimum in zip(runs, begun, strict=True):
@@ -85,11 +92,15 @@ def from_longest_windows(hypothesis: Hypothesis) -> Final:
     return Final(from_windows(hypothesis.fits[-1]), None)
 
 
-def as_windows_have_it(hypothesis: Hypothesis) -> Final:
+def as_windows_have_it(hypothesis: Hypothesis, records: Records | None = None) -> Final:
     """The values of the longest windows, with their uncertainty on whole records, where those can be simulated from there."""
-    run = whole_runs(hypothesis, [from_windows(hypothesis.fits[-1])])[0]
+    run = whole_runs(hypothesis, [_on(records, from_windows(hypothesis.fits[-1]))])[0]
     known = run.normals(run.start) is not None
     return Final(run.at(run.start), uncertainty(run, run.start) if known else None)
+
+
+def _on(records: Records | None, problem: Problem) -> Problem:
+    return problem if records is None else replace(problem, records=records)
 
 
 def _descended(run: FreeRun, start: np.ndarray, settings: Settings) -> Optimum[None] | None:

@@ -38,6 +38,16 @@ class SearchBudget:
         chosen_by=TIME,
         least=1000,
     )
+    least_samples: int = count(
+        5_000,
+        "Samples that the recordings of a role keep at least where one of several is searched.",
+        unit="samples",
+        chosen_by=TIME,
+        least=1000,
+    )
+    most_passed_over: int = count(
+        9, "Samples between two of those that are searched, at most; 0 searches all.", chosen_by=TIME, least=0
+    )
     window_factors: tuple[int, ...] = counts(
         (1, 4, 16),
         "Window lengths as multiples of the shortest: short windows forgive a wrong trajectory, long ones show slow effects.",
