@@ -81,7 +81,8 @@ def find(
         study = replace(study, problem=_problem(used.dataset, model))
     simulator, problem_of = simulator_for(study.problem, study.options), partial(_problem, model=model)
     some = coarser(used.dataset, study.problem, simulator, problem_of, study.settings, study.budget)
-    study = replace(study, problem=some.problem, recorded=study.problem.records, options=simulator.options)
+    recorded = None if some.problem is study.problem else study.problem.records
+    study = replace(study, problem=some.problem, recorded=recorded, options=simulator.options)
     free_runs = FreeRuns(study, dataset)
     clock.lap("preparing")
     begun = fit_plain_model(study)

@@ -86,6 +86,24 @@ def test_what_a_rejected_way_found_instead_of_its_curve_is_not_kept(dead_zone_se
     assert result_of(explore.explore(dead_zone_search.study, start)).named is None
 
 
+def test_where_nothing_is_left_no_other_way_is_gone(dead_zone_search, monkeypatch) -> None:
+    study, start = dead_zone_search.study, dead_zone_search.state
+    effect = SimpleNamespace(prefix="rotor.something")
+    asked: list[bool] = []
+    monkeypatch.setattr(explore, "passed_over", lambda *_: asked.append(True))
+    for noise in (1.0, 0.0):
+        fits = tuple(replace(f, mean_square=noise * f.mean_square) for f in start.plain.fits)
+        found = replace(start, steps=(SimpleNamespace(),), current=replace(start.plain, effects=(effect,), fits=fits))
+
+        def taken(*_: Any, found: Any = found) -> Any:
+            yield found
+            return found
+
+        monkeypatch.setattr(explore, "take_effects", taken)
+        assert result_of(explore.explore(study, start)) is found
+    assert asked == [True]
+
+
 def test_effects_that_pruning_dropped_are_not_asked_for_simpler_laws(monkeypatch) -> None:
     one, two = SimpleNamespace(prefix="a.x"), SimpleNamespace(prefix="a.y")
     pruned = SimpleNamespace(effects=(), prefixes=())

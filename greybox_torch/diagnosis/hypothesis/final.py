@@ -66,8 +66,8 @@ def finish(
     Args:
         records: of the same experiments, the first sample of each the same; by default those that the hypothesis was found on.
     """
-    problems = [*(from_windows(fit) for fit in reversed(hypothesis.fits)), _from_the_card(hypothesis)]
-    runs = whole_runs(hypothesis, [_on(records, problem) for problem in problems])
+    problems = [from_windows(fit) for fit in reversed(hypothesis.fits)]
+    runs = whole_runs(hypothesis, [*problems, _from_the_card(hypothesis)])
     begun = side_by_side(partial(_descended, run, run.start, budget.record_first_iterations) for run in runs)
     best, cost = None, np.inf
     for run, optimum in zip(runs, begun, strict=True):
@@ -75,12 +75,14 @@ def finish(
             best, cost = (run, optimum.point), optimum.model.cost
     if best is None:
         return from_longest_windows(hypothesis)
-    run, point = best
+    (run, point), first = best, runs[0]
+    if records is not None:  # the way there needs no more samples than the search
+        run, first = whole_runs(hypothesis, [_on(records, run.problem), _on(records, problems[0])])
     ended = _descended(run, point, budget.record_iterations)
     point = point if ended is None else ended.point
     if hypothesis.effects and noise_over_windows(hypothesis, settings):
         # a run keeps where its stretches began: those fitted side by side are objects of their own
-        weighed = coloured([replace(run, problem=run.at(point)), replace(runs[0])])
+        weighed = coloured([replace(run, problem=run.at(point)), replace(first)])
         if weighed is not None:
             run, fit = weighed
             return Final(run.at(fit.point), of_information(fit.information), weighed=True)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
+from greybox_torch.diagnosis.hypothesis.noise import at_floor
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
@@ -25,7 +26,7 @@ def explore(study: Study, start: SearchState) -> Stage[SearchState]:
     them helps alone, and something that is not there may do better than either.
     """
     first = yield from take_effects(study, start)
-    if len(first.steps) == len(start.steps):
+    if len(first.steps) == len(start.steps) or nothing_is_left(study, first):
         return first
     passed = passed_over(study, start, first.steps[len(start.steps)])
     if passed is None or passed.attachment.prefix in first.prefixes:
@@ -35,6 +36,11 @@ def explore(study: Study, start: SearchState) -> Stage[SearchState]:
     if chosen_again and price(other.current) <= price(first.current) - study.settings.curve_margin:
         return other
     return replace(first, plain=other.plain)  # what else the rejected way knows is not about these effects
+
+
+def nothing_is_left(study: Study, state: SearchState) -> bool:
+    """Whether what was found leaves no more than the noise over windows of any length: no other way leads farther."""
+    return bool(state.effects) and all(at_floor(study.problem, f, study.settings) for f in state.current.fits)
 
 
 def passed_over(study: Study, before: SearchState, done: SelectionStep) -> Candidate | None:

@@ -7,9 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from greybox_torch.diagnosis.coarser import sampled
 from greybox_torch.diagnosis.hypothesis.above_noise import noise_over_windows
 from greybox_torch.diagnosis.hypothesis.final import _from_the_card, finish
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
+from greybox_torch.estimate.problem import make_problem
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias
 
@@ -45,6 +47,18 @@ def test_where_windows_led_astray_the_card_is_a_beginning(search) -> None:
     right, astray = finish(search.current), finish(lost(search.current, "J"))
     assert astray.uncertainty is not None
     assert np.allclose(astray.problem.values, right.problem.values, rtol=1e-3)
+
+
+def test_what_was_found_with_some_of_the_samples_is_fitted_to_all(motor_data, motor, begun) -> None:
+    """Four times as many say it twice as exactly."""
+    data = motor_data(torque=lambda q, v: 0.05, noise=0.02)
+    found = begun(sampled(data, 4, ["voltage"]), motor)
+    bias = found.refitted((attach(motor, "rotor", ConstantBias()),), found.plain)
+    some, every = finish(bias), finish(bias, records=make_problem(data, motor, data.estimation()).records)
+    assert every.problem.records.y.shape[1] == 2000
+    for name, deviation in every.deviations().items():
+        assert some.deviations()[name] == pytest.approx(2.0 * deviation, rel=0.2)
+        assert every.values()[name] == pytest.approx(some.values()[name], abs=4.0 * some.deviations()[name])
 
 
 def test_drift_beside_an_effect_does_not_bend_the_machine(motor_data, motor, begun) -> None:

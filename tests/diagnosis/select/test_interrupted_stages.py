@@ -69,6 +69,7 @@ def test_on_the_way_from_a_given_effect_the_first_way_stands(monkeypatch, stub, 
     given = stub(attachment=stub(prefix="rotor.bias"), starts=())
     ways = iter([yielding(first), yielding(partial_way, then=KeyboardInterrupt if at == "taking effects" else None)])
     monkeypatch.setattr(exploring, "take_effects", lambda *args: next(ways)())
+    monkeypatch.setattr(exploring, "nothing_is_left", lambda *args: False)
     monkeypatch.setattr(exploring, "passed_over", lambda *args: given)
     monkeypatch.setattr(exploring, "refitted", lambda *args: partial_way.current)
     monkeypatch.setattr(exploring, "forward_step", yielding(partial_way, then=KeyboardInterrupt))
