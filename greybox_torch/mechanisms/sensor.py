@@ -49,12 +49,15 @@ class SensorLag(Mechanism):
 
 
 class OutputDelay(Mechanism):
-    """The output is recorded later by a dead time T, as its second-order Padé approximation (1 − sT/2 + s²T²/12)/(1 + sT/2 + s²T²/12)."""
+    """The output is recorded later by a dead time T, as its second-order Padé approximation (1 − sT/2 + s²T²/12)/(1 + sT/2 + s²T²/12).
+
+    Its two states are carried from window to window, short as their memory is: free in every one they would take up a tenth of the noise
+    in windows of 20 samples, and a delay of the output would look likelier than one of the input, or a lag.
+    """
 
     name = "output_delay"
     kinds = ("sensor",)
     needs = ("output",)
-    fades = True
     linear = True
     twins = ("input_delay",)
     natural = ("T.lower",)
