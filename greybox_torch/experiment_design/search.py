@@ -20,6 +20,9 @@ DRAWN, KEPT, VARIED, GENERATIONS = 96, 6, 24, 3
 SMALLER = (1.0, 0.5, 0.25, 0.1, 0.03)
 """Factors on the amplitude that are tried until a candidate stays within the limits."""
 
+MOST_TRIED = 200_000
+"""Samples of all inputs that are drawn, at most: of a recording of 20 000 samples a tenth as many are tried as of one of 2 000."""
+
 JUDGED, FINALISTS = 8, 2
 """Inputs of a generation, and of the last one, that have their rivals estimated anew, at most."""
 MOST_WORK = 300_000
@@ -36,13 +39,14 @@ def search(aim: Aim, limits: Limits, time: np.ndarray, seed: int, progress: Call
     rng = np.random.default_rng(seed)
     slowest, fastest = frequencies(time)
     count = len(limits.inputs)
-    begun = [tuple(drawn(rng, slowest, fastest) for _ in range(count)) for _ in range(DRAWN)]
-    progress(f"simulating {DRAWN} inputs")
+    tried, again = tries(len(time))
+    begun = [tuple(drawn(rng, slowest, fastest) for _ in range(count)) for _ in range(tried)]
+    progress(f"simulating {tried} inputs")
     draws = draws_of(aim, seed) if aim.parameter is None else None
     best = _best(aim, limits, time, _tried(aim, limits, time, begun), draws)
     for generation in range(GENERATIONS if best else 0):
         progress(f"refining the best inputs, {generation + 1} of {GENERATIONS}")
-        of = [best[k % len(best)].candidate for k in range(VARIED)]
+        of = [best[k % len(best)].candidate for k in range(again)]
         changed = [tuple(varied(e, rng, slowest, fastest) for e in candidate) for candidate in of]
         best = _best(aim, limits, time, [*best, *_tried(aim, limits, time, changed)], draws)
     if draws is None:
@@ -50,6 +54,12 @@ def search(aim: Aim, limits: Limits, time: np.ndarray, seed: int, progress: Call
     progress("estimating the rivals anew on the best inputs")
     count = int(np.clip(_work(aim, time), 1, FINALISTS))
     return sorted((judged(aim, draws, t, time, limits, THOROUGH) for t in best[:count]), key=_badness)
+
+
+def tries(samples: int) -> tuple[int, int]:
+    """How many inputs are drawn, and how many are varied in a generation: fewer of long recordings."""
+    tried = int(np.clip(MOST_TRIED // samples, 2 * KEPT, DRAWN))
+    return tried, max(KEPT, tried * VARIED // DRAWN)
 
 
 def _work(aim: Aim, time: np.ndarray) -> int:
