@@ -142,7 +142,7 @@ def table(rows: Sequence[Mapping[str, Any]]) -> str:
             _list(r["besides"]),
             named,
             fits,
-            "" if r["brings"] is None else f"{100 * r['brings']:.2g}",
+            "" if r["brings"] is None else f"{100 * r['brings']:.1f}",
             f"{r['seconds']:.0f}" + ("" if r["complete"] else ", time limit"),
         )
         lines.append(f"| {' | '.join(cells)} |")
