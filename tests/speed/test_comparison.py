@@ -12,13 +12,14 @@ import pytest
 from experiments.speed import rows
 from experiments.speed.adam import descend, our_gradient
 from experiments.speed.plot import draw_growth
-from experiments.speed.records import published, simulated_problem
+from experiments.speed.records import NAMES, arm_values, published, simulated_problem
 from experiments.speed.row import Entry, Row, Target, skipped
-from experiments.speed.rows import growth, hypotheses
+from experiments.speed.rows import growth, hypotheses, long_record
 from experiments.speed.rows.robustness import drawn
 from experiments.speed.settings import Settings, header
 from experiments.speed.timing import Timing, interleaved
 from experiments.speed.writers import duration, markdown, write
+from greybox_torch import load_dataset
 
 ROW = Row(
     "growth",
@@ -137,3 +138,13 @@ def test_adam_goes_down() -> None:
     task = published(problem)
     gradient = our_gradient(problem, task)
     assert descend(gradient, task, 1e-9, most=20).mse < gradient(task.start)[0]
+
+
+def test_a_long_record_lacks_what_its_card_fixes(tmp_path: Path) -> None:
+    data = load_dataset(long_record.recorded(tmp_path, 600, 300))
+    assert [(r.role, len(r.time)) for r in data.recordings] == [("estimation", 600), ("validation", 300)]
+    missing = data.parameters["k_g3"]
+    assert (missing.value, missing.fixed) == (0.0, True)
+    others = {name: entry.value for name, entry in data.parameters.items() if name != "k_g3"}
+    assert others == {n: v for n, v in zip(NAMES, arm_values(), strict=True) if n != "k_g3"}
+    assert arm_values()[NAMES.index("k_g3")] > 0.0

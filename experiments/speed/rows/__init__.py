@@ -21,6 +21,7 @@ KEYS = (
     "hypotheses",
     "robustness",
     "diagnosis",
+    "long_record",
 )
 
 Progress = Callable[[str], None]
