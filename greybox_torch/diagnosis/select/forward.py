@@ -11,7 +11,7 @@ from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
 from greybox_torch.diagnosis.select.memory import completed_by_memory
 from greybox_torch.diagnosis.select.remaining import completes
-from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
+from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage, only_if
 from greybox_torch.diagnosis.study import Study
 
@@ -63,7 +63,7 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     """
     done = with_curve.steps[-1]
     start = replace(with_curve.at(done.parent), steps=before.steps)
-    branch = yield from only_if(_without_curves(study, start, done), partial(_as_far, study, with_curve))
+    branch = yield from only_if(_without_curves(study, start, with_curve), partial(_as_far, study, with_curve))
     if _as_far(study, with_curve, branch):
         return branch
     stand_for_it = len(branch.effects) > len(done.parent.effects) and not _in_pieces(study, with_curve, branch)
@@ -71,11 +71,20 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     return replace(with_curve, plain=branch.plain, named=found)
 
 
-def _without_curves(study: Study, start: SearchState, done: SelectionStep) -> Stage[SearchState]:
-    """The best named candidate of a step taken, and what joins it; nothing where none pays."""
+def _without_curves(study: Study, start: SearchState, with_curve: SearchState) -> Stage[SearchState]:
+    """The best named candidate of the step that took a curve, and what joins it if it brings a part of what the curve does."""
+    done = with_curve.steps[-1]
     names = [r for r in done.ranked if not r.unknown]
     branch = yield from take_best(study, start, done.screened, names)
-    return (yield from take_effects(study, branch, curves=False)) if branch.took_one else branch
+    reached, ceiling = _gains(with_curve, branch)
+    promises = branch.took_one and reached >= study.settings.first_name_share * ceiling
+    return (yield from take_effects(study, branch, curves=False)) if promises else branch
+
+
+def _gains(with_curve: SearchState, branch: SearchState) -> tuple[float, float]:
+    """What named effects gain and what the curve does, from the hypothesis that both build on."""
+    before = with_curve.steps[-1].parent.score
+    return before - branch.current.score, before - with_curve.current.score
 
 
 def _in_pieces(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
@@ -88,8 +97,7 @@ def _in_pieces(study: Study, with_curve: SearchState, branch: SearchState) -> bo
 
 def _as_far(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
     """Whether the effects of ``branch`` come as far as the curve of ``with_curve``, from the hypothesis that both build on."""
-    before = with_curve.steps[-1].parent
-    reached, ceiling = (before.score - s.current.score for s in (branch, with_curve))
+    reached, ceiling = _gains(with_curve, branch)
     share = 1.0 if alone_at_noise(with_curve.current, branch.current, study.settings) else study.settings.named_share
     if _in_pieces(study, with_curve, branch):
         return False

@@ -185,6 +185,13 @@ class SelectionSettings:
         "Share of a free curve's gain from which named effects stand for it: no friction is exactly the law of a book.",
         unit="share of the curve's gain",
     )
+    first_name_share: float = share(
+        0.1,
+        "Share of a free curve's gain that the best name must bring for others to be looked for beside it: of several laws that one curve "
+        "stands for, one alone removes a part that shows.",
+        unit="share of the curve's gain",
+        chosen_by="a third of the error where a curve leaves a thirtieth",
+    )
     most_names_for_curve: int = count(
         2,
         "Named effects at a port that may stand for a free curve there: more of them are pieces of it, and none is the machine's.",
