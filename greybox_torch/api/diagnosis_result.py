@@ -154,11 +154,11 @@ class DiagnosisResult(Result):
         Example:
             ``diagnose(Motor(), data).save("results", pdf=True)``
         """
-        from greybox_torch.report.pdf.document import render_pdf
-
         where = Path(folder)
         contents = self.files(where)
         if pdf:
+            from greybox_torch.report.pdf.document import render_pdf
+
             contents[where / PRINTED] = render_pdf(self.verdict, self._about(where))
         write_all(contents)
         return tuple(contents)

@@ -5,9 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import welch
 
 from greybox_torch.diagnosis.verdict import Verdict
-from greybox_torch.report.sections.spectrum import spectra
+from greybox_torch.report.sections.spectrum import _density, spectra
 
 
 def test_power_and_place(with_traces: Callable[..., Verdict]) -> None:
@@ -33,3 +34,12 @@ def test_experiments_of_another_sample_time_have_their_own(with_traces: Callable
 def test_nothing_missing(of_kind: Callable[[str], Verdict]) -> None:
     (found,) = spectra(of_kind("nothing"))
     assert set(found.density) == {"output", "model"}
+
+
+@pytest.mark.parametrize(("samples", "segment"), [(4000, 512), (1000, 257), (300, 300)])
+def test_the_density_is_welchs(samples: int, segment: int) -> None:
+    """As scipy has it, with segments of an even and of an odd number of samples."""
+    signal = np.random.default_rng(0).normal(size=samples) + np.sin(np.arange(samples))
+    own, theirs = _density(signal, 0.01, segment), welch(signal, 100.0, nperseg=segment)
+    for one, other in zip(own, theirs, strict=True):
+        assert np.allclose(one, other, rtol=1e-9, atol=1e-18)
