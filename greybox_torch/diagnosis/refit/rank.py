@@ -173,15 +173,15 @@ def _leading_and_rest(
 ) -> list[list[tuple[float, Candidate, Hypothesis, Simulator]]]:
     """Those whose trial came within reach of the best, and the others.
 
-    Where a named one came to the noise, nothing that is clearly behind it can still win.
+    Where a named one came to the noise, no other name that is clearly behind it can still win; a curve is what it is measured against.
     """
     settings = study.settings
     best = min((entry[0] for entry in entries), default=0.0)
-    reach = settings.finalist_share * best + settings.trial_allowance
+    reach = named_reach = settings.finalist_share * best + settings.trial_allowance
     if any(not c.unknown and at_floor(study.problem, trial.fits[-1], settings) for _, c, trial, _ in entries):
-        reach = min(reach, best + settings.trial_allowance + settings.score_tie)
-    leading = [entry for entry in entries if entry[0] <= reach]
-    return [leading, [entry for entry in entries if entry[0] > reach]]
+        named_reach = min(reach, best + settings.trial_allowance + settings.score_tie)
+    near = [entry[0] <= (reach if entry[1].unknown else named_reach) for entry in entries]
+    return [[entry for entry, is_near in zip(entries, near, strict=True) if is_near is kind] for kind in (True, False)]
 
 
 def _laws_behind_curve(
