@@ -16,6 +16,15 @@ from tests.sled import sled_run as sled_run
 
 RunFile = Callable[..., ModuleType]
 
+LONGEST = ("test_notebook.py", "test_demo.py", "test_train.py", "test_interruption.py")
+"""Files with tests of ten seconds and more: begun last, they would leave a core idle at the end."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The longest first."""
+    items.sort(key=lambda item: item.path.name not in LONGEST)
+
+
 settings.register_profile("greybox", deadline=None, max_examples=30)
 settings.load_profile("greybox")
 
