@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 EXTRA = ("dask", "distributed", "ruptures")
 WAIT = 30.0
 """Seconds to wait for a scheduler, and for its first worker."""
+START = 5.0
+"""Seconds that a worker process takes to start, at most."""
 LIVES = 0
 """Times that Dask begins a data set once more whose worker process ended, on the cluster that is started here; the schedule does, alone."""
 
@@ -106,6 +108,10 @@ def _local(workers: int) -> Iterator[Workers]:
         started: Any = cluster
         here = Workers(client, lambda: None if here.threads >= workers else started.scale(workers))
         yield here
+        with suppress(
+            TimeoutError
+        ):  # Dask fails to end a worker that takes the place of a lost one and is only being started
+            client.wait_for_workers(workers, timeout=START)
 
 
 def _check_workers(client: Client, scheduler: str, folders: list[Path]) -> None:
