@@ -44,16 +44,14 @@ def coarser(
         simulator: with the sub-steps that ``problem`` needs.
         problem_of: makes such a problem of a data set.
     """
-    even = all(unevenness(r.time) <= EVEN for r in dataset.recordings)
     most = min(budget.most_passed_over + 1, _fewest(dataset) // budget.least_samples)
-    if most < 2 or not even or not floor_known(problem, settings):
+    if most < 2 or any(unevenness(r.time) > EVEN for r in dataset.recordings) or not floor_known(problem, settings):
         return Coarser(dataset, problem)
     inputs = [i.name for i in problem.model.inputs]
     for every in range(most, 1, -1):
         found = sampled(dataset, every, inputs)
         there = problem_of(found)
-        as_quiet = _as_quiet(problem, there, settings)
-        if as_quiet and fine_enough(simulator, there).substeps <= simulator.substeps:
+        if _as_quiet(problem, there, settings) and fine_enough(simulator, there).substeps <= simulator.substeps:
             step = found.recordings[0].sample_time
             told = (
                 f"The search used one of {every} samples, {step:.4g} s apart: nothing but noise is between them. "

@@ -108,9 +108,8 @@ def _local(workers: int) -> Iterator[Workers]:
         started: Any = cluster
         here = Workers(client, lambda: None if here.threads >= workers else started.scale(workers))
         yield here
-        with suppress(
-            TimeoutError
-        ):  # Dask fails to end a worker that takes the place of a lost one and is only being started
+        # Dask fails to end a worker that takes the place of a lost one and is only being started.
+        with suppress(TimeoutError):
             client.wait_for_workers(workers, timeout=START)
 
 

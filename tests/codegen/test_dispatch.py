@@ -2,33 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
 import torch
 
 from greybox_torch.codegen.lower import lower
 from greybox_torch.codegen.trace import Symbol
-from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.systems import RobotArm, load_model
-
-
-def lag(rate: Any) -> GreyBoxModel:
-    """A model with one state and the rate ``rate(x, u, p)``."""
-
-    class Lag(GreyBoxModel):
-        states = [State("level")]
-        inputs = [Input("flow")]
-        outputs = [Output("level")]
-        parameters = [Parameter("k", 0.7, lower=0.0)]
-
-        def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
-            return {"level": rate(x, u, p)}
-
-        def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
-            return {"level": x.level}
-
-    return Lag()
+from tests.one_state import lag
 
 
 @pytest.fixture

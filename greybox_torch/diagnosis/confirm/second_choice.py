@@ -6,9 +6,8 @@ import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
-from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
-from greybox_torch.diagnosis.refit.rank import RankedCandidate
+from greybox_torch.diagnosis.refit.rank import RankedCandidate, sound
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.compare import compare
@@ -44,8 +43,7 @@ def second_choice(study: Study, state: SearchState, others: HeldOut) -> Stage[Se
 
 def _pays(study: Study, ranked: RankedCandidate) -> bool:
     """Whether a named law explains something on the estimation experiments, and something of the machine."""
-    sound = degenerate(ranked.candidate.attachment, study.surroundings, ranked.fitted.values()) is None
-    return not ranked.unknown and sound and ranked.gain > least_gain(ranked.fitted, study.settings)
+    return not ranked.unknown and sound(study, ranked) and ranked.gain > least_gain(ranked.fitted, study.settings)
 
 
 def _plainly_missing(study: Study, state: SearchState, others: HeldOut) -> bool:

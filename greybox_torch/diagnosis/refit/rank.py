@@ -133,8 +133,11 @@ def rank(
 
     reached = side_by_side(partial(tried_again, *pair, own) for pair, own in zip(pairs, reached, strict=True))
     shown = side_by_side(partial(where_it_shows, *pair, own) for pair, own in zip(pairs, reached, strict=True))
-    first = [(*trial, *pair) for trial, pair in zip(shown, pairs, strict=True) if trial is not None]
-    first = [(worse, candidate, trial, simulator) for worse, trial, candidate, simulator in first]
+    first = [
+        (trial[0], candidate, trial[1], simulator)
+        for trial, (candidate, simulator) in zip(shown, pairs, strict=True)
+        if trial is not None
+    ]
     first.sort(key=lambda entry: entry[0])
     final: list[RankedCandidate] = []
     for some in _leading_and_rest(study, _finalists(first, study)):
@@ -162,10 +165,14 @@ def judged(
 
 def _pays(study: Study, ranked: RankedCandidate) -> bool:
     """Whether a named candidate improves on the hypothesis before it, surely, and by a law that says something of the machine."""
-    settings, attachment = study.settings, ranked.candidate.attachment
+    settings = study.settings
     improves = ranked.gain > settings.least_gain and ranked.significance > settings.least_significance
-    sound = degenerate(attachment, study.surroundings, ranked.fitted.values()) is None
-    return improves and sound and not ranked.unknown
+    return improves and not ranked.unknown and sound(study, ranked)
+
+
+def sound(study: Study, ranked: RankedCandidate) -> bool:
+    """Whether the newest effect's parameters, as they were refitted, say something of the machine."""
+    return degenerate(ranked.candidate.attachment, study.surroundings, ranked.fitted.values()) is None
 
 
 def _leading_and_rest(

@@ -6,10 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, partial
 
-from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.likelihood import cost_of, likelier
-from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order, rank
+from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order, rank, sound
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist, with_motion
@@ -54,10 +53,7 @@ def take_best(
     settings = study.settings
     compared = compare(study, state.current, screened, ranked)
     state = with_better_fit(state, compared.parent)
-    sound = [
-        r for r in compared.ranked if degenerate(r.candidate.attachment, study.surroundings, r.fitted.values()) is None
-    ]
-    in_turn = rank_by_likelihood(sound, settings, study.budget)
+    in_turn = rank_by_likelihood([r for r in compared.ranked if sound(study, r)], settings, study.budget)
     cost_before = cache(partial(cost_of, compared.parent))
     paying = [r for r in in_turn if r.gain > least_gain(r.fitted, settings) and _sure(cost_before, r, settings)]
     if little_is_left(study, state):

@@ -31,7 +31,7 @@ def asked(stub, monkeypatch) -> Any:
             module, "compare", lambda study, parent, screened, names: stub(parent=parent, ranked=tuple(names))
         )
         monkeypatch.setattr(module, "gain", lambda before, after: held_out)
-        monkeypatch.setattr(module, "degenerate", lambda *given: None)
+        monkeypatch.setattr(module, "sound", lambda *given: True)
         monkeypatch.setattr(module, "least_gain", lambda fitted, settings: 0.05)
         monkeypatch.setattr(module, "times_noise", lambda *given: 30.0)
         monkeypatch.setattr(module, "mismatch_share", lambda *given: 1.0)
