@@ -8,7 +8,7 @@ import torch
 from greybox_torch.codegen.lower import lower
 from greybox_torch.codegen.trace import Symbol
 from greybox_torch.systems import RobotArm, load_model
-from tests.one_state import lag
+from tests.codegen.test_routes import lag
 
 
 @pytest.fixture

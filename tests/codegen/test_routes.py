@@ -13,6 +13,7 @@ import torch
 
 from greybox_torch.codegen import build
 from greybox_torch.errors import UserError
+from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.native import NativeStepper
 from greybox_torch.simulation.passes import Pass
@@ -21,7 +22,24 @@ from greybox_torch.simulation.simulator import make_stepper
 from greybox_torch.simulation.stepper import Stepper
 from greybox_torch.simulation.windows import whole_records
 from greybox_torch.systems import RobotArm
-from tests.one_state import lag
+
+
+def lag(rate: Any) -> GreyBoxModel:
+    """A model with one state and the rate ``rate(x, u, p)``."""
+
+    class Lag(GreyBoxModel):
+        states = [State("level")]
+        inputs = [Input("flow")]
+        outputs = [Output("level")]
+        parameters = [Parameter("k", 0.7, lower=0.0)]
+
+        def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+            return {"level": rate(x, u, p)}
+
+        def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+            return {"level": x.level}
+
+    return Lag()
 
 
 def plain(x: Any, u: Any, p: Any) -> Any:
