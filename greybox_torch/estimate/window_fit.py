@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from greybox_torch.estimate.integrated_speeds import integrated_speeds
 from greybox_torch.estimate.levenberg_marquardt import ROUGH, Settings
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.rival import Rival
@@ -83,7 +84,7 @@ def fit_windows(
         states = _starts_of(shorter, problem, simulator, windows)
     elif states is None:
         states = carried_starts(problem, simulator, windows, rough_starts(problem, windows))
-    here = _evaluate(problem, simulator, windows, states, None)
+    here = evaluate(problem, simulator, windows, states, None)
     if here is None:
         return None
     hold = _weak_hold(problem, states, here.mean_square, windows.steps, size)
@@ -99,7 +100,7 @@ def fit_windows(
                 break
             there = None
             if problem.admissible(trial.values):
-                there = _evaluate(trial, simulator, windows, trial_states, hold)
+                there = evaluate(trial, simulator, windows, trial_states, hold)
                 evaluations += 1
             gain = -1.0 if there is None else (here.cost - there.cost) / predicted
             if there is not None and gain > LEAST_GAIN_RATIO:
@@ -112,7 +113,7 @@ def fit_windows(
         still = not accepted or change < settings.tolerance
         if problem.carried.any() and (still or accepted_steps % CARRY_EVERY == 0):
             along = carried_starts(problem, simulator, windows, states)
-            again = _evaluate(problem, simulator, windows, along, hold)
+            again = evaluate(problem, simulator, windows, along, hold)
             evaluations += 1
             if again is not None and again.cost < here.cost:
                 still = still and again.cost > (1 - settings.tolerance) * here.cost
@@ -153,7 +154,7 @@ def states_along(fit: WindowFit, simulator: Simulator) -> np.ndarray:
 
 
 def carried_starts(problem: Problem, simulator: Simulator, windows: Windows, starts: np.ndarray) -> np.ndarray:
-    """``starts`` (W, n_x) with the carried states brought along from window to window of each experiment.
+    """``starts`` (W, n_x) with the carried states brought along each experiment: simulated, or the integral of a measured speed.
 
     Args:
         windows: as :func:`cut` makes them.
@@ -174,6 +175,9 @@ def carried_starts(problem: Problem, simulator: Simulator, windows: Windows, sta
     result = starts.copy()
     for chain, begun in zip(chains, run.begun, strict=True):
         result[np.ix_(chain[1:], problem.carried)] = np.nan_to_num(begun[1 : len(chain)][:, problem.carried])
+    first = np.array([c[0] for c in chains])[experiment]
+    for i, way in integrated_speeds(problem, windows.start).items():
+        result[:, i] = starts[first, i] + way
     return result
 
 
@@ -201,13 +205,14 @@ def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: 
     return Hold(states, 1e-4 * mean_square * steps / spread**2, values, value_weights)
 
 
-def _evaluate(
+def evaluate(
     problem: Problem,
     simulator: Simulator,
     windows: Windows,
     states: np.ndarray,
-    hold: Hold | None,
+    hold: Hold | None = None,
 ) -> WindowModel | None:
+    """One pass over windows from start ``states`` (W, n_x); None where it overflows."""
     count, n_x = states.shape
     n_p = int(problem.free.sum())
     open_states = np.flatnonzero(~problem.carried)
