@@ -15,7 +15,7 @@ class Unknown(Mechanism):
     """A sum of smooth bumps over the range of one signal.
 
     ``knots`` bumps exp(−((s − s_k) / w)²) with centres spread evenly over where the signal moved; beyond that the curve stays level.
-    With a ``factor`` the curve is what that other signal is multiplied by: a gain that changes.
+    With a ``factor`` the curve is what that other signal is multiplied by: a gain that changes. Bumps that are ``left_out`` are zero.
     """
 
     name = "unknown"
@@ -24,19 +24,29 @@ class Unknown(Mechanism):
     explanation = "Something repeatable is missing here that no known mechanism describes; the curve shows what."
     source = "radial basis functions: D. S. Broomhead, D. Lowe, Complex Systems 2, 1988"
 
-    def __init__(self, signal: str, knots: int = 14, factor: str = "") -> None:
+    def __init__(self, signal: str, knots: int = 14, factor: str = "", left_out: Sequence[int] = ()) -> None:
         self.signal = signal
         self.knots = knots
         self.factor = factor
+        self.left_out = tuple(left_out)
+
+    @property
+    def bumps(self) -> list[int]:
+        """The numbers of the bumps that it consists of."""
+        return [k for k in range(self.knots) if k not in self.left_out]
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         centres = self.centres(around)
         unit = around.units.get(self.signal, "")
         heights = [
             Parameter(
-                f"w_{k}", 0.0, "" if self.factor else around.force_unit, description=f"height at {c:g}", shrunk=True
+                f"w_{k}",
+                0.0,
+                "" if self.factor else around.force_unit,
+                description=f"height at {centres[k]:g}",
+                shrunk=True,
             )
-            for k, c in enumerate(centres)
+            for k in self.bumps
         ]
         first = Parameter("first", centres[0], unit, fixed=True, description="first centre")
         spacing = Parameter("spacing", centres[1] - centres[0], unit, fixed=True, description="distance of the centres")
@@ -49,10 +59,10 @@ class Unknown(Mechanism):
     def curve(self, s: Signals, p: Signals) -> Any:
         """The sum of the bumps at the signal."""
         place = torch.clamp((s[self.signal] - p.first) / p.spacing, 1.0, self.knots - 2.0)
-        return sum(p[f"w_{k}"] * torch.exp(-((place - k) ** 2)) for k in range(self.knots))
+        return sum(p[f"w_{k}"] * torch.exp(-((place - k) ** 2)) for k in self.bumps)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(tuple(f"w_{k}" for k in range(self.knots)))]
+        return [Probe(tuple(f"w_{k}" for k in self.bumps))]
 
     @property
     def only_coarse(self) -> bool:

@@ -43,3 +43,15 @@ def test_a_curve_with_a_factor_is_a_gain_that_changes(law, around, anywhere) -> 
     assert law(gain, heights, time=time) == pytest.approx(law(force, heights, time=time)), (
         "without the factor: the gain itself"
     )
+
+
+def test_bumps_that_are_left_out_are_zero_and_have_no_parameters(law, around) -> None:
+    sparse, whole = Unknown("speed", 8, left_out=(0, 3, 7)), Unknown("speed", 8)
+    span = around.ranges["speed"]
+    speed = np.linspace(span.low, span.high, 50)
+    heights = {f"w_{k}": 0.1 * (k + 1) for k in sparse.bumps}
+    zeros = {f"w_{k}": 0.0 for k in (0, 3, 7)}
+    np.testing.assert_allclose(law(sparse, heights, speed=speed), law(whole, heights | zeros, speed=speed))
+    assert sparse.bumps == [1, 2, 4, 5, 6] and sparse.probes(around)[0].directions == tuple(heights)
+    assert {p.name for p in sparse.parameters(around)} == {*heights, "first", "spacing"}
+    assert Unknown(**sparse.options()).bumps == sparse.bumps

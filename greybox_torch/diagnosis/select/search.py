@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.select.forward import take_effects
 from greybox_torch.diagnosis.select.forward_step import forward_step
 from greybox_torch.diagnosis.select.memory import with_memory
 from greybox_torch.diagnosis.select.posterior import shared
+from greybox_torch.diagnosis.select.sparser_curve import with_sparser_curve
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage, result_of
 from greybox_torch.diagnosis.study import Study
@@ -31,10 +32,12 @@ def search(study: Study, state: SearchState) -> Stage[SearchState]:
         state = yield from drop_superfluous(study, state)
     before = state
     state = yield from with_memory(study, before)
-    if state.current is before.current:
-        return state
-    state = yield from take_effects(study, state)
-    return (yield from drop_superfluous(study, state))
+    if state.current is not before.current:
+        state = yield from take_effects(study, state)
+        state = yield from drop_superfluous(study, state)
+    before = state
+    state = yield from with_sparser_curve(study, before)
+    return state if state.current is before.current else (yield from drop_superfluous(study, state))
 
 
 def revise(study: Study, state: SearchState) -> Stage[SearchState]:
