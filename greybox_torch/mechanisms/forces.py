@@ -11,6 +11,7 @@ import torch
 from greybox_torch.mechanisms.degenerate import beyond, not_a_frequency_of_the_record, not_seen_to_repeat
 from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
+from greybox_torch.mechanisms.order_of_curve import order_of_curve
 from greybox_torch.model import Parameter, Signals, State
 
 KNOWN_PLACE = 0.01
@@ -64,6 +65,12 @@ class TorqueRipple(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(("a", "b"), {"order": self.order})]
+
+    def nearest(
+        self, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
+    ) -> Mechanism:
+        order = order_of_curve(signals["position"].numpy(), force, weight)
+        return self if order is None else TorqueRipple(order)
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return not_seen_to_repeat(values["order"], around)

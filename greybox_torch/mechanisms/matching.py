@@ -51,7 +51,7 @@ def matching_laws(
     for law in (m() for name, m in LIBRARY.items() if name not in but):
         fits_port = kind in law.kinds and set(law.needs) <= set(signals)
         if fits_port and not law.kinematic and not law.states(around):
-            trials = _trials(law, around, signals, force, weight)
+            trials = _trials(law.nearest(around, signals, force, weight), around, signals, force, weight)
             if trials:
                 found.append(max(trials, key=lambda match: match.share))
     return sorted(found, key=lambda match: -match.share)

@@ -7,6 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
+import numpy as np
+import torch
+
 from greybox_torch.mechanisms.degenerate import at_a_bound, lost_in_its_deviation
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
 from greybox_torch.model import Parameter, Signals, State
@@ -139,6 +142,12 @@ class Mechanism:
     def natural_ends(self, around: Surroundings) -> tuple[str, ...]:
         """The bounds that a parameter may sit at in such recordings; see :attr:`natural`."""
         return self.natural
+
+    def nearest(
+        self, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
+    ) -> Mechanism:
+        """The form of the law to begin with where a force (N,) was learned over local signals (N,), points counting by weight (N,)."""
+        return self
 
     def options(self) -> dict[str, Any]:
         """What the constructor was told, by argument, so that the same mechanism can be made again."""
