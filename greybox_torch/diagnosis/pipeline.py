@@ -14,7 +14,7 @@ from greybox_torch.deadline import Deadline
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
-from greybox_torch.diagnosis.confirm.standing import least_size, sizes
+from greybox_torch.diagnosis.confirm.standing import refinements, sizes
 from greybox_torch.diagnosis.contradictions import contradictions
 from greybox_torch.diagnosis.describe.effects import describe
 from greybox_torch.diagnosis.describe.evidence import sentences
@@ -202,11 +202,11 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
     told = describe(study, state, judged.augmented, judged.sums, found.gains, by_effect)
     if not found.complete:
         told = of_a_stopped_search(told, study.settings)
-    least = least_size(study, state, found.others)
-    small = [not by_effect[e.prefix] >= max(least, np.finfo(float).tiny) for e in state.effects]
+    small = refinements(study, state, found.others, found.gains, by_effect)
+    both = list(zip(state.effects, told, strict=True))
     return (
-        tuple(e for e, is_small in zip(told, small, strict=True) if not is_small),
-        tuple(e for e, is_small in zip(told, small, strict=True) if is_small),
+        tuple(e for attached, e in both if attached.prefix not in small),
+        tuple(e for attached, e in both if attached.prefix in small),
     )
 
 

@@ -203,7 +203,7 @@ def size(
         brought_back = float(old.energies.sum()) - float(new.energies.sum())
         mismatch = max(float(whole.energies.sum()) - noise, brought_back)
         if mismatch > settings.no_mismatch * noise:
-            shares.append(brought_back / mismatch)
+            shares.append(max(brought_back, 0.0) / mismatch)
     return float(np.mean(shares)) if shares else 0.0 if full else float("nan")
 
 

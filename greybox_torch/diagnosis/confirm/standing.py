@@ -40,3 +40,21 @@ def least_size(study: Study, state: SearchState, others: HeldOut | None) -> floa
     else:
         left = times_noise(study.problem, state.current, study.settings)
     return study.settings.least_size_at_noise if left < study.settings.above_noise else study.settings.least_size
+
+
+def refinements(
+    study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], sizes: Mapping[str, float]
+) -> set[str]:
+    """The effects that are too small to be findings, or that small and not confirmed by held-out experiments beyond chance.
+
+    Args:
+        sizes: of every effect, from :func:`sizes`.
+    """
+    settings, least = study.settings, max(least_size(study, state, others), np.finfo(float).tiny)
+
+    def doubtful(prefix: str) -> bool:
+        gain = gains.get(prefix)
+        confirmed = gain is None or gain.errors_away > settings.held_out_beyond_chance
+        return sizes[prefix] < settings.least_size and not confirmed
+
+    return {p for p in state.prefixes if not sizes[p] >= least or doubtful(p)}
