@@ -20,7 +20,7 @@ from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
 from greybox_torch.diagnosis.confirm.holding import Judged, holding
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.longer_windows import explains_free_runs, longer_windows, sentence
-from greybox_torch.diagnosis.confirm.promotion import promote_validation, serves
+from greybox_torch.diagnosis.confirm.promotion import promote_validation, replaces
 from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains
 from greybox_torch.diagnosis.excerpts import excerpts
 from greybox_torch.diagnosis.hypothesis.final import Final, finish, from_longest_windows
@@ -134,7 +134,7 @@ def find_with_more(
                 last.study.working_on(f"searching again, {more.taken} among the experiments to choose with")
                 found = find(more.dataset, model, make_study, clock, end)
                 last = replace(found, more=(*last.more, more.sentence()))
-                if last.state.effects and last.others and serves(last.others, best.state, last.state):
+                if last.others and replaces(last.others, best.state, last.state):
                     best = last
                 elif best.state.effects:
                     break  # one more experiment does not better what was found, and each costs a whole search

@@ -26,7 +26,7 @@ def first(stub) -> Findings:
 
 
 @pytest.mark.parametrize("stop", [KeyboardInterrupt, TimeIsUp])
-@pytest.mark.parametrize("at", ["promote_validation", "find", "serves"])
+@pytest.mark.parametrize("at", ["promote_validation", "find", "replaces"])
 def test_while_searching_again_what_was_found_first_stands(monkeypatch, stub, first, at, stop) -> None:
     def stopped(*args: Any) -> Any:
         raise stop
@@ -44,7 +44,7 @@ def test_while_searching_again_what_was_found_first_stands(monkeypatch, stub, fi
     steps: dict[str, Any] = {
         "promote_validation": lambda *args: more,
         "find": lambda *args: found_again,
-        "serves": lambda *args: True,
+        "replaces": lambda *args: True,
     }
     for name, step in steps.items():
         monkeypatch.setattr(findings, name, stopped if name == at else step)
@@ -61,7 +61,7 @@ def test_what_one_more_experiment_does_not_better_is_not_searched_a_third_time(m
         return found
 
     more = stub(taken="run 2", dataset=stub(), sentence=lambda: "run 2 was taken")
-    for name, step in {"promote_validation": lambda *a: more, "find": find, "serves": lambda *a: False}.items():
+    for name, step in {"promote_validation": lambda *a: more, "find": find, "replaces": lambda *a: False}.items():
         monkeypatch.setattr(findings, name, step)
     assert find_with_more(found, stub(), stub(), stub()).state is found.state
     assert len(searches) == 1
@@ -72,7 +72,7 @@ def test_a_second_search_that_was_cut_short_and_serves_no_better_leaves_the_firs
 ) -> None:
     more = stub(taken="run 2", dataset=stub(), sentence=lambda: "run 2 was taken")
     state = SearchState(stub(effects=()), stub(effects=()))
-    cut = Findings(first.dataset, first.study, state, first.others, {}, stub(), complete=False)
+    cut = Findings(first.dataset, first.study, state, None, {}, stub(), complete=False)
     monkeypatch.setattr(findings, "promote_validation", lambda *args: more)
     monkeypatch.setattr(findings, "find", lambda *args: cut)
     best = find_with_more(first, stub(), stub(), stub())

@@ -8,7 +8,7 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain
-from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise
+from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 
@@ -50,6 +50,11 @@ def promote_validation(study: Study, dataset: DataSet, state: SearchState, other
     return Promotion(replace(dataset, recordings=changed), name, float(errors[worst]))
 
 
+def replaces(others: HeldOut, before: SearchState, after: SearchState) -> bool:
+    """Whether what one more experiment to choose with led to takes the place of what was found before it."""
+    return serves(others, before, after) if after.effects else not before.effects and _complete(others, after)
+
+
 def serves(others: HeldOut, before: SearchState, after: SearchState) -> bool:
     """Whether the model of ``after`` may stand in the place of that of ``before``, as experiments that had no part in either say.
 
@@ -60,3 +65,13 @@ def serves(others: HeldOut, before: SearchState, after: SearchState) -> bool:
     no_worse = gain(fits, fits_before).errors_away < others.study.settings.held_out_beyond_chance
     adds = not before.effects or before.prefixes < after.prefixes
     return (adds and no_worse) or (bool(before.effects) and gain(fits_before, fits).share > 0)
+
+
+def _complete(others: HeldOut, state: SearchState) -> bool:
+    """Whether the model as it stands leaves hardly more than noise on every experiment: then nothing is missing.
+
+    What one experiment does not tell of the model's own parameters (friction near rest, of a machine that never rests there) looks like
+    missing physics on the next.
+    """
+    own = times_noise(others.study.problem, state.plain, others.study.settings)
+    return max(own, *others.times_noise(state.plain)) < others.study.settings.promote_error

@@ -8,7 +8,7 @@ import pytest
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm import promotion
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
-from greybox_torch.diagnosis.confirm.promotion import promote_validation, serves
+from greybox_torch.diagnosis.confirm.promotion import promote_validation, replaces, serves
 from greybox_torch.diagnosis.pipeline import diagnose
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import attach
@@ -76,6 +76,18 @@ def test_what_explains_the_others_is_left_as_it_is(drag_at_speed, motor, begun) 
     search, complete = search.state, complete.state
     assert serves(others, search, complete) and not serves(others, complete, search)
     assert serves(others, complete, complete) is False and serves(others, search, search)
+
+
+def test_where_one_more_experiment_shows_that_nothing_is_missing_that_is_the_answer(
+    drag_at_speed, motor, begun, stub
+) -> None:
+    """Seen: an arm that never rests while it is estimated, and that rests while it is validated: "missing, without a name"."""
+    data, wrong = drag_at_speed((FAST, FAST, FAST), drag=0.0), drag_at_speed((FAST, FAST, FAST))
+    right, lacking = begun(data, motor), begun(wrong, motor)
+    named = stub(effects=("drag",))
+    assert replaces(HeldOut(data, right.study), lacking.state, right.state)
+    assert not replaces(HeldOut(wrong, lacking.study), lacking.state, lacking.state), "more than noise is left"
+    assert not replaces(HeldOut(data, right.study), named, right.state), "what was found is not forgotten"
 
 
 def test_what_adds_to_what_was_found_need_not_show_in_the_experiments_that_are_left(monkeypatch, stub) -> None:
