@@ -19,7 +19,7 @@ from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
 from greybox_torch.diagnosis.confirm.holding import Judged, holding
 from greybox_torch.diagnosis.confirm.judgement import Judgement
-from greybox_torch.diagnosis.confirm.longer_windows import explains_free_runs, longer_windows, sentence
+from greybox_torch.diagnosis.confirm.longer_windows import longer_windows, sentence, stands
 from greybox_torch.diagnosis.confirm.promotion import promote_validation, replaces
 from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains
 from greybox_torch.diagnosis.excerpts import excerpts
@@ -166,7 +166,7 @@ def find_what_is_slow(
     except (TimeIsUp, KeyboardInterrupt):
         return replace(first, complete=False, others=None, cut=(*first.cut, LONGER))
     told = sentence(first.judged, first.state, last.state)
-    if last.state.effects and explains_free_runs(first.judged, last.judged, first.study.settings):
+    if stands(last.study, *((f.state, f.gains, f.judged) for f in (first, last))):
         return replace(last, more=(*first.more, *last.more, told))
     if not last.complete:
         return replace(first, complete=False, cut=(LONGER,))

@@ -7,14 +7,21 @@ experiments that had no part in choosing.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
+from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.confirm.same_everywhere import same_everywhere
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.fit import window_lengths
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.attachment import Attachment
+
+Judged = tuple[SearchState, Mapping[str, Gain], Judgement]
+"""What a search found, what its effects gain on held-out experiments, and its free runs."""
 
 
 def longer_windows(study: Study, state: SearchState, judged: Judgement) -> SearchBudget | None:
@@ -33,12 +40,33 @@ def longer_windows(study: Study, state: SearchState, judged: Judgement) -> Searc
     return longer if more else None
 
 
+def stands(study: Study, before: Judged, after: Judged) -> bool:
+    """Whether what longer windows found is a finding: it explains the free runs, held-out windows bear it out beyond chance, and what is
+    constant is the same in every experiment.
+
+    Args:
+        study: of ``after``.
+    """
+    state, gains, judged = after
+    new = [e for e in state.effects if e.prefix not in before[0].prefixes]
+    settings = study.settings
+
+    def same(effect: Attachment) -> bool:
+        around = study.surroundings[effect.port]
+        return same_everywhere(state.current, judged.problem, around, effect, study.budget)
+
+    sure = all(gains[e.prefix].errors_away > settings.held_out_beyond_chance for e in new if e.prefix in gains)
+    return bool(state.effects) and sure and explains_free_runs(before[2], judged, settings) and all(map(same, new))
+
+
 def explains_free_runs(before: Judgement, after: Judgement, settings: DiagnosisSettings) -> bool:
     """Whether the effects of ``after`` leave so little of what ``before`` leaves of free runs that most of it is theirs.
 
-    By experiments that had no part in choosing either: those that judge ``after``, which may have taken one more to choose with.
+    By experiments that had no part in choosing either: those that judge ``after``, which may have taken one more to choose with. What the
+    model as it stands explains once it is estimated from that one, too, is none of the effects' doing.
     """
-    return after.mismatch(True) <= settings.slow_share * before.mismatch(True, after.judges)
+    least = min(before.mismatch(True, after.judges), after.mismatch(False))
+    return after.mismatch(True) <= settings.slow_share * least
 
 
 def sentence(before: Judgement, state: SearchState, longer: SearchState) -> str:

@@ -1,0 +1,82 @@
+"""Whether what acts slowly is a constant of the machine, or a drift that happens to have one sign in every experiment.
+
+A slow disturbance (temperature, an amplifier that wanders) is another one in each experiment. Of a few experiments all may be pushed the
+same way by chance; a constant pushes all of them equally.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, window_lengths
+from greybox_torch.diagnosis.settings import SearchBudget
+from greybox_torch.estimate.initial import beginning
+from greybox_torch.estimate.problem import Problem, problem_for
+from greybox_torch.estimate.window_fit import fit_windows
+from greybox_torch.estimate.window_information import window_information
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
+from greybox_torch.simulation.side_by_side import side_by_side
+from greybox_torch.simulation.simulator import Simulator
+
+CHANCE = 0.01
+"""Probability that a drift without any constant is taken for one."""
+
+
+def same_everywhere(
+    found: Hypothesis, problem: Problem, around: Surroundings, effect: Attachment, budget: SearchBudget
+) -> bool:
+    """Whether an effect of one amplitude has it in every experiment, by Student's t of the amplitudes fitted to each alone.
+
+    What they scatter more than each is uncertain by is counted as drift. Of effects with several amplitudes, and of one experiment, nothing
+    is said.
+
+    Args:
+        problem: the plain model on all experiments.
+        around: of the effect's port.
+    """
+    directions = {name for probe in effect.mechanism.probes(around) for name in probe.directions}
+    if len(directions) != 1 or SHARE in directions or len(problem.records.first) < 2:
+        return True
+    name = f"{effect.prefix}.{next(iter(directions))}"
+    restated = problem_for(problem, found.model, found.values())
+    simulator = found.simulator.for_model(found.model, (name,))
+    experiments = range(len(problem.records.first))
+    alone = side_by_side(partial(_alone, restated, simulator, name, e, budget) for e in experiments)
+    sizes, variances = np.array([pair for pair in alone if pair is not None]).reshape(-1, 2).T
+    return constant(sizes, variances)
+
+
+def constant(sizes: np.ndarray, variances: np.ndarray) -> bool:
+    """Whether ``sizes`` (n,), each known with a variance (n,), have a mean that their further scatter does not make by chance.
+
+    Source: W. S. Gosset ("Student"), The Probable Error of a Mean, Biometrika 6, 1908.
+    """
+    from scipy.special import stdtrit  # not every diagnosis needs it
+
+    count = len(sizes)
+    if count < 2:
+        return True
+    between = max(float(np.var(sizes, ddof=1)) - float(np.mean(variances)), 0.0)
+    least = stdtrit(count - 1, 1.0 - CHANCE / 2) * np.sqrt(between / count)
+    return abs(float(np.mean(sizes))) >= float(least)
+
+
+def _alone(
+    restated: Problem, simulator: Simulator, name: str, experiment: int, budget: SearchBudget
+) -> tuple[float, float] | None:
+    """The amplitude ``name`` fitted to one experiment over its longest windows, all else as it is, and its variance."""
+    free = np.array([n == name for n in restated.names])
+    part, shorter = replace(beginning(restated, experiment, 1.0), free=free), None
+    for length in window_lengths(part, budget):
+        fit = fit_windows(part, simulator, length, shorter=shorter, settings=budget.window_iterations)
+        if fit is None:
+            return None
+        part, shorter = fit.problem, fit
+    information = None if shorter is None else window_information(shorter, simulator)
+    if shorter is None or information is None or not information[0, 0] > 0.0:
+        return None
+    return float(shorter.problem.values[free][0]), shorter.mean_square / float(information[0, 0])
