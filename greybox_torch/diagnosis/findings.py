@@ -241,7 +241,7 @@ def _judged(
     study.working_on("judging on the validation experiments")
     judged = Judgement.of(free_runs, plain)
     if state.effects:
-        judged = judged.having(augmented)
+        judged = judged.having(augmented, {} if others is None else others.places(state.current))
 
     def nothing() -> Judged:
         return state.at(state.plain), {}, judged.without_effects(), (), False

@@ -27,11 +27,24 @@ MOST_TRIALS = 2
 """How many of the possible start values are followed to their optimum."""
 
 
-def estimate_initial(problem: Problem, simulator: Simulator, *, fraction: float = FRACTION) -> Problem:
+TELLS = 10.0
+"""Difference of log-likelihoods by which the beginning of an experiment tells one start position from another: errors are hardly white."""
+
+
+def estimate_initial(
+    problem: Problem,
+    simulator: Simulator,
+    *,
+    fraction: float = FRACTION,
+    places: Mapping[str, Mapping[str, float]] | None = None,
+) -> Problem:
     """The problem with the free start states of every experiment estimated on its first ``fraction``, parameters as they are.
 
     Start values that a model knows only up to a few possibilities (the angle at which a periodic effect begins) are tried one by one.
     Where the simulation fails from the start states given, they are left as they are.
+
+    Args:
+        places: start positions by experiment and state, known otherwise; taken where that beginning does not speak against them.
     """
     trials = problem.model.start_trials(problem.values)
     names = [s.name for s in problem.model.states]
@@ -42,12 +55,28 @@ def estimate_initial(problem: Problem, simulator: Simulator, *, fraction: float 
     rows = []
     for e in range(len(problem.records.first)):
         part = beginning(replace(problem, initial_free=free), e, fraction)
-        rows.append(_best_start(part, trials, simulator))
+        best, cost = _best_start(part, trials, simulator)
+        place = (places or {}).get(problem.records.names[e])
+        there = None if place is None else _begun_at(replace(part, initial=best[None]), place, simulator)
+        if there is not None:
+            samples = int(np.sum(~np.isnan(part.records.y)))
+            best = there[0] if there[1] < np.exp(2.0 * TELLS / samples) * cost else best
+        rows.append(best)
     return problem.with_values(problem.values, np.array(rows))
 
 
-def _best_start(part: Problem, trials: Sequence[Mapping[str, float]], simulator: Simulator) -> np.ndarray:
-    """The start states (n_x,) of the one experiment of ``part`` that fit it best."""
+def _begun_at(part: Problem, place: Mapping[str, float], simulator: Simulator) -> tuple[np.ndarray, float] | None:
+    """The start states (n_x,) of the one experiment of ``part`` that fit it best with positions at ``place``, and the cost."""
+    names = [s.name for s in part.model.states]
+    initial, known = part.initial.copy(), np.isin(names, list(place))
+    initial[0, known] = [place[n] for n in names if n in place]
+    held = replace(part, initial=initial, initial_free=part.initial_free & ~known)
+    best, cost = _best_start(held, (), simulator)
+    return (best, cost) if np.isfinite(cost) else None
+
+
+def _best_start(part: Problem, trials: Sequence[Mapping[str, float]], simulator: Simulator) -> tuple[np.ndarray, float]:
+    """The start states (n_x,) of the one experiment of ``part`` that fit it best, and the cost."""
     names = [s.name for s in part.model.states]
     rows = np.repeat(part.initial, max(len(trials), 1), axis=0)
     for row, trial in zip(rows, trials, strict=False):
@@ -61,7 +90,7 @@ def _best_start(part: Problem, trials: Sequence[Mapping[str, float]], simulator:
             optimum = minimise(run.quadratic, run.start, *run.bounds, settings=START_SETTINGS)
             if optimum is not None and optimum.model.cost < (1 - 1e-6) * cost:
                 best, cost = run.at(optimum.point).initial[0], optimum.model.cost
-    return best
+    return best, cost
 
 
 def _promising(part: Problem, rows: np.ndarray, simulator: Simulator) -> np.ndarray:

@@ -68,7 +68,11 @@ def remembered() -> Any:
     once(Screen, "scores", lambda screen, fit, *rest: (id(screen), id(fit)))
     once(held_out, "held_out_fits", lambda hypothesis, *rest: (id(hypothesis), fingerprint(rest)))
     once(findings, "finish", lambda hypothesis, *rest, **how: id(hypothesis))
-    once(FreeRuns, "_compared", lambda self, like, values, final: (like.names, values.tobytes(), final is None))
+    once(
+        FreeRuns,
+        "_compared",
+        lambda self, like, values, final, places=None: (like.names, values.tobytes(), final is None, str(places)),
+    )
     yield
     patch.undo()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,9 @@ from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.simulation.simulator import Simulator
+
+Places = Mapping[str, Mapping[str, float]]
+NOWHERE: Places = {}
 
 
 class FreeRuns:
@@ -30,11 +34,16 @@ class FreeRuns:
         self.start = self._compared(card, card.values, None)
         self.seconds = time.perf_counter() - began
 
-    def of(self, final: Final) -> Comparison:
-        """A model fitted to whole estimation records."""
-        return self._compared(final.problem, final.problem.values, final)
+    def of(self, final: Final, places: Places = NOWHERE) -> Comparison:
+        """A model fitted to whole estimation records.
 
-    def _compared(self, like: Problem, values: np.ndarray, final: Final | None) -> Comparison:
+        Args:
+            places: start positions that no sensor shows, by experiment and state, as windows of the whole experiments have them; taken
+                where the first tenth of an experiment says nothing else.
+        """
+        return self._compared(final.problem, final.problem.values, final, places)
+
+    def _compared(self, like: Problem, values: np.ndarray, final: Final | None, places: Places = NOWHERE) -> Comparison:
         """Free runs of all experiments; start states fitted on whole estimation records where there are any, else on the first tenth."""
         named = dict(zip(like.names, map(float, values), strict=True))
         problem = (
@@ -43,7 +52,7 @@ class FreeRuns:
             else problem_for(self.problem, like.model, named)
         )
         simulator = Simulator.of(like.model, (), self.options)
-        started = estimate_initial(problem, simulator)
+        started = estimate_initial(problem, simulator, places=places)
         if final is not None:
             initial = started.initial.copy()
             for row, name in zip(final.problem.initial, final.problem.records.names, strict=True):

@@ -61,6 +61,16 @@ class HeldOut:
             self._known[hypothesis] = self.fits_at(hypothesis, hypothesis.values())
         return self._known[hypothesis]
 
+    def places(self, hypothesis: Hypothesis) -> dict[str, dict[str, float]]:
+        """Where positions that no sensor shows begin, by experiment and state: as the windows have them."""
+        fits = self.fits(hypothesis)
+        trials = hypothesis.model.start_trials(hypothesis.problem.values)
+        if not fits or not trials:
+            return {}
+        index = {s.name: i for i, s in enumerate(hypothesis.model.states)}
+        placed = zip(fits[-1].problem.records.names, fits[-1].problem.initial, strict=True)
+        return {experiment: {n: float(row[index[n]]) for n in trials[0]} for experiment, row in placed}
+
     def times_noise(self, hypothesis: Hypothesis) -> np.ndarray:
         """Root mean square errors in units of the noise, over the windows where they are largest, by experiment, shape (J,).
 

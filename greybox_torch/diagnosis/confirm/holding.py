@@ -34,11 +34,12 @@ def holding(
     """
     told: tuple[str, ...] = ()
     while state.effects:
+        places = {} if others is None else others.places(state.current)
         empty = _empty(study, state, judged.augmented, gains)
         if empty is None and judged.holds:
             break
         if empty is None:
-            by_windows = judged.having(as_windows_have_it(state.current, study.recorded))
+            by_windows = judged.having(as_windows_have_it(state.current, study.recorded), places)
             if by_windows.holds and _empty(study, state, by_windows.augmented, gains) is None:
                 return state, gains, by_windows, (*told, WINDOWS_STAND), True
         if not state.compared_without:
@@ -52,7 +53,8 @@ def holding(
             return state, {}, judged.without_effects(), told, True
         # What one of several accounts for, others may take over.
         gains = held_out_gains(state, others) if others is not None else {}
-        judged = judged.having(finish(state.current, study.settings, study.budget, study.recorded))
+        places = {} if others is None else others.places(state.current)
+        judged = judged.having(finish(state.current, study.settings, study.budget, study.recorded), places)
     return state, gains, judged, told, True
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from greybox_torch.data import Recording
-from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
+from greybox_torch.diagnosis.confirm.free_runs import NOWHERE, FreeRuns, Places
 from greybox_torch.diagnosis.contradictions import worse_than_refit
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.hypothesis.noise import output_floors
@@ -34,9 +34,9 @@ class Judgement:
         refit = free_runs.of(plain)
         return Judgement(free_runs, plain, plain, refit, refit)
 
-    def having(self, augmented: Final) -> Judgement:
-        """Beside the same plain refit, another model with effects."""
-        return replace(self, augmented=augmented, with_effects=self.free_runs.of(augmented))
+    def having(self, augmented: Final, places: Places = NOWHERE) -> Judgement:
+        """Beside the same plain refit, another model with effects; ``places`` as for :meth:`FreeRuns.of`."""
+        return replace(self, augmented=augmented, with_effects=self.free_runs.of(augmented, places))
 
     def without_effects(self) -> Judgement:
         """With the plain refit in the place of the model with effects."""

@@ -45,7 +45,9 @@ def test_where_whole_records_lead_astray_the_values_of_the_windows_may_stand(mon
     effect = stub(prefix="rotor.ripple")
     state = stub(effects=(effect,), current="windows", compared_without=True)
     by_windows = stub(holds=windows_hold, augmented="windows")
-    judged = stub(holds=False, augmented="records", having=lambda final: by_windows, without_effects=lambda: "plain")
+    judged = stub(
+        holds=False, augmented="records", having=lambda final, places: by_windows, without_effects=lambda: "plain"
+    )
     monkeypatch.setattr(holding, "as_windows_have_it", lambda hypothesis, records: hypothesis)
     monkeypatch.setattr(holding, "_empty", lambda *args: None)
     monkeypatch.setattr(holding, "take_back_weakest", lambda *args: stub(effects=()))

@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.confirm.held_out import _window_by_window
+from greybox_torch.diagnosis.confirm.held_out import HeldOut, _window_by_window
 from greybox_torch.diagnosis.confirm.start_positions import placed
 from greybox_torch.diagnosis.hypothesis.fit import augmented
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
+from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import problem_for
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
@@ -72,3 +73,34 @@ def test_a_window_in_a_local_minimum_does_not_outweigh_the_others(motor_data, mo
         assert best.mean_square == pytest.approx(good.mean_square)
     assert _window_by_window(None, good) is good and _window_by_window(good, None) is good
     assert _window_by_window(None, None) is None
+
+
+@pytest.mark.parametrize(("size", "taken"), [(0.0, True), (0.1, False)])
+def test_a_place_known_otherwise_is_taken_where_the_beginning_says_nothing_else(
+    motor_data, motor, begun, size, taken
+) -> None:
+    """Seen: a notch that an arm passes late; its start position on another experiment, from the first tenth, was one of many alike."""
+    search = begun(motor_data(torque=lambda q, v: size * np.cos(5.0 * q)), motor)
+    problem, simulator = restated(search, attach(motor, "rotor", TorqueRipple(5.0)), a=size, b=0.0, order=5.0)
+    name = problem.records.names[0]
+    found = estimate_initial(problem, simulator, places={name: {"rotor.position": 1.0}})
+    alone = estimate_initial(problem, simulator)
+    if taken:
+        assert found.initial[0, 1] == 1.0 and found.initial[0, 0] == pytest.approx(alone.initial[0, 0], abs=1e-3)
+    else:
+        np.testing.assert_array_equal(found.initial, alone.initial)
+        away = (found.initial[0, 1] - BEGINS) % (2 * np.pi / 5.0)
+        assert min(away, 2 * np.pi / 5.0 - away) < 0.05
+    np.testing.assert_array_equal(estimate_initial(problem, simulator, places={"another": {}}).initial, alone.initial)
+
+
+def test_held_out_windows_tell_where_positions_begin(motor_data, motor, begun) -> None:
+    data = motor_data(torque=lambda q, v: 0.05 * np.cos(5.0 * q))
+    search = begun(data, motor)
+    ripple = attach(motor, "rotor", TorqueRipple(5.0))
+    values = search.plain.values() | {f"{ripple.prefix}.a": 0.05, f"{ripple.prefix}.b": 0.0}
+    others = HeldOut(data, search.study)
+    placed_at = others.places(search.refitted((ripple,), search.plain, [values]))
+    (name,) = (r.name for r in data.validation())
+    assert set(placed_at) == {name} and set(placed_at[name]) == {"rotor.position"}
+    assert others.places(search.plain) == {}
