@@ -153,9 +153,8 @@ def find_what_is_slow(
     Args:
         end: when all of it has to be known.
     """
-    if not first.complete or first.others is None:
-        return first
-    budget = longer_windows(first.study, first.state, first.judged)
+    asked = first.complete and first.others is not None
+    budget = longer_windows(first.study, first.state, first.judged) if asked else None
     if budget is None:
         return first
     try:
@@ -163,10 +162,11 @@ def find_what_is_slow(
             first.study.working_on("searching again over longer windows for what acts slowly")
             longer = partial(make_study, budget=budget)
             last = find_with_more(find(first.dataset, model, longer, clock, end), model, longer, clock, end)
+            found = stands(last.study, *((f.state, f.gains, f.judged) for f in (first, last)))
     except (TimeIsUp, KeyboardInterrupt):
         return replace(first, complete=False, others=None, cut=(*first.cut, LONGER))
     told = sentence(first.judged, first.state, last.state)
-    if stands(last.study, *((f.state, f.gains, f.judged) for f in (first, last))):
+    if found:
         return replace(last, more=(*first.more, *last.more, told))
     if not last.complete:
         return replace(first, complete=False, cut=(LONGER,))

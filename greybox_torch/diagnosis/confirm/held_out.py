@@ -200,7 +200,8 @@ def size(
 
     The mismatch is the squared error beyond what the noise alone would leave. Where the plain model cannot be simulated, or leaves no
     more than noise, the whole is what the model without the effect leaves. A length over which neither leaves more says nothing of an
-    effect, as start states take up there what it does; where that is so of every length, its size is zero.
+    effect, as start states take up there what it does; where that is so of every length, its size is zero. Over a length at which it does
+    harm (a stop, hit at another instant in one short window) nothing is brought back.
     """
     shares = []
     for level, new in enumerate(full):

@@ -48,17 +48,13 @@ def _idle(fitted: Hypothesis, curve: Attachment, least: float) -> tuple[int, ...
     mechanism = curve.mechanism
     assert isinstance(mechanism, Unknown)
     names = fitted.problem.free_names
-    place = {k: names.index(f"{curve.prefix}.w_{k}") for k in mechanism.bumps}
-    informations = [window_information(f, fitted.simulator) for f in fitted.fits]
-    if any(i is None for i in informations):
+    place = {k: names.index(name) for k in mechanism.bumps if (name := f"{curve.prefix}.w_{k}") in names}
+    known = [i for f in fitted.fits if (i := window_information(f, fitted.simulator)) is not None]
+    if len(place) < len(mechanism.bumps) or len(known) < len(fitted.fits):
         return ()
     idle: list[int] = []
     while len(idle) < len(place) - 1:
-        rises = {
-            k: _rise(fitted, [i for i in informations if i is not None], [place[j] for j in (*idle, k)])
-            for k in place
-            if k not in idle
-        }
+        rises = {k: _rise(fitted, known, [place[j] for j in (*idle, k)]) for k in place if k not in idle}
         best = min(rises, key=lambda k: rises[k])
         if rises[best] > least:
             break
