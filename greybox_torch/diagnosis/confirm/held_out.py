@@ -10,10 +10,10 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.along_free_runs import along_free_runs, free_run_states
-from greybox_torch.diagnosis.confirm.start_positions import placed
 from greybox_torch.diagnosis.effect import Timeline
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, window_lengths
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
+from greybox_torch.diagnosis.hypothesis.start_positions import placed
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.initial import estimate_initial

@@ -8,13 +8,15 @@ from functools import partial
 
 import numpy as np
 
+from greybox_torch.diagnosis.hypothesis.common_positions import with_common_positions
+from greybox_torch.diagnosis.hypothesis.continued import continued
 from greybox_torch.diagnosis.hypothesis.local_minima import no_worse_than_longer
 from greybox_torch.diagnosis.hypothesis.noise import at_floor, floor_known, reaches_noise
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.rival import Rival
-from greybox_torch.estimate.window_fit import WindowFit, carried_starts, fit_windows
+from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Surroundings
@@ -109,6 +111,8 @@ def hypothesis(
     as_far = partial(_as_far_as_counts, base, limits, settings, budget, rough)
     at_end = partial(at_floor, base, settings=settings)
     at = at or window_lengths(base, budget)
+    known_places = [*(() if before is None else before.fits[:1]), *(() if shorter is None else (shorter,))]
+    problems, first = with_common_positions(problems, first, simulator, at[0], known_places, budget, rough)
     for length in at:
         known = None if before is None else _over(cut(base.records, length), before.fits)
         trials = _distinct([f.problem for f in fits[-1:]] + problems + ([] if fits else first), known)
@@ -218,20 +222,6 @@ def _apart(found: Sequence[WindowFit], budget: SearchBudget) -> list[WindowFit]:
         and not np.allclose(f.problem.values, values, rtol=0.02)
     ]
     return [best, *rivals[:1]]
-
-
-def continued(fit: WindowFit, simulator: Simulator, length: int, limits: Settings, budget: SearchBudget) -> WindowFit:
-    """The fit carried on to the end; where states are carried, in turns with bringing those along anew, while that gains anything."""
-    for _ in range(budget.most_turns):
-        along = fit.along
-        starts = carried_starts(fit.problem, simulator, fit.windows, fit.starts) if along is None else along
-        again = fit_windows(fit.problem, simulator, length, starts=starts, settings=limits, damping=fit.damping)
-        if again is None or again.mean_square > fit.mean_square:
-            break
-        gained, fit = again.mean_square < (1 - budget.least_turn_gain) * fit.mean_square, again
-        if not (gained and fit.problem.carried.any()):
-            break
-    return fit
 
 
 def _distinct(problems: Sequence[Problem], known: WindowFit | None) -> list[Problem]:

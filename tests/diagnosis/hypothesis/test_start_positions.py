@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.confirm.held_out import HeldOut, _window_by_window
-from greybox_torch.diagnosis.confirm.start_positions import placed
 from greybox_torch.diagnosis.hypothesis.fit import augmented
+from greybox_torch.diagnosis.hypothesis.start_positions import placed
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import problem_for

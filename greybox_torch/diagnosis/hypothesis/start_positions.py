@@ -1,4 +1,4 @@
-"""Where a position that no sensor shows begins, on experiments that had no part in the fit.
+"""Where a position that no sensor shows begins, on experiments that had no part in the fit or beside those that had.
 
 An effect that follows a position is at the right place only if the position begins at the right value. A free run over the record
 drifts, and its phase with it; over short windows with free start states the position stays with the measured motion, so that one
@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from greybox_torch.diagnosis.hypothesis.fit import continued
+from greybox_torch.diagnosis.hypothesis.continued import continued
 from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
@@ -23,7 +23,14 @@ FINER = (-0.6, -0.4, -0.2, 0.2, 0.4, 0.6)
 
 
 def placed(
-    problem: Problem, simulator: Simulator, length: int, budget: SearchBudget, shorter: WindowFit | None = None
+    problem: Problem,
+    simulator: Simulator,
+    length: int,
+    budget: SearchBudget,
+    shorter: WindowFit | None = None,
+    *,
+    everywhere: bool = True,
+    nearer: bool = True,
 ) -> WindowFit | None:
     """A fit of the window start states alone, positions beginning where each experiment fits best; None where even windows overflow.
 
@@ -33,6 +40,8 @@ def placed(
         length: of the windows, in samples; from short ones, which are not led astray, to long ones, in which an effect that changes
             slowly along the travel shows.
         shorter: where the shorter windows placed it.
+        everywhere: along the whole travel, not only near where ``problem`` has it.
+        nearer: nearer to the best than one trial along the travel is to the next.
     """
     fit = fit_windows(problem, simulator, length, shorter=shorter, settings=budget.position_iterations)
     trials = problem.model.start_trials(problem.values)
@@ -43,9 +52,10 @@ def placed(
     grid = np.array([[t[n] for n in names] for t in trials])
     experiments = problem.records.experiments(fit.windows.start)
     step = np.ptp(grid, axis=0) / max(len(grid) - 1, 1)
-    best = np.zeros((len(problem.records.first), len(places)))
+    best = np.zeros((len(problem.records.first), len(places))) if everywhere else problem.initial[:, places]
     known = [problem.initial[:, places]]
-    for moves in (grid, np.outer(FINER, step), np.outer(FINER, step), np.outer(FINER, 0.2 * step)):
+    closer = (np.outer(FINER, step), np.outer(FINER, step), np.outer(FINER, 0.2 * step))
+    for moves in (*((grid,) if everywhere else ()), *(closer if nearer else ())):
         best = _best_of(
             fit, places, [*known, best, *(best + move for move in moves)], experiments, simulator, length, budget
         )

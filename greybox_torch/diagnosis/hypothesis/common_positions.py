@@ -1,0 +1,86 @@
+"""Experiments that are fitted together begin somewhere: an effect that follows a position is at one place of the machine in all of them.
+
+Where no sensor shows that position, it begins at zero in every experiment unless something tells otherwise, and a ripple that has one phase
+in the first experiment has another in the second: no phase fits both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from greybox_torch.diagnosis.hypothesis.start_positions import placed
+from greybox_torch.diagnosis.settings import SearchBudget
+from greybox_torch.estimate.initial import beginning
+from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.window_fit import WindowFit, fit_windows
+from greybox_torch.simulation.simulator import Simulator
+
+
+def with_common_positions(
+    problems: Sequence[Problem],
+    early: Sequence[Problem],
+    simulator: Simulator,
+    length: int,
+    known: Sequence[WindowFit],
+    budget: SearchBudget,
+    rough: bool,
+) -> tuple[list[Problem], list[Problem]]:
+    """``problems`` and ``early``, of one model, with every experiment beginning where its positions begin beside the others.
+
+    As one of the fits ``known`` has it, else from a fit to the longest experiment alone, beside which the others are placed. Positions
+    that a sensor shows, and a single experiment, need nothing of this.
+
+    Args:
+        length: of the windows, in samples.
+        rough: whether places that are known are near enough.
+    """
+    model, count = problems[0].model, len(problems[0].records.first)
+    trials = model.start_trials(problems[0].values) if count > 1 else []
+    if not trials:
+        return list(problems), list(early)
+    names = list(trials[0])
+    fit = next((f for f in known if _has(f, names, count)), None)
+    if fit is None:
+        fit = _beside_the_longest(problems[0], simulator, length, budget)
+    elif not rough:
+        there = _fixed(_begun(problems[0], fit, names))
+        fit = placed(there, simulator, length, budget, everywhere=False) or fit
+    if fit is None:
+        return list(problems), list(early)
+    return [_begun(p, fit, names) for p in problems], [_begun(p, fit, names) for p in early]
+
+
+def _begun(problem: Problem, fit: WindowFit, names: Sequence[str]) -> Problem:
+    """``problem`` with the states ``names`` beginning where they do in ``fit``."""
+    initial = problem.initial.copy()
+    initial[:, _columns(problem, names)] = fit.problem.initial[:, _columns(fit.problem, names)]
+    return replace(problem, initial=initial)
+
+
+def _fixed(problem: Problem) -> Problem:
+    """``problem`` with its parameters as they are."""
+    return replace(problem, free=np.zeros_like(problem.free))
+
+
+def _has(fit: WindowFit, names: Sequence[str], count: int) -> bool:
+    """Whether a fit knows where the states ``names`` begin in ``count`` experiments."""
+    there = {s.name for s in fit.problem.model.states}
+    return set(names) <= there and len(fit.problem.initial) == count
+
+
+def _columns(problem: Problem, names: Sequence[str]) -> list[int]:
+    states = [s.name for s in problem.model.states]
+    return [states.index(name) for name in names]
+
+
+def _beside_the_longest(problem: Problem, simulator: Simulator, length: int, budget: SearchBudget) -> WindowFit | None:
+    """All experiments placed with the parameters of a fit to the longest alone."""
+    longest = int(np.argmax(problem.records.lengths))
+    alone = replace(beginning(problem, longest, 1.0), free=problem.free)
+    fitted = fit_windows(alone, simulator, length, settings=budget.first_iterations)
+    if fitted is None:
+        return None
+    return placed(_fixed(problem.with_values(fitted.problem.values)), simulator, length, budget, nearer=False)

@@ -1,0 +1,64 @@
+"""Experiments fitted together, each begun where its position is beside the others."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.hypothesis.common_positions import with_common_positions
+from greybox_torch.diagnosis.settings import SearchBudget
+from greybox_torch.estimate.problem import problem_for
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+
+from ..conftest import STEP
+
+ORDER, SIZE, BEGINS = 4.0, 0.04, (0.0, 0.9, 0.4)
+PERIOD = 2 * np.pi / ORDER
+
+
+def turning(voltage: np.ndarray, begins: float, substeps: int = 4) -> np.ndarray:
+    """The documentation's motor with a ripple, its angle beginning at ``begins`` rad; Euler steps, fine."""
+    q, v, speeds, h = begins, 0.0, [], STEP / substeps / 5
+    for u in voltage:
+        speeds.append(v)
+        for _ in range(5 * substeps):
+            q, v = q + h * v, v + h * (0.1 * u - 0.05 * v + SIZE * np.cos(ORDER * q)) / 0.02
+    return np.array(speeds)
+
+
+@pytest.fixture(scope="module")
+def search(data_set, motor, begun):
+    rng, experiments = np.random.default_rng(2), []
+    for begins in BEGINS:
+        voltage = np.repeat(rng.uniform(-3, 3, 50), 20)
+        experiments.append({"voltage": voltage, "speed": turning(voltage, begins) + rng.normal(0, 0.02, 1000)})
+    return begun(data_set({"voltage": "V", "speed": "rad/s"}, experiments, sample_time=STEP), motor)
+
+
+def apart(initial: np.ndarray) -> np.ndarray:
+    """How far the positions (E,) are from the true ones beside the first, in periods."""
+    beside = (initial - initial[0]) - (np.array(BEGINS) - BEGINS[0])
+    return np.abs((beside / PERIOD + 0.5) % 1.0 - 0.5)
+
+
+def test_a_ripple_of_several_experiments_has_one_phase(motor, search) -> None:
+    """Seen: torque ripple of an arm's motor, two experiments to estimate from: order 4.996 for 5, twelve times the noise left."""
+    ripple = attach(motor, "rotor", TorqueRipple(ORDER))
+    start = search.plain.values() | {f"{ripple.prefix}.a": 0.01, f"{ripple.prefix}.b": 0.01}
+    found = search.refitted((ripple,), search.plain, [start])
+    values = found.values()
+    assert np.hypot(values[f"{ripple.prefix}.a"], values[f"{ripple.prefix}.b"]) == pytest.approx(SIZE, rel=0.05)
+    assert values[f"{ripple.prefix}.order"] == pytest.approx(ORDER, rel=0.01)
+    assert all(np.sqrt(fit.mean_square) < 1.2 * 0.02 for fit in found.fits), "what is left is noise"
+    assert apart(found.problem.initial[:, 1]).max() < 0.03
+    again = search.refitted((ripple, attach(motor, "rotor", ConstantBias())), found)
+    assert apart(again.problem.initial[:, 1]).max() < 0.03, "what is known of it is not forgotten"
+
+
+def test_where_every_position_is_shown_or_none_matters_nothing_changes(motor, search) -> None:
+    bias = attach(motor, "rotor", ConstantBias())
+    found = search.refitted((bias,), search.plain)
+    problem = problem_for(search.problem, found.model, found.values())
+    problems, early = with_common_positions([problem], [problem], found.simulator, 62, [], SearchBudget(), False)
+    assert problems[0] is problem and early[0] is problem
