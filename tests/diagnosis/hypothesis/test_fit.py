@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from greybox_torch.diagnosis.hypothesis import continued as continued_module
 from greybox_torch.diagnosis.hypothesis import fit as fit_module
 from greybox_torch.diagnosis.hypothesis import noise as noise_module
 from greybox_torch.diagnosis.hypothesis.fit import hypothesis
@@ -27,7 +28,8 @@ def test_there_is_no_hypothesis_where_no_start_is_admissible(dead_zone_search, m
 def test_a_fit_that_is_carried_on_is_not_begun_anew(dead_zone_search, monkeypatch) -> None:
     """Nor lost where nothing else can be simulated."""
     study, plain = dead_zone_search.study, dead_zone_search.plain
-    monkeypatch.setattr(fit_module, "fit_windows", lambda *_, **__: None)
+    for module in (fit_module, continued_module):
+        monkeypatch.setattr(module, "fit_windows", lambda *_, **__: None)
     again = hypothesis(study.problem, (), {}, [plain.values()], options=study.options, before=plain)
     assert again is not None
     assert again.fits == plain.fits
