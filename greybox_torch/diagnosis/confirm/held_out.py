@@ -62,8 +62,8 @@ class HeldOut:
         return self._known[hypothesis]
 
     def places(self, hypothesis: Hypothesis) -> dict[str, dict[str, float]]:
-        """Where positions that no sensor shows begin, by experiment and state: as the windows have them."""
-        fits = self.fits(hypothesis)
+        """Where positions that no sensor shows begin, by experiment and state: as the windows have them, where those were fitted."""
+        fits = self._known.get(hypothesis)
         trials = hypothesis.model.start_trials(hypothesis.problem.values)
         if not fits or not trials:
             return {}

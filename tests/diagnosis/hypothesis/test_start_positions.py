@@ -100,7 +100,10 @@ def test_held_out_windows_tell_where_positions_begin(motor_data, motor, begun) -
     ripple = attach(motor, "rotor", TorqueRipple(5.0))
     values = search.plain.values() | {f"{ripple.prefix}.a": 0.05, f"{ripple.prefix}.b": 0.0}
     others = HeldOut(data, search.study)
-    placed_at = others.places(search.refitted((ripple,), search.plain, [values]))
+    found = search.refitted((ripple,), search.plain, [values])
+    assert others.places(found) == {}, "nobody asked yet: it is not fitted for this"
+    others.fits(found)
+    placed_at = others.places(found)
     (name,) = (r.name for r in data.validation())
     assert set(placed_at) == {name} and set(placed_at[name]) == {"rotor.position"}
     assert others.places(search.plain) == {}
