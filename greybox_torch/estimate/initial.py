@@ -59,8 +59,7 @@ def estimate_initial(
         place = (places or {}).get(problem.records.names[e])
         there = None if place is None else _begun_at(replace(part, initial=best[None]), place, simulator)
         if there is not None:
-            samples = int(np.sum(~np.isnan(part.records.y)))
-            best = there[0] if there[1] < np.exp(2.0 * TELLS / samples) * cost else best
+            best = there[0] if there[1] < np.exp(2.0 * TELLS / part.samples) * cost else best
         rows.append(best)
     return problem.with_values(problem.values, np.array(rows))
 

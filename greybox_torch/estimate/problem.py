@@ -66,6 +66,11 @@ class Problem:
         return self.model.prepared(self.records, self.values)
 
     @property
+    def fixed(self) -> Problem:
+        """With every parameter as it is, none estimated."""
+        return replace(self, free=np.zeros_like(self.free))
+
+    @property
     def free_states(self) -> np.ndarray:
         """Indices of the states whose start value is estimated."""
         return np.flatnonzero(self.initial_free)

@@ -165,6 +165,11 @@ def carried_starts(problem: Problem, simulator: Simulator, windows: Windows, sta
     most = max(len(c) for c in chains)
     if most == 1 or not problem.carried.any():
         return starts
+    result, simulated, first = starts.copy(), problem.carried.copy(), np.searchsorted(experiment, experiment)
+    for i, way in integrated_speeds(problem, windows.start).items():
+        result[:, i], simulated[i] = starts[first, i] + way, False
+    if not simulated.any():
+        return result
     longest = next(c for c in chains if len(c) == most)
     every = int(windows.start[longest[1]] - windows.start[longest[0]])
     of_chain = np.array([c[np.minimum(np.arange(most), len(c) - 1)] for c in chains])
@@ -172,12 +177,8 @@ def carried_starts(problem: Problem, simulator: Simulator, windows: Windows, sta
     restarts = Restarts(every, problem.carried, starts[of_chain])
     run = simulator.run(problem.driving_records, Pass(begin, problem.values, starts[of_chain[:, 0]], restarts=restarts))
     assert run.begun is not None
-    result = starts.copy()
     for chain, begun in zip(chains, run.begun, strict=True):
-        result[np.ix_(chain[1:], problem.carried)] = np.nan_to_num(begun[1 : len(chain)][:, problem.carried])
-    first = np.array([c[0] for c in chains])[experiment]
-    for i, way in integrated_speeds(problem, windows.start).items():
-        result[:, i] = starts[first, i] + way
+        result[np.ix_(chain[1:], simulated)] = np.nan_to_num(begun[1 : len(chain)][:, simulated])
     return result
 
 

@@ -115,7 +115,7 @@ def fitted_starts(
     Raises:
         NumericalError: even windows of this length overflow.
     """
-    fixed = replace(problem, free=np.zeros_like(problem.free))
+    fixed = problem.fixed
     before = None
     if shorter is not None:
         windows = cut(problem.records, shorter[0])

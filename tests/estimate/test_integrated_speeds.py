@@ -15,35 +15,20 @@ from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.sensor import SensorBias, SensorLag
-from greybox_torch.model import Body, GreyBoxModel, Input, Output, Parameter, State
+from greybox_torch.model import GreyBoxModel, Parameter
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import cut
+from tests.mechanisms.test_carried_memories import Motor
 
 STEP, SAMPLES, RATE = 0.01, 400, 3.0
 SPAN = Range(-2.0, 2.0, 1.0)
 AROUND = Surroundings(dict.fromkeys(("speed", "position", "time", "output"), SPAN), {}, "N m", STEP)
 
 
-class Rotor(GreyBoxModel):
-    """dv/dt = gain u + what acts at the rotor."""
-
-    states = [State("speed", "rad/s")]
-    inputs = [Input("voltage", "V")]
-    outputs = [Output("speed", "rad/s")]
-    parameters = [Parameter("gain", 2.0)]
-    ports = [Body("rotor", speed="speed")]
-
-    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
-        return {"speed": p.gain * u.voltage + port.rotor}
-
-    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
-        return {"speed": x.speed}
-
-
-class WithGain(Rotor):
+class WithGain(Motor):
     """Its sensor shows the speed times a parameter that happens to be one."""
 
-    parameters = [Parameter("gain", 2.0), Parameter("shown", 1.0)]
+    parameters = [Parameter("b", 0.1), Parameter("shown", 1.0)]
 
     def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
         return {"speed": p.shown * x.speed}
@@ -65,7 +50,7 @@ def problem(data_set: Any) -> Any:
 
 
 def test_is_the_analytic_integral_of_every_experiment(problem: Any) -> None:
-    made = problem(Rotor())
+    made = problem(Motor())
     names = [s.name for s in made.model.states]
     samples = np.array([0, 137, SAMPLES - 1, SAMPLES, SAMPLES + 250])
     (position, gone), *more = integrated_speeds(made, samples).items()
@@ -77,7 +62,7 @@ def test_is_the_analytic_integral_of_every_experiment(problem: Any) -> None:
 @pytest.mark.parametrize("law", [SensorBias(), SensorLag()])
 def test_a_sensor_that_adds_something_shows_no_speed(problem: Any, law: Any) -> None:
     """Its integral would drift from the position by what the sensor adds."""
-    assert not integrated_speeds(problem(Rotor(), Attachment("sensor", law)), np.array([100]))
+    assert not integrated_speeds(problem(Motor(), Attachment("sensor", law)), np.array([100]))
 
 
 def test_an_output_that_is_a_state_only_at_declared_values_shows_none(problem: Any) -> None:
@@ -86,7 +71,7 @@ def test_an_output_that_is_a_state_only_at_declared_values_shows_none(problem: A
 
 def test_windows_begin_there_whatever_the_model_does_between(problem: Any) -> None:
     """The model stands still, as nothing drives it; the machine moved."""
-    made = problem(Rotor())
+    made = problem(Motor())
     windows = cut(made.records, 50)
     position = [s.name for s in made.model.states].index("rotor.position")
     first = np.zeros((len(windows.start), len(made.model.states)))

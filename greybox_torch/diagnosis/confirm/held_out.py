@@ -113,8 +113,7 @@ def held_out_fits(
         if hypothesis.effects
         else problem.with_values(np.array([values[n] for n in problem.names]))
     )
-    fixed = replace(restated, free=np.zeros_like(restated.free))
-    started = estimate_initial(fixed, simulator)
+    started = estimate_initial(restated.fixed, simulator)
     shortest, *longer = window_lengths(problem, budget)
     short = placed(started, simulator, shortest, budget) or along_free_runs(started, simulator, shortest, budget)
     if short is None or not longer:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
+from greybox_torch.diagnosis.confirm.free_runs import NOWHERE, Places
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.take_back import held_out_gains, take_back_weakest
@@ -33,13 +34,16 @@ def holding(
     Where the values that whole records led to do not hold, those of the windows may.
     """
     told: tuple[str, ...] = ()
+
+    def places() -> Places:
+        return NOWHERE if others is None else others.places(state.current)
+
     while state.effects:
-        places = {} if others is None else others.places(state.current)
         empty = _empty(study, state, judged.augmented, gains)
         if empty is None and judged.holds:
             break
         if empty is None:
-            by_windows = judged.having(as_windows_have_it(state.current, study.recorded), places)
+            by_windows = judged.having(as_windows_have_it(state.current, study.recorded), places())
             if by_windows.holds and _empty(study, state, by_windows.augmented, gains) is None:
                 return state, gains, by_windows, (*told, WINDOWS_STAND), True
         if not state.compared_without:
@@ -53,8 +57,7 @@ def holding(
             return state, {}, judged.without_effects(), told, True
         # What one of several accounts for, others may take over.
         gains = held_out_gains(state, others) if others is not None else {}
-        places = {} if others is None else others.places(state.current)
-        judged = judged.having(finish(state.current, study.settings, study.budget, study.recorded), places)
+        judged = judged.having(finish(state.current, study.settings, study.budget, study.recorded), places())
     return state, gains, judged, told, True
 
 

@@ -46,8 +46,7 @@ def with_common_positions(
     if fit is None:
         fit = _beside_the_longest(problems[0], simulator, length, budget)
     elif not rough:
-        there = _fixed(_begun(problems[0], fit, names))
-        fit = placed(there, simulator, length, budget, everywhere=False) or fit
+        fit = placed(_begun(problems[0], fit, names).fixed, simulator, length, budget, everywhere=False) or fit
     if fit is None:
         return list(problems), list(early)
     return [_begun(p, fit, names) for p in problems], [_begun(p, fit, names) for p in early]
@@ -58,11 +57,6 @@ def _begun(problem: Problem, fit: WindowFit, names: Sequence[str]) -> Problem:
     initial = problem.initial.copy()
     initial[:, _columns(problem, names)] = fit.problem.initial[:, _columns(fit.problem, names)]
     return replace(problem, initial=initial)
-
-
-def _fixed(problem: Problem) -> Problem:
-    """``problem`` with its parameters as they are."""
-    return replace(problem, free=np.zeros_like(problem.free))
 
 
 def _has(fit: WindowFit, names: Sequence[str], count: int) -> bool:
@@ -83,4 +77,4 @@ def _beside_the_longest(problem: Problem, simulator: Simulator, length: int, bud
     fitted = fit_windows(alone, simulator, length, settings=budget.first_iterations)
     if fitted is None:
         return None
-    return placed(_fixed(problem.with_values(fitted.problem.values)), simulator, length, budget, nearer=False)
+    return placed(problem.with_values(fitted.problem.values).fixed, simulator, length, budget, nearer=False)

@@ -202,9 +202,8 @@ def _states_first(
     Where the motion is nearly chaotic, parameters and start states together lose over long windows what was found over shorter ones.
     """
     problem = fits[-1].problem
-    fixed = replace(problem, free=np.zeros_like(problem.free))
     for shorter in fits:
-        begun = fit_windows(fixed, simulator, length, shorter=shorter, settings=limits)
+        begun = fit_windows(problem.fixed, simulator, length, shorter=shorter, settings=limits)
         again = begun and fit_windows(problem, simulator, length, starts=begun.starts, settings=limits)
         if again is not None:
             fit = min(fit, continued(again, simulator, length, limits, budget), key=lambda f: f.mean_square)

@@ -32,7 +32,7 @@ def restated(search, effect, **values):
         **{f"{effect.prefix}.{n}": v for n, v in values.items()},
     }
     problem = problem_for(search.problem, model, known)
-    return replace(problem, free=np.zeros_like(problem.free)), Simulator.of(model)
+    return problem.fixed, Simulator.of(model)
 
 
 @pytest.mark.parametrize("samples", [2000, 2020])  # of the second, the last window is longer than the others
