@@ -13,17 +13,16 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from greybox_torch.data import DataSet
-from greybox_torch.deadline import Deadline, TimeIsUp, until
+from greybox_torch.deadline import Deadline, until
 from greybox_torch.diagnosis.coarser import coarser
 from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
 from greybox_torch.diagnosis.confirm.holding import Judged, holding
 from greybox_torch.diagnosis.confirm.judgement import Judgement
-from greybox_torch.diagnosis.confirm.longer_windows import longer_windows, sentence, stands
-from greybox_torch.diagnosis.confirm.promotion import promote_validation, replaces
 from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains
 from greybox_torch.diagnosis.excerpts import excerpts
 from greybox_torch.diagnosis.hypothesis.final import Final, finish, from_longest_windows
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.schedule import Schedule
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.plain_model import fit_plain_model, weighted_by_noise
@@ -42,8 +41,6 @@ SEARCH = "searching: screen, refit, select"
 CONFIRMING = "confirming on held-out experiments"
 FITTING = "final fits on whole records"
 JUDGING = "validation and report data"
-AGAIN = "searching again with a held-out experiment to choose with"
-LONGER = "searching again over longer windows"
 
 
 @dataclass(frozen=True)
@@ -52,12 +49,13 @@ class Findings:
 
     ``gains`` by effect, on held-out experiments; ``others`` None where there are none or time was too short to ask them. ``complete``:
     whether nothing was cut short; ``cut``: the stages that were. ``more``: which experiments were taken to choose with besides those of the
-    card, in sentences.
+    card, in sentences. ``searched``: what the search came to before anything of it was taken back.
     """
 
     dataset: DataSet
     study: Study
     state: SearchState
+    searched: Hypothesis
     others: HeldOut | None
     gains: Mapping[str, Gain]
     judged: Judgement
@@ -89,6 +87,7 @@ def find(
     schedule = Schedule.within(end, free_runs.seconds, study.budget)
     study, state, complete = _searched(*begun, schedule.searching)
     clock.lap(SEARCH)
+    searched = state.current
     others = HeldOut(some.dataset, study) if dataset.validation() else None
     state, gains, confirmed = _confirmed(study, state, others, schedule.confirming)
     clock.lap(CONFIRMING)
@@ -103,6 +102,7 @@ def find(
         dataset,
         study,
         state,
+        searched,
         None if cut else others,
         gains,
         judged,
@@ -114,63 +114,6 @@ def find(
 
 def _problem(dataset: DataSet, model: GreyBoxModel) -> Problem:
     return all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
-
-
-def find_with_more(
-    first: Findings, model: GreyBoxModel, make_study: MakeStudy, clock: Stopwatch, end: Deadline = Deadline()
-) -> Findings:
-    """``first``, or what is found with more experiments to choose with, where those show what the others do not.
-
-    Args:
-        end: when all of it has to be known.
-    """
-    best = last = first
-    try:
-        with until(end):
-            while last.complete and last.others is not None:
-                more = promote_validation(last.study, last.dataset, last.state, last.others)
-                if more is None:
-                    return best
-                last.study.working_on(f"searching again, {more.taken} among the experiments to choose with")
-                found = find(more.dataset, model, make_study, clock, end)
-                last = replace(found, more=(*last.more, more.sentence()))
-                if last.others and replaces(last.others, best.state, last.state):
-                    best = last
-                elif best.state.effects:
-                    break  # one more experiment does not better what was found, and each costs a whole search
-    except (TimeIsUp, KeyboardInterrupt):
-        return replace(best, complete=False, others=None, cut=(*best.cut, AGAIN))
-    if best.complete and not last.complete:
-        return replace(best, complete=False, cut=(AGAIN,))
-    return best
-
-
-def find_what_is_slow(
-    first: Findings, model: GreyBoxModel, make_study: MakeStudy, clock: Stopwatch, end: Deadline = Deadline()
-) -> Findings:
-    """``first``, or what is found over longer windows, where free runs show what the others do not and that explains most of it.
-
-    Args:
-        end: when all of it has to be known.
-    """
-    asked = first.complete and first.others is not None
-    budget = longer_windows(first.study, first.state, first.judged) if asked else None
-    if budget is None:
-        return first
-    try:
-        with until(end):
-            first.study.working_on("searching again over longer windows for what acts slowly")
-            longer = partial(make_study, budget=budget)
-            last = find_with_more(find(first.dataset, model, longer, clock, end), model, longer, clock, end)
-            found = stands(last.study, *((f.state, f.gains, f.judged) for f in (first, last)))
-    except (TimeIsUp, KeyboardInterrupt):
-        return replace(first, complete=False, others=None, cut=(*first.cut, LONGER))
-    told = sentence(first.judged, first.state, last.state)
-    if found:
-        return replace(last, more=(*first.more, *last.more, told))
-    if not last.complete:
-        return replace(first, complete=False, cut=(LONGER,))
-    return replace(first, more=(*first.more, told))
 
 
 def _searched(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState, bool]:

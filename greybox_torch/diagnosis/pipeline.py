@@ -23,7 +23,8 @@ from greybox_torch.diagnosis.describe.ranking import ranking
 from greybox_torch.diagnosis.describe.residual_tests import detect
 from greybox_torch.diagnosis.describe.rivals import Rival, rivals
 from greybox_torch.diagnosis.effect import Effect
-from greybox_torch.diagnosis.findings import Findings, find, find_what_is_slow, find_with_more
+from greybox_torch.diagnosis.findings import Findings, find
+from greybox_torch.diagnosis.further_searches import find_what_is_slow, find_with_more
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
 from greybox_torch.diagnosis.hypothesis.noise import floor_known

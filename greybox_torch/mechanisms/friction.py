@@ -20,6 +20,7 @@ class ViscousFriction(LinearLaw):
     name = "viscous_friction"
     kinds = ("body",)
     needs = ("speed",)
+    rubs = True
     nature = "friction that grows with speed"
     explanation = "A force proportional to speed opposes the motion (lubricant, back-EMF, air at low speed)."
     source = "B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30(7), 1994"
@@ -36,6 +37,7 @@ class CoulombFriction(DryLaw):
     name = "coulomb_friction"
     kinds = ("body",)
     needs = ("speed",)
+    rubs = True
     nature = "dry friction"
     explanation = "A constant force opposes the motion, whatever its speed (dry friction)."
     source = "C. A. Coulomb, 1785; B. Armstrong-Hélouvry et al., Automatica 30(7), 1994"
@@ -56,6 +58,7 @@ class StribeckFriction(Mechanism):
     includes = generalises
     essential = ("F_s",)
     natural = ("v_0.lower",)
+    rubs = True
     nature = "dry friction"
     explanation = (
         "Friction is highest near standstill and falls with speed before viscous friction takes over (Stribeck effect)."
@@ -118,6 +121,7 @@ class QuadraticDrag(LinearLaw):
     name = "quadratic_drag"
     kinds = ("body",)
     needs = ("speed",)
+    rubs = True
     nature = "friction that grows with speed"
     explanation = "A force growing with the square of speed opposes the motion (air or oil churning)."
     source = "B. Armstrong-Hélouvry et al., Automatica 30(7), 1994"

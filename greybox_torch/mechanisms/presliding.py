@@ -21,6 +21,7 @@ class PreslidingHysteresis(Mechanism):
     generalises = ("coulomb_friction",)
     includes = generalises
     natural = ("z_0.lower",)
+    rubs = True
     nature = "dry friction"
     explanation = "Before sliding, friction acts like a spring that yields (bristles bend, then slip)."
     source = "P. R. Dahl, Aerospace Corp. TOR-0158, 1968; C. Canudas de Wit et al., IEEE TAC 40(3), 1995"

@@ -47,14 +47,22 @@ def refinements(
 ) -> set[str]:
     """The effects that are too small to be findings, or that small and not confirmed by held-out experiments beyond chance.
 
+    Of two laws of friction at one body the smaller one has to be larger than other effects: it may be what the other lacks.
+
     Args:
         sizes: of every effect, from :func:`sizes`.
     """
     settings, least = study.settings, max(least_size(study, state, others), np.finfo(float).tiny)
+    rubbing = {e.prefix: e.port for e in state.effects if e.mechanism.rubs}
 
     def doubtful(prefix: str) -> bool:
         gain = gains.get(prefix)
         confirmed = gain is None or gain.errors_away > settings.held_out_beyond_chance
         return sizes[prefix] < settings.least_size and not confirmed
 
-    return {p for p in state.prefixes if not sizes[p] >= least or doubtful(p)}
+    def part_of_another(prefix: str) -> bool:
+        beside = [p for p, port in rubbing.items() if p != prefix and port == rubbing.get(prefix)]
+        larger = any(sizes[p] > sizes[prefix] for p in beside)
+        return larger and sizes[prefix] < settings.least_size_of_friction_beside
+
+    return {p for p in state.prefixes if not sizes[p] >= least or doubtful(p) or part_of_another(p)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -75,18 +76,32 @@ def finish(
             best, cost = (run, optimum.point), optimum.model.cost
     if best is None:
         return from_longest_windows(hypothesis)
-    (run, point), first = best, runs[0]
-    if records is not None:  # the way there needs no more samples than the search
-        run, first = whole_runs(hypothesis, [_on(records, run.problem), _on(records, problems[0])])
+    run, point = best
+    if hypothesis.effects and noise_over_windows(hypothesis, settings):
+        weighed = _weighed(hypothesis, [run.at(point), runs[0].problem], records)
+        if weighed is not None:
+            return weighed
+    if records is not None:
+        run = _on_all(hypothesis, records, run.problem)
     ended = _descended(run, point, budget.record_iterations)
     point = point if ended is None else ended.point
-    if hypothesis.effects and noise_over_windows(hypothesis, settings):
-        # a run keeps where its stretches began: those fitted side by side are objects of their own
-        weighed = coloured([replace(run, problem=run.at(point)), replace(first)])
-        if weighed is not None:
-            run, fit = weighed
-            return Final(run.at(fit.point), of_information(fit.information), weighed=True)
     return Final(run.at(point), uncertainty(run, point))
+
+
+def _weighed(hypothesis: Hypothesis, begun: Sequence[Problem], records: Records | None) -> Final | None:
+    """The likeliest fit with errors weighed by their spectrum, from several beginnings; None where none can be simulated.
+
+    The way there needs no more samples than the search: those of ``records`` tell the end of it.
+    """
+    # a run keeps where its stretches began: those fitted side by side are objects of their own
+    found = coloured(whole_runs(hypothesis, begun))
+    if found is not None and records is not None:
+        run, fit = found
+        found = coloured([_on_all(hypothesis, records, run.at(fit.point))])
+    if found is None:
+        return None
+    run, fit = found
+    return Final(run.at(fit.point), of_information(fit.information), weighed=True)
 
 
 def from_longest_windows(hypothesis: Hypothesis) -> Final:
@@ -96,13 +111,15 @@ def from_longest_windows(hypothesis: Hypothesis) -> Final:
 
 def as_windows_have_it(hypothesis: Hypothesis, records: Records | None = None) -> Final:
     """The values of the longest windows, with their uncertainty on whole records, where those can be simulated from there."""
-    run = whole_runs(hypothesis, [_on(records, from_windows(hypothesis.fits[-1]))])[0]
+    problem = from_windows(hypothesis.fits[-1])
+    run = whole_runs(hypothesis, [problem])[0] if records is None else _on_all(hypothesis, records, problem)
     known = run.normals(run.start) is not None
     return Final(run.at(run.start), uncertainty(run, run.start) if known else None)
 
 
-def _on(records: Records | None, problem: Problem) -> Problem:
-    return problem if records is None else replace(problem, records=records)
+def _on_all(hypothesis: Hypothesis, records: Records, problem: Problem) -> FreeRun:
+    """The run of a problem on other samples of the same experiments."""
+    return whole_runs(hypothesis, [replace(problem, records=records)])[0]
 
 
 def _descended(run: FreeRun, start: np.ndarray, settings: Settings) -> Optimum[None] | None:

@@ -65,10 +65,17 @@ def finer(
     fitted: Hypothesis, curve: Attachment, surroundings: Mapping[str, Surroundings]
 ) -> tuple[Attachment, dict[str, float]]:
     """The curve with twice the knots, and the values of the hypothesis with it: the same curve to begin with."""
-    unknown, around = curve.mechanism, surroundings[curve.port]
+    assert isinstance(curve.mechanism, Unknown)
+    return redrawn(fitted, curve, surroundings[curve.port], 2 * curve.mechanism.knots)
+
+
+def redrawn(
+    fitted: Hypothesis, curve: Attachment, around: Surroundings, knots: int
+) -> tuple[Attachment, dict[str, float]]:
+    """The curve with so many knots over the range of ``around``, and the values of the hypothesis with it."""
+    unknown = curve.mechanism
     assert isinstance(unknown, Unknown)
-    detailed = Unknown(unknown.signal, 2 * unknown.knots, unknown.factor)
-    attachment = replace(curve, mechanism=detailed)
+    attachment = replace(curve, mechanism=Unknown(unknown.signal, knots, unknown.factor))
     return attachment, _without(fitted, curve) | _heights(attachment, around, *_drawn(fitted, curve, around))
 
 

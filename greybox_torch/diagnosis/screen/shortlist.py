@@ -25,10 +25,12 @@ class Candidate:
     """Further start values, which the measured motion suggests."""
     steps: int = 0
     """Samples of the longest of the windows over which the screen saw it explain most; zero where no screen saw it."""
+    found_before: tuple[dict[str, float], ...] = ()
+    """Values that a search with fewer experiments came to, which come before all others."""
 
     def first_starts(self, count: int) -> tuple[dict[str, float], ...]:
-        """The first ``count`` of the screen's start values, and those of the measured motion."""
-        return (*self.starts[:count], *self.from_motion)
+        """The first ``count`` of the screen's start values, those of the measured motion, and before them what was found before."""
+        return (*self.found_before, *self.starts[:count], *self.from_motion)
 
     @property
     def unknown(self) -> bool:

@@ -8,6 +8,7 @@ from functools import partial
 from greybox_torch.diagnosis.hypothesis.above_noise import only_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
 from greybox_torch.diagnosis.select.choice import alone_at_noise
+from greybox_torch.diagnosis.select.flexed import flexed
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
 from greybox_torch.diagnosis.select.memory import completed_by_memory
 from greybox_torch.diagnosis.select.remaining import completes
@@ -33,6 +34,11 @@ def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> St
             state = yield from forward_step(study, state, curves=curves, fine=True)
         if not state.took_one:
             break
+        wider = flexed(study, before, state)
+        if wider is not None:
+            state = wider
+            yield state
+            continue
         taken = state.steps[-1]
         if taken.taken is not None and taken.taken.unknown:
             state = yield from _named_instead(study, before, state)

@@ -96,7 +96,7 @@ class SearchBudget:
         chosen_by=TIME,
     )
     record_iterations: Settings = iteration(
-        Settings(iterations=60, tolerance=1e-8), "How far the final fit on whole records is followed.", chosen_by=TIME
+        Settings(iterations=60, tolerance=1e-6), "How far the final fit on whole records is followed.", chosen_by=TIME
     )
     position_trial_iterations: Settings = iteration(
         Settings(iterations=5, tolerance=1e-2, trials=3),

@@ -67,6 +67,12 @@ class ConfirmationSettings:
         unit="share of the plain model's held-out mismatch",
         chosen_by="pairs of effects of which one is 25 times as large as the other",
     )
+    least_size_of_friction_beside: float = share(
+        0.1,
+        "The same for friction by speed alone beside larger friction of that kind at the same body: the two are one friction there.",
+        unit="share of the plain model's held-out mismatch",
+        chosen_by="bristles that also damp and slide by speed: what one law of friction lacks of them is 0.02 to 0.06",
+    )
     promote_error: float = ratio(
         1.5, "Error from which a validation experiment shows what nothing was found of.", unit=NOISE_MULTIPLE
     )

@@ -1,0 +1,65 @@
+"""A law found may flex before another is named beside it.
+
+Where a law with fewer parameters removes nearly all of the mismatch, it is taken before one that contains it. What it then lacks is small
+beside the mismatch and large beside the noise, and some law at another port takes up most of it. So once another effect pays, the laws
+that contain what was found are asked first: one effect that comes as far as two is the machine's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.refit.rank import RankedCandidate, sound
+from greybox_torch.diagnosis.refit.refitted import fit
+from greybox_torch.diagnosis.select.choice import priced_score
+from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
+from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.attachment import Attachment
+
+
+def flexed(study: Study, before: SearchState, after: SearchState) -> SearchState | None:
+    """``before`` with one of its laws replaced by one that contains it, where that comes as far as ``after`` with one more effect.
+
+    None where no such law does, or where ``after`` took nothing.
+    """
+    if not after.took_one:
+        return None
+    to_reach = priced_score(after.current, study.settings)
+    for effect, done, wider in _wider(study, before):
+        found = _in_its_place(study, before, effect, done, wider)
+        if found is not None and priced_score(found, study.settings) <= to_reach:
+            taken = replace(wider, fitted=found)
+            steps = tuple(replace(s, taken=taken, led=None) if s is done else s for s in before.steps)
+            return replace(before.at(found), plain=after.plain, steps=steps)
+    return None
+
+
+def _wider(study: Study, state: SearchState) -> Iterator[tuple[Attachment, SelectionStep, RankedCandidate]]:
+    """The laws of a state with the step that took each, and the best law of that step that contains it."""
+    for effect in state.effects:
+        done = state.step_of(effect.prefix)
+        if done is None or done.taken is None:
+            continue
+        contain = (r for r in done.ranked if _contains(r.candidate.attachment, effect) and sound(study, r))
+        wider = next(contain, None)
+        if wider is not None and wider.fitted.score < done.taken.fitted.score:
+            yield effect, done, wider
+
+
+def _contains(law: Attachment, effect: Attachment) -> bool:
+    return law.port == effect.port and effect.mechanism.name in law.mechanism.generalises
+
+
+def _in_its_place(
+    study: Study, state: SearchState, effect: Attachment, done: SelectionStep, wider: RankedCandidate
+) -> Hypothesis | None:
+    """The hypothesis of ``state`` with ``wider`` in the place of ``effect``."""
+    law = wider.candidate.attachment
+    if state.effects == (*done.parent.effects, effect):
+        return wider.fitted
+    study.working_on(f"trying {law.prefix} in the place of {effect.prefix}")
+    effects = tuple(law if e is effect else e for e in state.effects)
+    start = state.current.values() | {n: v for n, v in wider.fitted.values().items() if n.startswith(f"{law.prefix}.")}
+    return fit(study, effects, [start], state.current.fits[0])
