@@ -9,6 +9,7 @@ from functools import partial
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, size, timelines
 from greybox_torch.diagnosis.confirm.second_choice import second_choice
 from greybox_torch.diagnosis.confirm.simpler_laws import with_simpler_laws
+from greybox_torch.diagnosis.confirm.wider_laws import with_wider_laws
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -25,6 +26,7 @@ def confirm(study: Study, state: SearchState, others: HeldOut) -> Stage[SearchSt
     study.working_on("confirming on held-out experiments")
     state = yield from _names_for_curve(study, state, others)
     state = yield from with_simpler_laws(study, state, others)
+    state = yield from with_wider_laws(study, state, others)
     state = yield from _what_is_borne_out(study, state, others)
     if not state.effects:
         state = yield from second_choice(study, state, others)

@@ -27,16 +27,14 @@ def flexed(study: Study, before: SearchState, after: SearchState) -> SearchState
     if not after.took_one:
         return None
     to_reach = priced_score(after.current, study.settings)
-    for effect, done, wider in _wider(study, before):
-        found = _in_its_place(study, before, effect, done, wider)
+    for effect, done, wider in wider_laws(study, before):
+        found = in_its_place(study, before, effect, done, wider)
         if found is not None and priced_score(found, study.settings) <= to_reach:
-            taken = replace(wider, fitted=found)
-            steps = tuple(replace(s, taken=taken, led=None) if s is done else s for s in before.steps)
-            return replace(before.at(found), plain=after.plain, steps=steps)
+            return replace(widened(before, done, wider, found), plain=after.plain)
     return None
 
 
-def _wider(study: Study, state: SearchState) -> Iterator[tuple[Attachment, SelectionStep, RankedCandidate]]:
+def wider_laws(study: Study, state: SearchState) -> Iterator[tuple[Attachment, SelectionStep, RankedCandidate]]:
     """The laws of a state with the step that took each, and the best law of that step that contains it."""
     for effect in state.effects:
         done = state.step_of(effect.prefix)
@@ -52,7 +50,7 @@ def _contains(law: Attachment, effect: Attachment) -> bool:
     return law.port == effect.port and effect.mechanism.name in law.mechanism.generalises
 
 
-def _in_its_place(
+def in_its_place(
     study: Study, state: SearchState, effect: Attachment, done: SelectionStep, wider: RankedCandidate
 ) -> Hypothesis | None:
     """The hypothesis of ``state`` with ``wider`` in the place of ``effect``."""
@@ -63,3 +61,10 @@ def _in_its_place(
     effects = tuple(law if e is effect else e for e in state.effects)
     start = state.current.values() | {n: v for n, v in wider.fitted.values().items() if n.startswith(f"{law.prefix}.")}
     return fit(study, effects, [start], state.current.fits[0])
+
+
+def widened(state: SearchState, done: SelectionStep, wider: RankedCandidate, found: Hypothesis) -> SearchState:
+    """``state`` with the hypothesis ``found``, as if its step ``done`` had taken ``wider``."""
+    taken = replace(wider, fitted=found)
+    steps = tuple(replace(s, taken=taken, led=None) if s is done else s for s in state.steps)
+    return replace(state.at(found), steps=steps)

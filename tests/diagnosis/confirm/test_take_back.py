@@ -11,6 +11,7 @@ import pytest
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
 from greybox_torch.diagnosis.confirm.simpler_laws import with_simpler_laws
 from greybox_torch.diagnosis.confirm.take_back import _idle
+from greybox_torch.diagnosis.confirm.wider_laws import with_wider_laws
 from greybox_torch.diagnosis.refit.rank import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.state import SelectionStep
@@ -51,6 +52,20 @@ def test_the_contained_law_is_meant_where_the_larger_one_predicts_no_better(chos
     assert effect.mechanism.name == meant
     assert state.steps[0].taken.candidate.attachment.mechanism.name == meant
     assert state.step_of(effect.prefix) is state.steps[0]
+
+
+@pytest.mark.parametrize(("extra", "meant"), [(0.0, "coulomb_friction"), (0.1, "stribeck_friction")])
+def test_the_law_that_contains_it_is_meant_where_that_predicts_others_better(chose_stribeck, extra, meant) -> None:
+    """Seen: two laws that few windows at slow speed left alike, and on held-out experiments three times the noise with the simpler one."""
+    search, others = chose_stribeck(extra)
+    (step,) = search.state.steps
+    simple = next(r for r in step.ranked if r.candidate.attachment.mechanism.name == "coulomb_friction")
+    state = search.at(simple.fitted, steps=(replace(step, taken=simple),)).state
+    found = result_of(with_wider_laws(search.study, state, others))
+    (effect,) = found.effects
+    assert effect.mechanism.name == meant
+    assert found.steps[0].taken.candidate.attachment.mechanism.name == meant
+    assert (found.current is state.current) is (extra == 0.0)
 
 
 @pytest.mark.parametrize("elsewhere_too", [True, False])
