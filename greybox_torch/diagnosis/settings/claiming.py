@@ -112,6 +112,15 @@ class ProbabilitySettings:
         "The most that is claimed for a name where the laws together leave much more than noise.",
         unit="probability",
     )
+    highest_probability_where_most_is_left: float = share(
+        0.5, "The same where that is also most of the mismatch.", unit="probability", chosen_by="even odds"
+    )
+    most_of_mismatch: float = share(
+        0.67,
+        "Share of the plain model's mismatch from which most of it is left, at the window length where it is largest.",
+        unit="share of the plain model's mismatch",
+        chosen_by="two thirds: what is named is then the smaller part",
+    )
     highest_probability_of_stopped_curve: float = share(
         0.5,
         "The most that is claimed for a free curve where the search was stopped before names were tried.",
