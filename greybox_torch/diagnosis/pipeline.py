@@ -7,13 +7,9 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
-from greybox_torch.diagnosis.confirm.held_out import HeldOut
-from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.standing import refinements, sizes
 from greybox_torch.diagnosis.contradictions import contradictions
 from greybox_torch.diagnosis.describe.effects import describe
@@ -22,15 +18,13 @@ from greybox_torch.diagnosis.describe.left import what_is_left
 from greybox_torch.diagnosis.describe.ranking import ranking
 from greybox_torch.diagnosis.describe.residual_tests import detect
 from greybox_torch.diagnosis.describe.rivals import Rival, rivals
+from greybox_torch.diagnosis.describe.without_a_name import A_DISTURBANCE, error_without_a_name, is_missing
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.findings import Findings, find
 from greybox_torch.diagnosis.further_searches import find_what_is_slow, find_with_more
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
-from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
-from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.progress import Journal, Progress
 from greybox_torch.diagnosis.select.posterior import confidence, of_a_stopped_search
-from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import or_else
 from greybox_torch.diagnosis.stopwatch import Stopwatch
@@ -157,7 +151,9 @@ def _as_found(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int,
     traces = judged.traces(bool(effects))
     detected = detect(judged.problem, traces, study.settings)
     clock.lap("validation and report data")
-    unexplained = None if effects else _unexplained(study, state, found.others, judged)
+    left = None if effects else error_without_a_name(study, state, found.others, judged)
+    chosen_by = times_noise(study.problem, state.plain, study.settings)
+    unexplained = left if is_missing(left, chosen_by, detected, found.complete, study.settings) else None
     looked = not study.beliefs.exclude_all(model)
     verdict = Verdict(
         dataset=dataset.name,
@@ -172,6 +168,7 @@ def _as_found(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int,
         evidence=(
             *sentences(found.dataset, study, state, effects, found.gains, detected, not found.complete),
             *(judged.augmented.sentences() if effects else ()),
+            *((A_DISTURBANCE,) if left is not None and unexplained is None else ()),
             *found.more,
         ),
         stages=clock.stages,
@@ -209,25 +206,3 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
         tuple(e for attached, e in both if attached.prefix not in small),
         tuple(e for attached, e in both if attached.prefix in small),
     )
-
-
-def _unexplained(study: Study, state: SearchState, others: HeldOut | None, judged: Judgement) -> float | None:
-    """How many times the noise the model's error is on the worst experiment, if that is too much for badly determined friction.
-
-    By windows and by free runs: where either shows hardly more than noise, nothing says that anything is missing. Nor where the error is
-    less than simulations of one machine differ by. Where the recordings show no more than an upper bound of the noise, that bound is
-    counted only against errors that anybody sees.
-    """
-    settings = study.settings
-    shares = (mismatch_share(state.plain, settings), judged.mismatch_share)
-    if max(shares) < settings.least_mismatch:
-        return None
-    plain_to_see = min(shares) > settings.obvious_mismatch
-    errors = []
-    if plain_to_see or floor_known(study.problem, settings):
-        errors.append(times_noise(study.problem, state.plain, settings))
-    if others is not None and (plain_to_see or floor_known(others.problem, settings)):
-        errors += list(others.times_noise(state.plain))
-    by_windows = max((e for e in errors if settings.far_above_noise < e < np.inf), default=0.0)
-    least = min(by_windows, float(np.nanmax(judged.times_noise, initial=0.0)))
-    return least if least > settings.far_above_noise else None

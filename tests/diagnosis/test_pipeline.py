@@ -97,8 +97,10 @@ def nothing_found(study, state):
 def test_what_nothing_explains_is_said_to_be_missing(motor_data, motor, monkeypatch, floor_is_known) -> None:
     """Seen: an error of twelve times the noise, and "nothing is missing"; 330 times its upper bound, where impacts are in the record."""
     monkeypatch.setattr("greybox_torch.diagnosis.findings.search", nothing_found)
-    monkeypatch.setattr("greybox_torch.diagnosis.pipeline.floor_known", lambda problem, settings: floor_is_known)
-    verdict = diagnose(motor_data(acting=dead_zone), motor).verdict
+    monkeypatch.setattr(
+        "greybox_torch.diagnosis.describe.without_a_name.floor_known", lambda problem, settings: floor_is_known
+    )
+    verdict = diagnose(motor_data(acting=dead_zone, noise=0.002), motor).verdict
     assert verdict.complete and verdict.mismatch and verdict.effects == () and verdict.unexplained > 3.0
     assert verdict.confidence == DiagnosisSettings().confidence_missing_unnamed
     assert (

@@ -39,6 +39,13 @@ class NoiseSettings:
     far_above_noise: float = ratio(
         3.0, "Error far above the noise: laws that leave so much are not the whole story.", unit=NOISE_MULTIPLE
     )
+    far_above_disturbances: float = ratio(
+        10.0,
+        "Error from which something is missing though no law, curve or response explains it and it is not correlated with past inputs. "
+        "What is less may be a disturbance that nobody measured.",
+        unit=NOISE_MULTIPLE,
+        chosen_by="what was missing and could not be named left 36 times the noise and more; complete machines with disturbances 3 to 8",
+    )
     negligible_error: float = number(
         1e-5,
         "Error below which nothing matters.",

@@ -1,0 +1,64 @@
+"""An error above the noise that no effect explains: whether something is missing, or a disturbance acts that nobody measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from greybox_torch.diagnosis.confirm.held_out import HeldOut
+from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.describe.residual_tests import Detection
+from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
+from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
+from greybox_torch.diagnosis.hypothesis.noise import floor_known
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.diagnosis.study import Study
+
+A_DISTURBANCE = (
+    "What is left above the noise follows neither past inputs nor, by any law, curve or response with memory, what the model knows of the "
+    "motion: it may be a disturbance that nobody measured. The same experiment twice would tell: what is missing repeats."
+)
+
+
+def error_without_a_name(study: Study, state: SearchState, others: HeldOut | None, judged: Judgement) -> float | None:
+    """How many times the noise the model's error is on the worst experiment, if that is too much for badly determined friction.
+
+    By windows and by free runs: where either shows hardly more than noise, nothing says that anything is missing. Nor where the error is
+    less than simulations of one machine differ by. Where the recordings show no more than an upper bound of the noise, that bound is
+    counted only against errors that anybody sees.
+    """
+    settings = study.settings
+    shares = (mismatch_share(state.plain, settings), judged.mismatch_share)
+    if max(shares) < settings.least_mismatch:
+        return None
+    plain_to_see = min(shares) > settings.obvious_mismatch
+    errors = []
+    if plain_to_see or floor_known(study.problem, settings):
+        errors.append(times_noise(study.problem, state.plain, settings))
+    if others is not None and (plain_to_see or floor_known(others.problem, settings)):
+        errors += list(others.times_noise(state.plain))
+    by_windows = max((e for e in errors if settings.far_above_noise < e < np.inf), default=0.0)
+    least = min(by_windows, float(np.nanmax(judged.times_noise, initial=0.0)))
+    return least if least > settings.far_above_noise else None
+
+
+def is_missing(
+    error: float | None, chosen_by: float, detected: Sequence[Detection], complete: bool, settings: DiagnosisSettings
+) -> bool:
+    """Whether an error of so many times the noise, that nothing explains, says that something is missing.
+
+    A disturbance that nobody measured leaves some times the noise as well. It repeats in no input, and no law explains it. What is missing
+    from a model shows in past inputs, or is much larger, or was not looked for to the end, or where nobody looked.
+
+    Args:
+        error: from :func:`error_without_a_name`.
+        chosen_by: how many times the noise it is on the experiments to choose with, over windows.
+        complete: whether the search ended by itself.
+    """
+    if error is None:
+        return False
+    repeats = any(d.plain.past.beyond for d in detected)
+    looked_at = complete and chosen_by > error / settings.far_above_noise  # the error elsewhere is no other one
+    return not looked_at or repeats or error > settings.far_above_disturbances
