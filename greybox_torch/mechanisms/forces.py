@@ -183,4 +183,6 @@ class AdditionalMode(Mechanism):
         return [Probe(("mass",), {"omega": share * nyquist, "zeta": 0.05}) for share in shares]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        if values["zeta"] >= 1.0:
+            return f"its damping ratio of {values['zeta']:.3g} lets nothing resonate"
         return not_a_frequency_of_the_record("omega", values["omega"], around)

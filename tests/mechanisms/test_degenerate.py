@@ -75,6 +75,7 @@ def test_sound_parameters_are_not_objected_to(name: str, around: Surroundings) -
         ("position_dependent_friction", {"order": 1.0}, "order = 1 repeats 1.3 times in the travel"),
         ("transmission_error", {"order": 1.0}, "order = 1 repeats 1.3 times in the travel"),
         ("additional_mode", {"omega": 1.0}, "omega = 1 rad/s swings 1.6 times in the longest record; 2 are needed"),
+        ("additional_mode", {"zeta": 1.8}, "its damping ratio of 1.8 lets nothing resonate"),
         ("additional_mode", {"omega": 3500.0}, "omega = 3.5e+03 rad/s is above the Nyquist frequency, 3.14e+03 rad/s"),
         ("torque_saturation", {"limit": 6.0}, "limit = 6 is at its upper bound"),
         ("coulomb_friction", {"v_0": 6.0}, "v_0 = 6 is at its upper bound"),
