@@ -65,13 +65,19 @@ class Findings:
 
 
 def find(
-    dataset: DataSet, model: GreyBoxModel, make_study: MakeStudy, clock: Stopwatch, end: Deadline = Deadline()
+    dataset: DataSet,
+    model: GreyBoxModel,
+    make_study: MakeStudy,
+    clock: Stopwatch,
+    end: Deadline = Deadline(),
+    found_before: Hypothesis | None = None,
 ) -> Findings:
     """Search on the estimation experiments, and let the others confirm what was found or take it back.
 
     Args:
         make_study: :class:`Study` with everything but the problem and how it is simulated.
         end: when the answer has to stand.
+        found_before: what a search with fewer experiments came to.
     """
     study = make_study(_problem(dataset, model))
     used = excerpts(dataset, study.budget.most_samples)
@@ -83,9 +89,9 @@ def find(
     study = replace(study, problem=some.problem, recorded=recorded, options=simulator.options)
     free_runs = FreeRuns(study, dataset)
     clock.lap("preparing")
-    begun = fit_plain_model(study)
+    study, state = fit_plain_model(study)
     schedule = Schedule.within(end, free_runs.seconds, study.budget)
-    study, state, complete = _searched(*begun, schedule.searching)
+    study, state, complete = _searched(study, replace(state, found_before=found_before), schedule.searching)
     clock.lap(SEARCH)
     searched = state.current
     others = HeldOut(some.dataset, study) if dataset.validation() else None
@@ -126,7 +132,8 @@ def _searched(study: Study, state: SearchState, deadline: Deadline) -> tuple[Stu
     begun, complete = (study, state), True
     with until(deadline):
         if len(study.problem.weights) > 1:
-            begun, complete = or_else(lambda: fit_plain_model(weighted_by_noise(study, state)), lambda: (study, state))
+            begun, complete = or_else(lambda: fit_plain_model(weighted_by_noise(study, state)), lambda: begun)
+            begun = begun[0], replace(begun[1], found_before=state.found_before)
         if complete:
             best, complete = best_so_far(search(*begun), begun[1], told)
             return begun[0], best, complete

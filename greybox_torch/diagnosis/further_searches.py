@@ -32,8 +32,7 @@ def find_with_more(
                 if more is None:
                     return best
                 last.study.working_on(f"searching again, {more.taken} among the experiments to choose with")
-                knowing = partial(make_study, found_before=last.searched)
-                found = find(more.dataset, model, knowing, clock, end)
+                found = find(more.dataset, model, make_study, clock, end, last.searched)
                 last = replace(found, more=(*last.more, more.sentence()))
                 if last.others and replaces(last.others, best.state, last.state):
                     best = last

@@ -128,7 +128,7 @@ def _diagnosis(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int
     told = _as_found(found, dataset, model, seed, clock)
     against = contradictions(told.verdict.as_json())
     if against and told.verdict.effects:
-        told = _as_found(_taken_back(found, against), dataset, model, seed, clock)
+        told = _as_found(_taken_back(found, against), dataset, model, seed, clock, explained=True)
         against = contradictions(told.verdict.as_json())
     if against:
         raise NumericalError(
@@ -144,8 +144,14 @@ def _taken_back(found: Findings, against: Sequence[str]) -> Findings:
     return replace(found, state=found.state.at(found.state.plain), gains={}, more=(*found.more, why))
 
 
-def _as_found(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int, clock: Stopwatch) -> Diagnosis:
-    """The findings as a verdict, whatever it says."""
+def _as_found(
+    found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int, clock: Stopwatch, *, explained: bool = False
+) -> Diagnosis:
+    """The findings as a verdict, whatever it says.
+
+    Args:
+        explained: whether effects explained the error that are no longer among the findings.
+    """
     study, state, judged = found.study, found.state, found.judged
     effects, refinements = _told(found) if state.effects else ((), ())
     traces = judged.traces(bool(effects))
@@ -153,7 +159,8 @@ def _as_found(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int,
     clock.lap("validation and report data")
     left = None if effects else error_without_a_name(study, state, found.others, judged)
     chosen_by = times_noise(study.problem, state.plain, study.settings)
-    unexplained = left if is_missing(left, chosen_by, detected, found.complete, study.settings) else None
+    tried = found.complete and not explained
+    unexplained = left if is_missing(left, chosen_by, detected, tried, study.settings) else None
     looked = not study.beliefs.exclude_all(model)
     verdict = Verdict(
         dataset=dataset.name,

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 
 from greybox_torch.deadline import check_time
 from greybox_torch.diagnosis.beliefs import Beliefs
-from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.progress import Journal
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.problem import Problem
@@ -28,7 +27,7 @@ class Study:
     ``options`` are those of every simulation. ``surroundings`` and ``shifts`` are what mechanisms need to know of the ports: where signals
     moved, and which state carries the deflection of a coupling; both are known once the model as it stands is fitted. ``motion``: what the
     outputs show of the states, or why they do not. ``recorded``: all samples of the estimation experiments, where ``problem`` has some of
-    them. ``found_before``: what a search with fewer of the experiments came to. ``beliefs``: what is known beforehand. ``report`` is told
+    them. ``beliefs``: what is known beforehand. ``report`` is told
     what is being done, ``journal`` which candidates are tried.
     """
 
@@ -38,7 +37,6 @@ class Study:
     shifts: Mapping[str, str] = field(default_factory=dict)
     motion: Motion | str | None = None
     recorded: Records | None = None
-    found_before: Hypothesis | None = None
     settings: DiagnosisSettings = field(default_factory=DiagnosisSettings)
     budget: SearchBudget = field(default_factory=SearchBudget)
     beliefs: Beliefs = field(default_factory=Beliefs)

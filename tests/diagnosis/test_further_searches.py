@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import pytest
@@ -51,7 +50,7 @@ def test_while_searching_again_what_was_found_first_stands(monkeypatch, stub, fi
     }
     for name, step in steps.items():
         monkeypatch.setattr(further_searches, name, stopped if name == at else step)
-    best = find_with_more(first, stub(), partial(dict), stub())
+    best = find_with_more(first, stub(), stub(), stub())
     assert best.state is first.state and not best.complete
 
 
@@ -66,7 +65,7 @@ def test_what_one_more_experiment_does_not_better_is_not_searched_a_third_time(m
     more = stub(taken="run 2", dataset=stub(), sentence=lambda: "run 2 was taken")
     for name, step in {"promote_validation": lambda *a: more, "find": find, "replaces": lambda *a: False}.items():
         monkeypatch.setattr(further_searches, name, step)
-    assert find_with_more(found, stub(), partial(dict), stub()).state is found.state
+    assert find_with_more(found, stub(), stub(), stub()).state is found.state
     assert len(searches) == 1
 
 
@@ -78,19 +77,19 @@ def test_a_second_search_that_was_cut_short_and_serves_no_better_leaves_the_firs
     cut = Findings(first.dataset, first.study, state, state.current, None, {}, stub(), complete=False)
     monkeypatch.setattr(further_searches, "promote_validation", lambda *args: more)
     monkeypatch.setattr(further_searches, "find", lambda *args: cut)
-    best = find_with_more(first, stub(), partial(dict), stub())
+    best = find_with_more(first, stub(), stub(), stub())
     assert best.state is first.state and not best.complete
 
 
 def test_one_more_search_begins_from_all_that_was_found_before(monkeypatch, stub, first) -> None:
     searched, told = stub(effects=(stub(),)), []
 
-    def find(dataset: Any, model: Any, make_study: partial[Any], *rest: Any) -> Findings:
-        told.append(make_study.keywords["found_before"])
+    def find(dataset: Any, model: Any, make_study: Any, clock: Any, end: Any, found_before: Any) -> Findings:
+        told.append(found_before)
         return replace(first, others=None)
 
     more = stub(taken="run 2", dataset=stub(), sentence=lambda: "run 2 was taken")
     monkeypatch.setattr(further_searches, "promote_validation", lambda *args: more)
     monkeypatch.setattr(further_searches, "find", find)
-    find_with_more(replace(first, searched=searched), stub(), partial(dict), stub())
+    find_with_more(replace(first, searched=searched), stub(), stub(), stub())
     assert told == [searched]

@@ -45,7 +45,7 @@ def error_without_a_name(study: Study, state: SearchState, others: HeldOut | Non
 
 
 def is_missing(
-    error: float | None, chosen_by: float, detected: Sequence[Detection], complete: bool, settings: DiagnosisSettings
+    error: float | None, chosen_by: float, detected: Sequence[Detection], tried: bool, settings: DiagnosisSettings
 ) -> bool:
     """Whether an error of so many times the noise, that nothing explains, says that something is missing.
 
@@ -55,10 +55,10 @@ def is_missing(
     Args:
         error: from :func:`error_without_a_name`.
         chosen_by: how many times the noise it is on the experiments to choose with, over windows.
-        complete: whether the search ended by itself.
+        tried: whether the search ended by itself, and nothing explained the error.
     """
     if error is None:
         return False
     repeats = any(d.plain.past.beyond for d in detected)
-    looked_at = complete and chosen_by > error / settings.far_above_noise  # the error elsewhere is no other one
+    looked_at = tried and chosen_by > error / settings.far_above_noise  # the error elsewhere is no other one
     return not looked_at or repeats or error > settings.far_above_disturbances

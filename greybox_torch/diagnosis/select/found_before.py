@@ -28,7 +28,7 @@ def with_found_before(study: Study, state: SearchState, found: Sequence[Candidat
 
 def _known(study: Study, state: SearchState, curves: bool) -> dict[tuple, Candidate]:
     """The effects found before that are not in the hypothesis so far, as candidates."""
-    before, offered = study.found_before, []
+    before, offered = state.found_before, []
     if before is None:
         return {}
     for effect in before.effects:

@@ -30,7 +30,7 @@ class SearchState:
 
     ``without``: by effect, the current hypothesis refitted without it; empty until that was compared. ``named``: effects with names that
     were found in the place of a free curve that goes farther. ``memory``: the model with a residual with memory alone, where that
-    was tried in the place of all that was found, or what was left of it.
+    was tried in the place of all that was found, or what was left of it. ``found_before``: what a search with fewer experiments came to.
     """
 
     plain: Hypothesis
@@ -39,6 +39,7 @@ class SearchState:
     without: Mapping[str, Hypothesis] = field(default_factory=dict)
     named: SearchState | None = None
     memory: SearchState | None = None
+    found_before: Hypothesis | None = None
 
     @property
     def memory_step(self) -> SelectionStep | None:

@@ -20,42 +20,43 @@ def drag_search(motor_data, motor, begun):
 
 
 def knowing(search, effects, values):
-    """A study that knows what a search with fewer experiments came to: ``effects`` with ``values``."""
+    """A state that knows what a search with fewer experiments came to: ``effects`` with ``values``."""
     start = search.plain.values() | values
     found = hypothesis(search.problem, effects, search.surroundings, [start], options=search.study.options)
     assert found is not None
-    return replace(search.study, found_before=found), found
+    return replace(search.state, found_before=found), found
 
 
 def test_a_law_that_was_found_is_tried_from_its_values_first(motor, drag_search) -> None:
     drag = attach(motor, "rotor", QuadraticDrag())
-    study, before = knowing(drag_search, (drag,), {"rotor.quadratic_drag.c": 0.003})
+    state, before = knowing(drag_search, (drag,), {"rotor.quadratic_drag.c": 0.003})
     screened = Candidate(attach(motor, "rotor", QuadraticDrag()), ({"a": 1.0}, {"b": 1.0}, {"c": 1.0}), 0.8)
     other = Candidate(attach(motor, "rotor", CoulombFriction()), ({"d": 1.0},), 0.3)
-    first, second = with_found_before(study, drag_search.state, [screened, other], curves=True)
+    first, second = with_found_before(drag_search.study, state, [screened, other], curves=True)
     assert first.first_starts(2) == (before.values(), {"a": 1.0}, {"b": 1.0}) and first.explained == 0.8
     assert second is other
-    (alone,) = with_found_before(study, drag_search.state, [], curves=True)
+    (alone,) = with_found_before(drag_search.study, state, [], curves=True)
     assert alone.first_starts(2) == (before.values(),), "it is offered where the screen passes over it, too"
-    assert with_found_before(study, drag_search.state.at(before), [], curves=True) == [], "it is there already"
+    assert with_found_before(drag_search.study, state.at(before), [], curves=True) == [], "it is there already"
 
 
 def test_a_curve_that_was_found_is_offered_as_it_was_drawn(motor, drag_search) -> None:
     curve = attach(motor, "rotor", Unknown("speed", 16, left_out=(3,)))
     heights = {f"{curve.prefix}.w_{k}": 0.01 for k in range(16) if k != 3}
-    study, before = knowing(drag_search, (curve,), heights)
+    state, before = knowing(drag_search, (curve,), heights)
     coarse = Candidate(attach(motor, "rotor", Unknown("speed", 8)), ({"a": 1.0},), 0.8, steps=100)
-    (found,) = with_found_before(study, drag_search.state, [coarse], curves=True)
+    (found,) = with_found_before(drag_search.study, state, [coarse], curves=True)
     (start,) = found.first_starts(2)
     assert found.explained == 0.8 and found.steps == 100
     attached = found.attachment
     assert isinstance(attached.mechanism, Unknown) and attached.mechanism.bumps == list(range(16))
     frozen = frozenset(n for n in start if ".w_" in n)
+    study = drag_search.study
     as_before = hypothesis(
         study.problem, (attached,), study.surroundings, [start], options=study.options, frozen=frozen
     )
     assert as_before is not None and as_before.score < before.score + 0.02
-    assert with_found_before(study, drag_search.state, [], curves=False) == []
+    assert with_found_before(drag_search.study, state, [], curves=False) == []
 
 
 def test_a_first_search_is_offered_nothing_more(drag_search) -> None:

@@ -17,7 +17,6 @@ from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.posterior import (
     believed,
     by_comparison,
-    for_all_that_is_left,
     of_a_stopped_search,
     shared,
 )
@@ -213,14 +212,6 @@ def test_at_the_noise_likelihood_tells_laws_apart_that_windows_do_not(fitted, no
 def test_where_much_is_left_more_has_to_be_gained(fitted) -> None:
     assert least_gain(fitted(energies(0), noise=1.0), SETTINGS) == SETTINGS.least_gain
     assert least_gain(fitted(16.0 * energies(0), noise=1.0), SETTINGS) == SETTINGS.least_gain_far_above_noise
-
-
-def test_a_name_is_less_sure_the_more_is_left_with_it(fitted) -> None:
-    """Seen: dry friction at the wrong port, 0.85, which left 82 times the noise and four fifths of the mismatch."""
-    much, little = fitted(np.full(8, 1.0), noise=0.1), fitted(np.full(8, 0.011), noise=0.1)
-    assert [for_all_that_is_left(0.97, share, much, SETTINGS) for share in (0.01, 0.3, 0.8)] == [0.97, 0.85, 0.5]
-    assert for_all_that_is_left(0.3, 0.8, much, SETTINGS) == 0.3
-    assert for_all_that_is_left(0.97, 0.8, little, SETTINGS) == 0.97, "near the noise"
 
 
 def test_where_the_noise_is_not_known_more_has_to_be_gained(fitted) -> None:
