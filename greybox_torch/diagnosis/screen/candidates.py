@@ -30,9 +30,12 @@ FLEXIBLE = {
 }
 """Signals that the flexible curve is tried over, by kind of port."""
 
-GAINS = {"actuator": (("time", "input"), ("speed", "input")), "coupling": (("speed", "rate"),)}
+GAINS = {
+    "actuator": (("time", "input"), ("speed", "input")),
+    "coupling": (("speed", "rate"), ("position", "deflection")),
+}
 """By kind of port, signals over which the gain of another may change: a battery that sags, a motor whose field weakens with its speed,
-a damper whose oil is torn along.
+a damper whose oil is torn along, a rope or a belt whose free length changes with where the load is.
 """
 
 
@@ -53,7 +56,7 @@ def candidates(
     found = []
     for port in model.all_ports:
         shifted = shifts.get(port.name, "")
-        for mechanism in _curves(port, knots) if flexible else (m() for m in LIBRARY.values()):
+        for mechanism in _curves(model, port, knots) if flexible else (m() for m in LIBRARY.values()):
             if (
                 port.kind in mechanism.kinds
                 and _available(mechanism, surroundings[port.name])
@@ -104,9 +107,11 @@ def periodic_candidates(
     return found
 
 
-def _curves(port: Port, knots: int) -> Iterable[Unknown]:
+def _curves(model: GreyBoxModel, port: Port, knots: int) -> Iterable[Unknown]:
     yield from (Unknown(signal, knots) for signal in FLEXIBLE.get(port.kind, ()))
-    yield from (Unknown(signal, knots, factor) for signal, factor in GAINS.get(port.kind, ()))
+    for signal, factor in GAINS.get(port.kind, ()):
+        if signal != "position" or not _integrated(model, port):
+            yield Unknown(signal, knots, factor)
 
 
 def memory_candidates(
@@ -121,13 +126,18 @@ def memory_candidates(
     found = []
     for port in model.all_ports:
         for signal in FLEXIBLE.get(port.kind, ()):
-            integrated = signal == "position" and isinstance(port, Body) and port.position is None
-            if signal in surroundings[port.name].ranges and not integrated:
+            if signal in surroundings[port.name].ranges and not (signal == "position" and _integrated(model, port)):
                 kinds = (
                     [UnknownWithMemory(signal, 1, knots)] if knots else [UnknownWithMemory(signal, m) for m in (1, 2)]
                 )
                 found += [attach(model, port.name, mechanism) for mechanism in kinds]
     return found
+
+
+def _integrated(model: GreyBoxModel, port: Port) -> bool:
+    """Whether the position at a port is none of the model's own, but has to be integrated from the speed of its body."""
+    body = port if isinstance(port, Body) else driving_body(model.ports)
+    return body is not None and body.position is None
 
 
 def _is_angle(around: Surroundings) -> bool:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from typing import ClassVar
 
 from greybox_torch.diagnosis.screen.candidates import candidates, periodic_candidates
 from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.library import LIBRARY
+from greybox_torch.mechanisms.surroundings import Range, Surroundings
 from greybox_torch.mechanisms.transmission import Backlash
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.model import Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.systems import RobotArm
 
 
@@ -80,3 +83,45 @@ def test_attach_finds_the_body_that_a_position_belongs_to() -> None:
     assert attach(arm, "motor", ConstantBias()).position == ""
     assert attach(arm, "gear_spring", Backlash(), "+gear_twist").shifted_state == "+gear_twist"
     assert attach(arm, "actuator", InputDelay()).position == ""
+
+
+class Hoist(GreyBoxModel):
+    """A drum that lifts a cage by a rope."""
+
+    states: ClassVar = [State("travel", "m"), State("v", "m/s"), State("stretch", "m"), State("v_c", "m/s")]
+    inputs: ClassVar = [Input("force", "N")]
+    outputs: ClassVar = [Output("travel", "m")]
+    parameters: ClassVar = [Parameter("k", 1e5, unit="N/m")]
+    ports: ClassVar = [
+        Body("drum", speed="v", position="travel"),
+        Coupling("rope", deflection="stretch", rate=lambda x, u, p: x.v - x.v_c),
+    ]
+
+    def derivative(self, x, u, p, port):
+        pull = p.k * x.stretch + port.rope
+        return {
+            "travel": x.v,
+            "v": (u.force - pull + port.drum) / 100.0,
+            "stretch": x.v - x.v_c,
+            "v_c": pull / 100.0 - 9.81,
+        }
+
+    def output(self, x, u, p):
+        return {"travel": x.travel}
+
+
+def test_a_stiffness_that_changes_along_the_way_is_offered_where_the_way_is_known() -> None:
+    """Seen: a hoist whose rope is the stiffer the shorter it is, told as a sensor's gain and a gap."""
+    hoist = Hoist()
+    signals = ("speed", "position", "deflection", "rate", "input", "time", "output")
+    around = Surroundings({s: Range(0.0, 1.0, 0.5) for s in signals}, {}, "N", 1e-2)
+    found = candidates(hoist, {}, dict.fromkeys([p.name for p in hoist.all_ports], around), flexible=True)
+    curves = [a.mechanism for a in found if a.port == "rope"]
+    assert [(c.signal, c.factor) for c in curves if isinstance(c, Unknown)] == [
+        ("deflection", ""),
+        ("rate", ""),
+        ("speed", "rate"),
+        ("position", "deflection"),
+    ]
+    (along,) = (a for a in found if a.port == "rope" and "position" in a.mechanism.signals())
+    assert along.position == "drum"
