@@ -31,6 +31,11 @@ class Deadline:
         return self.at - time.perf_counter()
 
     @property
+    def limited(self) -> bool:
+        """Whether there is such a time."""
+        return math.isfinite(self.at)
+
+    @property
     def passed(self) -> bool:
         return time.perf_counter() > self.at
 

@@ -6,10 +6,33 @@ finite. None of these is a reason to end a search: what cannot be determined mov
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import wraps
+from typing import ParamSpec, TypeVar
+
 import numpy as np
+from threadpoolctl import threadpool_limits
+
+Arguments = ParamSpec("Arguments")
+Returned = TypeVar("Returned")
 
 RIDGE = 1e-12
 """Share of the largest diagonal entry that is added where a matrix cannot be factored."""
+
+
+def on_one_thread(function: Callable[Arguments, Returned]) -> Callable[Arguments, Returned]:
+    """The function, within which BLAS and LAPACK compute on the thread that calls them.
+
+    The matrices here are small, and work is shared out in larger pieces (:mod:`greybox_torch.simulation.side_by_side`). A BLAS with threads
+    of its own has them wait for one another, and for whatever else the machine does: a product of 1 ms then takes 600 ms.
+    """
+
+    @wraps(function)
+    def limited(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Returned:
+        with threadpool_limits(limits=1, user_api="blas"):
+            return function(*args, **kwargs)
+
+    return limited
 
 
 def solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:

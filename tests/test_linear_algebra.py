@@ -7,8 +7,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from threadpoolctl import threadpool_info, threadpool_limits
 
-from greybox_torch.linear_algebra import cholesky, eigh, least_squares, solve
+from greybox_torch.linear_algebra import cholesky, eigh, least_squares, on_one_thread, solve
 
 MATRIX = np.array([[4.0, 1.0], [1.0, 3.0]])
 RIGHT = np.array([1.0, 2.0])
@@ -48,3 +49,12 @@ def test_the_answer_is_finite_whatever_is_asked(matrix, right) -> None:
 def test_eigenvalues_of_a_matrix_that_is_not_finite(value) -> None:
     values, vectors = eigh(np.array([[1.0, value], [value, 2.0]]))
     assert np.isfinite(values).all() and np.isfinite(vectors).all()
+
+
+def test_small_products_take_one_thread_and_leave_others_theirs() -> None:
+    def threads() -> set[int]:
+        return {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"}
+
+    with threadpool_limits(limits=2, user_api="blas"):
+        assert on_one_thread(threads)() == {1}
+        assert threads() == {2}

@@ -1,160 +1,51 @@
-"""What a search on the estimation experiments finds, and what the other experiments make of it.
+"""What is left of a selection once it is fitted to whole records and free runs of the validation experiments have judged it.
 
-A time limit or Ctrl-C cuts the present stage short and the next ones go on from the best that is known: first the search, then the
-confirmation, then the final fits, each with a part of the time of its own. What a verdict cannot be without (the fit of the model as it
-stands, its comparison with all experiments) has no limit; it is begun once more where Ctrl-C interrupted it, and a second Ctrl-C there
-ends the diagnosis.
+A time limit or Ctrl-C cuts the final fits and the judgement short as the stages before them. What a verdict cannot be without (the
+comparison of the model as it stands with all experiments) has no limit; it is begun once more where Ctrl-C interrupted it, and a second
+Ctrl-C there ends the diagnosis.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields
 from functools import partial
+from typing import Any
 
-from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, until
-from greybox_torch.diagnosis.coarser import coarser
-from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
-from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
 from greybox_torch.diagnosis.confirm.holding import Judged, holding
 from greybox_torch.diagnosis.confirm.judgement import Judgement
-from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains
-from greybox_torch.diagnosis.excerpts import excerpts
 from greybox_torch.diagnosis.hypothesis.final import Final, finish, from_longest_windows
-from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.schedule import Schedule
-from greybox_torch.diagnosis.select.backward import drop_superfluous
-from greybox_torch.diagnosis.select.plain_model import fit_plain_model, weighted_by_noise
-from greybox_torch.diagnosis.select.search import search
 from greybox_torch.diagnosis.select.state import SearchState
-from greybox_torch.diagnosis.stopping import best_so_far, or_else
+from greybox_torch.diagnosis.selection import Selection
+from greybox_torch.diagnosis.stopping import or_else
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study
-from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
-from greybox_torch.estimate.simulators import simulator_for
-from greybox_torch.model import GreyBoxModel
 
-MakeStudy = partial[Study]
-
-SEARCH = "searching: screen, refit, select"
-CONFIRMING = "confirming on held-out experiments"
 FITTING = "final fits on whole records"
 JUDGING = "validation and report data"
 
 
-@dataclass(frozen=True)
-class Findings:
-    """What a search came to on the estimation experiments of a data set, and what the others made of it.
+@dataclass(frozen=True, kw_only=True)
+class Findings(Selection):
+    """A selection of which free runs bear out what is left, and what they say of it."""
 
-    ``gains`` by effect, on held-out experiments; ``others`` None where there are none or time was too short to ask them. ``complete``:
-    whether nothing was cut short; ``cut``: the stages that were. ``more``: which experiments were taken to choose with besides those of the
-    card, in sentences. ``searched``: what the search came to before anything of it was taken back.
-    """
-
-    dataset: DataSet
-    study: Study
-    state: SearchState
-    searched: Hypothesis
-    others: HeldOut | None
-    gains: Mapping[str, Gain]
     judged: Judgement
-    complete: bool
-    more: tuple[str, ...] = ()
-    cut: tuple[str, ...] = ()
 
 
-def find(
-    dataset: DataSet,
-    model: GreyBoxModel,
-    make_study: MakeStudy,
-    clock: Stopwatch,
-    end: Deadline = Deadline(),
-    found_before: Hypothesis | None = None,
-) -> Findings:
-    """Search on the estimation experiments, and let the others confirm what was found or take it back.
-
-    Args:
-        make_study: :class:`Study` with everything but the problem and how it is simulated.
-        end: when the answer has to stand.
-        found_before: what a search with fewer experiments came to.
-    """
-    study = make_study(_problem(dataset, model))
-    used = excerpts(dataset, study.budget.most_samples)
-    if used.dataset is not dataset:
-        study = replace(study, problem=_problem(used.dataset, model))
-    simulator, problem_of = simulator_for(study.problem, study.options), partial(_problem, model=model)
-    some = coarser(used.dataset, study.problem, simulator, problem_of, study.settings, study.budget)
-    recorded = None if some.problem is study.problem else study.problem.records
-    study = replace(study, problem=some.problem, recorded=recorded, options=simulator.options)
-    free_runs = FreeRuns(study, dataset)
-    clock.lap("preparing")
-    study, state = fit_plain_model(study)
-    schedule = Schedule.within(end, free_runs.seconds, study.budget)
-    study, state, complete = _searched(study, replace(state, found_before=found_before), schedule.searching)
-    clock.lap(SEARCH)
-    searched = state.current
-    others = HeldOut(some.dataset, study) if dataset.validation() else None
-    state, gains, confirmed = _confirmed(study, state, others, schedule.confirming)
-    clock.lap(CONFIRMING)
-    (plain, augmented), fitted = _finished(study, state, schedule.fitting)
+def judge(selection: Selection, clock: Stopwatch) -> Findings:
+    """Fit the model as it stands and the one with effects to whole records, and take back what free runs do not bear out."""
+    study, state, others = selection.study, selection.state, selection.others
+    (plain, augmented), fitted = _finished(study, state, selection.schedule.fitting)
     clock.lap(FITTING)
-    judge = partial(_judged, study, free_runs, others, plain, state, gains, augmented, schedule.judging)
-    (state, gains, judged, told, held), whole = or_else(judge, judge)
+    work = partial(_judged, selection, plain, augmented)
+    (state, gains, judged, said, held), whole = or_else(work, work)
     clock.lap(JUDGING)
-    ended = {SEARCH: complete, CONFIRMING: confirmed, FITTING: fitted, JUDGING: held and whole}
-    cut = tuple(stage for stage, whole in ended.items() if not whole)
-    return Findings(
-        dataset,
-        study,
-        state,
-        searched,
-        None if cut else others,
-        gains,
-        judged,
-        not cut,
-        (*used.sentences, *some.sentences, *told),
-        cut,
-    )
-
-
-def _problem(dataset: DataSet, model: GreyBoxModel) -> Problem:
-    return all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
-
-
-def _searched(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState, bool]:
-    """The study with what is known of the ports, the best state, and whether the search ended by itself."""
-
-    def told(better: SearchState) -> None:
-        effects = [e.named for e in better.effects]
-        study.journal.found(effects, size(better.plain.fits, better.plain.fits, better.current.fits, study.settings))
-
-    begun, complete = (study, state), True
-    with until(deadline):
-        if len(study.problem.weights) > 1:
-            begun, complete = or_else(lambda: fit_plain_model(weighted_by_noise(study, state)), lambda: begun)
-            begun = begun[0], replace(begun[1], found_before=state.found_before)
-        if complete:
-            best, complete = best_so_far(search(*begun), begun[1], told)
-            return begun[0], best, complete
-    return *begun, complete
-
-
-def _confirmed(
-    study: Study, state: SearchState, others: HeldOut | None, deadline: Deadline
-) -> tuple[SearchState, dict[str, Gain], bool]:
-    """What held-out experiments leave of a state, what its effects gain there, and whether they could all be asked."""
-    complete = True
-    with until(deadline):
-        if not state.compared_without:  # the search was stopped
-            state, complete = best_so_far(drop_superfluous(study, state), state)
-        if others is None or not complete:
-            return state, {}, complete
-        state, complete = best_so_far(confirm(study, state, others), state)
-        if not (complete and state.effects):
-            return state, {}, complete
-        gains, complete = or_else(lambda: held_out_gains(state, others), dict)
-        return state, gains, complete
+    ended = {FITTING: fitted, JUDGING: held and whole}
+    cut = (*selection.cut, *(stage for stage, whole in ended.items() if not whole))
+    told = {"state": state, "gains": gains, "others": None if cut else others, "complete": not cut, "cut": cut}
+    told["more"] = (*selection.more, *said)
+    known: dict[str, Any] = {f.name: getattr(selection, f.name) for f in fields(Selection)}
+    return Findings(**{**known, **told}, judged=judged)
 
 
 def _finished(study: Study, state: SearchState, deadline: Deadline) -> tuple[tuple[Final, Final], bool]:
@@ -174,27 +65,19 @@ def _finished(study: Study, state: SearchState, deadline: Deadline) -> tuple[tup
         return or_else(fits, as_they_are)
 
 
-def _judged(
-    study: Study,
-    free_runs: FreeRuns,
-    others: HeldOut | None,
-    plain: Final,
-    state: SearchState,
-    gains: Mapping[str, Gain],
-    augmented: Final,
-    deadline: Deadline,
-) -> Judged:
+def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
     """Effects taken back, the weakest first, until those left hold on the validation experiments, and whether there was time for that.
 
     Where there is none, nothing is left of effects that do not hold as they are.
     """
+    study, state, others = selection.study, selection.state, selection.others
     study.working_on("judging on the validation experiments")
-    judged = Judgement.of(free_runs, plain)
+    judged = Judgement.of(selection.free_runs, plain)
     if state.effects:
         judged = judged.having(augmented, {} if others is None else others.places(state.current))
 
     def nothing() -> Judged:
         return state.at(state.plain), {}, judged.without_effects(), (), False
 
-    with until(deadline):
-        return or_else(lambda: holding(study, state, others, gains, judged), nothing)[0]
+    with until(selection.schedule.judging):
+        return or_else(lambda: holding(study, state, others, selection.gains, judged), nothing)[0]

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
+from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, TimeIsUp, until
 from greybox_torch.diagnosis.confirm.longer_windows import longer_windows, sentence, stands
 from greybox_torch.diagnosis.confirm.promotion import promote_validation, replaces
-from greybox_torch.diagnosis.findings import Findings, MakeStudy, find
+from greybox_torch.diagnosis.findings import Findings, judge
+from greybox_torch.diagnosis.selection import MakeStudy, Selection, find
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.model import GreyBoxModel
 
@@ -17,32 +20,74 @@ LONGER = "searching again over longer windows"
 
 
 def find_with_more(
-    first: Findings, model: GreyBoxModel, make_study: MakeStudy, clock: Stopwatch, end: Deadline = Deadline()
+    first: Selection, model: GreyBoxModel, make_study: MakeStudy, clock: Stopwatch, end: Deadline = Deadline()
 ) -> Findings:
-    """``first``, or what is found with more experiments to choose with, where those show what the others do not.
+    """``first``, or what is found with more experiments to choose with, where those show what the others do not; judged by free runs.
+
+    Free runs judge what is selected in the end alone: what gives way to another selection needs no final fit. Where they take something of
+    it back, it is selected once more with that known. Where time is limited each is judged at once, so that an answer stands.
 
     Args:
         end: when all of it has to be known.
     """
-    best = last = first
+    judged = partial(judge, clock=clock)
+    search = partial(find, model=model, make_study=make_study, clock=clock, end=end)
+    known = {_chosen_with(first): judged(first) if end.limited else first}
+    while True:
+        best, whole, in_time = _selected(known, _chosen_with(first), search, judged if end.limited else None, end)
+        own = best if isinstance(best, Findings) else judged(best)
+        if not whole:
+            return replace(own, complete=False, others=own.others if in_time else None, cut=(*own.cut, AGAIN))
+        if own.state is best.state:
+            return own
+        known[_chosen_with(own)] = own
+
+
+def _selected(
+    known: dict[tuple[str, ...], Selection],
+    begun: tuple[str, ...],
+    search: Callable[..., Selection],
+    judged: Callable[[Selection], Findings] | None,
+    end: Deadline,
+) -> tuple[Selection, bool, bool]:
+    """The selection that stands, from the one ``begun`` with and those with ever more experiments to choose with; whether the last search
+    was whole, and whether nothing was stopped before the next one.
+
+    Args:
+        known: by the experiments that are chosen with; what is searched is added.
+        search: finds a selection on a data set.
+        judged: by free runs, what is found; None where that has time.
+    """
+    best = last = known[begun]
     try:
         with until(end):
             while last.complete and last.others is not None:
                 more = promote_validation(last.study, last.dataset, last.state, last.others)
                 if more is None:
-                    return best
-                last.study.working_on(f"searching again, {more.taken} among the experiments to choose with")
-                found = find(more.dataset, model, make_study, clock, end, last.searched)
-                last = replace(found, more=(*last.more, more.sentence()))
+                    break
+                names = _names(more.dataset)
+                if names not in known:
+                    last.study.working_on(f"searching again, {more.taken} among the experiments to choose with")
+                    found = search(more.dataset, found_before=last.searched)
+                    found = replace(found, more=(*last.more, more.sentence()))
+                    known[names] = found if judged is None else judged(found)
+                last = known[names]
                 if last.others and replaces(last.others, best.state, last.state):
                     best = last
                 elif best.state.effects:
                     break  # one more experiment does not better what was found, and each costs a whole search
     except (TimeIsUp, KeyboardInterrupt):
-        return replace(best, complete=False, others=None, cut=(*best.cut, AGAIN))
-    if best.complete and not last.complete:
-        return replace(best, complete=False, cut=(AGAIN,))
-    return best
+        return best, False, False
+    return best, last.complete or not best.complete, True
+
+
+def _chosen_with(selection: Selection) -> tuple[str, ...]:
+    return _names(selection.dataset)
+
+
+def _names(dataset: DataSet) -> tuple[str, ...]:
+    """The experiments that are chosen with."""
+    return tuple(r.name for r in dataset.estimation())
 
 
 def find_what_is_slow(

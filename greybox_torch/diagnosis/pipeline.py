@@ -20,11 +20,12 @@ from greybox_torch.diagnosis.describe.residual_tests import detect
 from greybox_torch.diagnosis.describe.rivals import Rival, rivals
 from greybox_torch.diagnosis.describe.without_a_name import A_DISTURBANCE, error_without_a_name, is_missing
 from greybox_torch.diagnosis.effect import Effect
-from greybox_torch.diagnosis.findings import Findings, find
+from greybox_torch.diagnosis.findings import Findings
 from greybox_torch.diagnosis.further_searches import find_what_is_slow, find_with_more
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.progress import Journal, Progress
 from greybox_torch.diagnosis.select.posterior import confidence, of_a_stopped_search
+from greybox_torch.diagnosis.selection import find
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import or_else
 from greybox_torch.diagnosis.stopwatch import Stopwatch
@@ -32,6 +33,7 @@ from greybox_torch.diagnosis.study import Study, silent
 from greybox_torch.diagnosis.verdict import NotTried, Verdict
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.start_states import starts_of
+from greybox_torch.linear_algebra import on_one_thread
 from greybox_torch.mechanisms.stored import attachment_json
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.simulator import SimulationOptions
@@ -53,6 +55,7 @@ class Diagnosis:
     rivals: tuple[Rival, ...] = ()
 
 
+@on_one_thread
 def diagnose(
     dataset: DataSet,
     model: GreyBoxModel,
@@ -109,9 +112,8 @@ def diagnose(
         report=report,
         journal=journal,
     )
-    found = find(dataset, model, make_study, clock, end)
     before_writing = Deadline(end.at - budget.seconds_for_writing)
-    found = find_with_more(found, model, make_study, clock, before_writing)
+    found = find_with_more(find(dataset, model, make_study, clock, end), model, make_study, clock, before_writing)
     found = find_what_is_slow(found, model, make_study, clock, before_writing)
     told = partial(_diagnosis, found, dataset, model, seed, clock)
     return or_else(told, told)[0]

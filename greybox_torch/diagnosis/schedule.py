@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from greybox_torch.deadline import Deadline
@@ -29,7 +28,7 @@ class Schedule:
             comparison: seconds that one model takes to be compared with all experiments (see :class:`FreeRuns`). The re-estimated model
                 and the one with effects, which has more states, are still to be compared, and what was found described.
         """
-        if math.isinf(end.at):
+        if not end.limited:
             return Schedule()
         writing = budget.seconds_for_writing
         kept = writing + budget.comparisons_to_come * comparison

@@ -17,6 +17,7 @@ from greybox_torch.estimate.overflow import overflow_error
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.termination import Outcome, Termination
 from greybox_torch.estimate.uncertainty import Uncertainty, uncertainty
+from greybox_torch.linear_algebra import on_one_thread
 from greybox_torch.simulation.simulator import Simulator
 
 
@@ -64,6 +65,7 @@ class Estimation:
         return result
 
 
+@on_one_thread
 def fit_records(
     problem: Problem,
     *,

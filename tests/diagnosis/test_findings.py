@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from greybox_torch.deadline import Deadline
-from greybox_torch.diagnosis import findings
+from greybox_torch.diagnosis import findings, selection
 from greybox_torch.diagnosis.select.state import SearchState
 
 
@@ -18,8 +18,8 @@ def test_confirmation_that_is_cut_short_leaves_what_it_had_reached(monkeypatch, 
         yield reached
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(findings, "confirm", confirming)
-    assert findings._confirmed(stub(), before, stub(), Deadline()) == (reached, {}, False)
+    monkeypatch.setattr(selection, "confirm", confirming)
+    assert selection._confirmed(stub(), before, stub(), Deadline()) == (reached, {}, False)
 
 
 def test_final_fits_that_are_cut_short_leave_the_values_of_the_windows(monkeypatch, stub) -> None:

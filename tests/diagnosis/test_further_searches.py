@@ -2,67 +2,83 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any
+from dataclasses import fields, replace
+from typing import Any, cast
 
 import pytest
 
-from greybox_torch.deadline import TimeIsUp
+from greybox_torch.deadline import Deadline, TimeIsUp
 from greybox_torch.diagnosis import further_searches
 from greybox_torch.diagnosis.findings import Findings
 from greybox_torch.diagnosis.further_searches import find_with_more
+from greybox_torch.diagnosis.schedule import Schedule
 from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.selection import Selection
 
 
 @pytest.fixture
-def first(stub) -> Findings:
+def first(stub, monkeypatch) -> Selection:
     """A search that ended, on a data set of which one more experiment shows something."""
 
     def working_on(text: str) -> None:
         assert text.startswith("searching again, run 2")
 
+    monkeypatch.setattr(further_searches, "judge", judged)
     state = SearchState(stub(effects=()), stub(effects=()))
-    study = stub(working_on=working_on)
-    return Findings(stub(), study, state, state.current, stub(), {}, stub(), complete=True)
+    return selection(state, stub(estimation=lambda: [stub(name="run 1")]), stub(working_on=working_on), stub())
+
+
+def selection(state: SearchState, dataset: Any, study: Any, others: Any) -> Selection:
+    return Selection(
+        dataset=dataset,
+        study=study,
+        state=state,
+        searched=state.current,
+        others=others,
+        gains={},
+        free_runs=others,
+        schedule=Schedule(),
+    )
+
+
+def judged(selection: Selection, clock: Any) -> Findings:
+    """Everything is borne out."""
+    return Findings(**{f.name: getattr(selection, f.name) for f in fields(Selection)}, judged=cast(Any, clock))
+
+
+@pytest.fixture
+def more(stub) -> Any:
+    """What is taken to choose with as well."""
+    both = stub(estimation=lambda: [stub(name="run 1"), stub(name="run 2")])
+    return stub(taken="run 2", dataset=both, sentence=lambda: "run 2 was taken")
 
 
 @pytest.mark.parametrize("stop", [KeyboardInterrupt, TimeIsUp])
 @pytest.mark.parametrize("at", ["promote_validation", "find", "replaces"])
-def test_while_searching_again_what_was_found_first_stands(monkeypatch, stub, first, at, stop) -> None:
-    def stopped(*args: Any) -> Any:
+def test_while_searching_again_what_was_found_first_stands(monkeypatch, stub, first, more, at, stop) -> None:
+    def stopped(*args: Any, **named: Any) -> Any:
         raise stop
 
-    found_again = Findings(
-        first.dataset,
-        first.study,
-        SearchState(stub(effects=()), stub(effects=(stub(),))),
-        first.searched,
-        first.others,
-        {},
-        stub(),
-        True,
-    )
-    more = stub(taken="run 2", dataset=stub(), sentence=lambda: "run 2 was taken")
+    found_again = replace(first, state=SearchState(stub(effects=()), stub(effects=(stub(),))), dataset=more.dataset)
     steps: dict[str, Any] = {
         "promote_validation": lambda *args: more,
-        "find": lambda *args: found_again,
+        "find": lambda *args, **named: found_again,
         "replaces": lambda *args: True,
     }
     for name, step in steps.items():
         monkeypatch.setattr(further_searches, name, stopped if name == at else step)
     best = find_with_more(first, stub(), stub(), stub())
-    assert best.state is first.state and not best.complete
+    assert best.state is first.state and not best.complete and best.others is None
 
 
-def test_what_one_more_experiment_does_not_better_is_not_searched_a_third_time(monkeypatch, stub, first) -> None:
+def test_what_one_more_experiment_does_not_better_is_not_searched_a_third_time(monkeypatch, stub, first, more) -> None:
     searches = []
     found = replace(first, state=SearchState(stub(effects=()), stub(effects=(stub(),))))
 
-    def find(*args: Any) -> Findings:
+    def find(*args: Any, **named: Any) -> Selection:
         searches.append(args)
-        return found
+        return replace(found, dataset=more.dataset)
 
-    more = stub(taken="run 2", dataset=stub(), sentence=lambda: "run 2 was taken")
     for name, step in {"promote_validation": lambda *a: more, "find": find, "replaces": lambda *a: False}.items():
         monkeypatch.setattr(further_searches, name, step)
     assert find_with_more(found, stub(), stub(), stub()).state is found.state
@@ -70,25 +86,68 @@ def test_what_one_more_experiment_does_not_better_is_not_searched_a_third_time(m
 
 
 def test_a_second_search_that_was_cut_short_and_serves_no_better_leaves_the_first_incomplete(
-    monkeypatch, stub, first
+    monkeypatch, stub, first, more
 ) -> None:
-    more = stub(taken="run 2", dataset=stub(), sentence=lambda: "run 2 was taken")
     state = SearchState(stub(effects=()), stub(effects=()))
-    cut = Findings(first.dataset, first.study, state, state.current, None, {}, stub(), complete=False)
+    cut = replace(first, state=state, dataset=more.dataset, others=None, complete=False)
     monkeypatch.setattr(further_searches, "promote_validation", lambda *args: more)
-    monkeypatch.setattr(further_searches, "find", lambda *args: cut)
+    monkeypatch.setattr(further_searches, "find", lambda *args, **named: cut)
     best = find_with_more(first, stub(), stub(), stub())
-    assert best.state is first.state and not best.complete
+    assert best.state is first.state and not best.complete and best.others is first.others
 
 
-def test_one_more_search_begins_from_all_that_was_found_before(monkeypatch, stub, first) -> None:
+def test_free_runs_judge_what_is_selected_in_the_end_alone(monkeypatch, stub, first, more) -> None:
+    better, asked = replace(first, state=SearchState(stub(effects=()), stub(effects=(stub(),)))), []
+
+    def judge(selection: Selection, clock: Any) -> Findings:
+        asked.append(selection.state)
+        return judged(selection, clock)
+
+    again = replace(better, dataset=more.dataset)
+    steps: dict[str, Any] = {
+        "promote_validation": lambda study, dataset, *a: more if dataset is first.dataset else None,
+        "find": lambda *args, **named: again,
+        "replaces": lambda *args: True,
+        "judge": judge,
+    }
+    for name, step in steps.items():
+        monkeypatch.setattr(further_searches, name, step)
+    assert find_with_more(first, stub(), stub(), stub()).state is again.state
+    assert asked == [again.state]
+    asked.clear()
+    find_with_more(first, stub(), stub(), stub(), Deadline.after(60.0))
+    assert asked == [first.state, again.state], "where time is limited an answer stands before the next search"
+
+
+def test_what_free_runs_take_back_is_selected_once_more_with_that_known(monkeypatch, stub, first, more) -> None:
+    wrong, plain = (
+        SearchState(stub(effects=()), stub(effects=(stub(),))),
+        SearchState(stub(effects=()), stub(effects=())),
+    )
+    again = replace(first, state=SearchState(stub(effects=()), stub(effects=(stub(),))), dataset=more.dataset)
+    begun = replace(first, state=wrong)
+
+    def judge(selection: Selection, clock: Any) -> Findings:
+        return judged(replace(selection, state=plain) if selection.state is wrong else selection, clock)
+
+    steps: dict[str, Any] = {
+        "promote_validation": lambda study, dataset, state, others: more if state is plain else None,
+        "find": lambda *args, **named: again,
+        "replaces": lambda others, before, after: before is plain,
+        "judge": judge,
+    }
+    for name, step in steps.items():
+        monkeypatch.setattr(further_searches, name, step)
+    assert find_with_more(begun, stub(), stub(), stub()).state is again.state
+
+
+def test_one_more_search_begins_from_all_that_was_found_before(monkeypatch, stub, first, more) -> None:
     searched, told = stub(effects=(stub(),)), []
 
-    def find(dataset: Any, model: Any, make_study: Any, clock: Any, end: Any, found_before: Any) -> Findings:
+    def find(*args: Any, found_before: Any, **named: Any) -> Selection:
         told.append(found_before)
-        return replace(first, others=None)
+        return replace(first, dataset=more.dataset, others=None)
 
-    more = stub(taken="run 2", dataset=stub(), sentence=lambda: "run 2 was taken")
     monkeypatch.setattr(further_searches, "promote_validation", lambda *args: more)
     monkeypatch.setattr(further_searches, "find", find)
     find_with_more(replace(first, searched=searched), stub(), stub(), stub())

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis import findings
+from greybox_torch.diagnosis import findings, selection
 from greybox_torch.diagnosis.confirm import held_out
 from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
 from greybox_torch.diagnosis.pipeline import Diagnosis, diagnose
@@ -85,9 +85,9 @@ def run(motor_data, motor, remembered) -> Callable[..., tuple[Diagnosis, list[st
     def diagnosed(stop_at: int | None = None) -> tuple[Diagnosis, list[str], SearchState]:
         said, answers = [], []
         patch = pytest.MonkeyPatch()
-        confirmed = findings._confirmed
+        confirmed = selection._confirmed
         patch.setattr(
-            findings,
+            selection,
             "_confirmed",
             lambda study, state, *rest: (answers.append(state), confirmed(study, state, *rest))[1],
         )

@@ -96,7 +96,7 @@ def nothing_found(study, state):
 @pytest.mark.parametrize("floor_is_known", [True, False])
 def test_what_nothing_explains_is_said_to_be_missing(motor_data, motor, monkeypatch, floor_is_known) -> None:
     """Seen: an error of twelve times the noise, and "nothing is missing"; 330 times its upper bound, where impacts are in the record."""
-    monkeypatch.setattr("greybox_torch.diagnosis.findings.search", nothing_found)
+    monkeypatch.setattr("greybox_torch.diagnosis.selection.search", nothing_found)
     monkeypatch.setattr(
         "greybox_torch.diagnosis.describe.without_a_name.floor_known", lambda problem, settings: floor_is_known
     )

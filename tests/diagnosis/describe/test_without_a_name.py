@@ -50,7 +50,7 @@ def test_a_random_load_on_a_complete_model_is_no_missing_physics(motor_data, mot
         load[0] += -0.002 * load[0] + 0.0004 * rng.normal()
         return load[0]
 
-    monkeypatch.setattr("greybox_torch.diagnosis.findings.search", nothing_found)
+    monkeypatch.setattr("greybox_torch.diagnosis.selection.search", nothing_found)
     verdict = diagnose(motor_data(torque=torque, noise=0.01), motor).verdict
     assert not verdict.mismatch and verdict.effects == ()
     assert verdict.confidence < 0.8 and verdict.left is not None and verdict.left.times_noise > 3.0
