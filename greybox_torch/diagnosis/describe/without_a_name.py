@@ -10,7 +10,7 @@ from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.describe.residual_tests import Detection
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
-from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
+from greybox_torch.diagnosis.hypothesis.mismatch import least_mismatch, mismatch_share
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -31,7 +31,7 @@ def error_without_a_name(study: Study, state: SearchState, others: HeldOut | Non
     """
     settings = study.settings
     shares = (mismatch_share(state.plain, settings), judged.mismatch_share)
-    if max(shares) < settings.least_mismatch:
+    if max(shares) < least_mismatch(study):
         return None
     plain_to_see = min(shares) > settings.obvious_mismatch
     errors = []

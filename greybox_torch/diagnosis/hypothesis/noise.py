@@ -47,6 +47,11 @@ def noise_floor(problem: Problem, settings: DiagnosisSettings) -> float:
     return _floor(problem, settings.noise_differences)
 
 
+def mean_squared_step(problem: Problem, settings: DiagnosisSettings) -> float:
+    """How far the weighted outputs move from one sample to the next, mean square, without what the noise adds to it."""
+    return 2.0 * max(_floor(problem, 1) - noise_floor(problem, settings), 0.0)
+
+
 def _floor(problem: Problem, order: int) -> float:
     factor = float((_binomial(order) ** 2).sum())
     squares, count = 0.0, 0

@@ -41,6 +41,18 @@ class ConfirmationSettings:
         unit="share of the outputs' spread (root mean square)",
         chosen_by="the difference between simulators of first and of fourth order at usual steps",
     )
+    least_shift: float = share(
+        0.05,
+        "Shift in time that is not told as missing physics, where its error is small: no recording is timed better.",
+        unit="sampling intervals",
+        chosen_by="a simulator of first order is late by half its step, usually a twentieth of an interval",
+    )
+    most_of_shift: float = share(
+        1e-3,
+        "Error of the plain model beyond the noise up to which such a shift may account for it.",
+        unit="share of the outputs' spread (root mean square)",
+        chosen_by="a fit of 99.9 %",
+    )
     obvious_mismatch: float = share(
         0.05,
         "Error of the plain model, by windows and by free runs, from which something is missing also where the recordings show no more "
