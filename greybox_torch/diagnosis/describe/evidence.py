@@ -11,6 +11,7 @@ from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
+from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share, negligible
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.select.choice import least_gain
@@ -40,7 +41,7 @@ def sentences(
         + ("; with the effects: " + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in final) if effects else "")
         + " (weighted output units).",
     ]
-    lines += [_noise(study, state), *detection_sentences(detected, bool(effects))]
+    lines += [_noise(study, state), *_negligible(study, state), *detection_sentences(detected, bool(effects))]
     lines += [_step_sentence(done, study.settings) for done in state.steps]
     asked = state.memory_step
     lines += [] if asked is None or asked in state.steps else [_memory_sentence(asked)]
@@ -160,6 +161,17 @@ def _noise(study: Study, state: SearchState) -> str:
     return shown + (
         "." if floor_known(study.problem, study.settings) else ", an upper bound, as part of that is motion."
     )
+
+
+def _negligible(study: Study, state: SearchState) -> list[str]:
+    """Why nothing was looked for."""
+    if not negligible(study, state.plain):
+        return []
+    return [
+        f"Beyond the noise it is {100 * mismatch_share(state.plain, study.settings):.2g} % of the outputs' spread. A shift in time by "
+        f"{100 * study.settings.least_shift:.2g} % of a sampling interval, or another simulator of the same model, may do as much: "
+        "nothing was looked for."
+    ]
 
 
 def _name(attachment: Attachment) -> str:

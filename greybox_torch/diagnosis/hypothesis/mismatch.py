@@ -35,6 +35,11 @@ def least_mismatch(study: Study) -> float:
     return max(settings.least_mismatch, min(settings.least_shift * float(step), settings.most_of_shift))
 
 
+def negligible(study: Study, fitted: Hypothesis) -> bool:
+    """Whether a mismatch is below that."""
+    return mismatch_share(fitted, study.settings) < least_mismatch(study)
+
+
 def _mean_squared_spread(problem: Problem) -> float:
     spread = np.nanstd(problem.records.y, axis=1) * problem.weights
     return max(float(np.mean(spread**2)), 1e-300)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 
 from greybox_torch.diagnosis.hypothesis.above_noise import only_noise, times_noise
-from greybox_torch.diagnosis.hypothesis.mismatch import least_mismatch, mismatch_share
+from greybox_torch.diagnosis.hypothesis.mismatch import negligible
 from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.flexed import flexed
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
@@ -50,7 +50,7 @@ def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> St
 def _done(study: Study, state: SearchState) -> bool:
     """Whether noise alone is left, or so little that no effect can be a finding and the model is as complete as can be seen."""
     settings = study.settings
-    if mismatch_share(state.plain, settings) < least_mismatch(study):
+    if negligible(study, state.plain):
         return True
     complete = little_is_left(study, state) and completes(state.current, settings)
     return complete or only_noise(study.problem, state.current, settings)

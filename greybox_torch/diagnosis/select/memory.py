@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
-from greybox_torch.diagnosis.hypothesis.mismatch import least_mismatch, mismatch_share
+from greybox_torch.diagnosis.hypothesis.mismatch import negligible
 from greybox_torch.diagnosis.refit.rank import rank
 from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
 from greybox_torch.diagnosis.select.choice import alone_at_noise
@@ -60,9 +60,12 @@ def with_memory(study: Study, state: SearchState) -> Stage[SearchState]:
 def _asked(study: Study, state: SearchState) -> bool:
     """Whether more than noise is left, and more than a finding is; where nothing was found, so much that something is surely missing."""
     settings = study.settings
-    seen = mismatch_share(state.plain, settings) >= least_mismatch(study)
     least = settings.above_noise if state.effects else settings.far_above_noise
-    return seen and times_noise(study.problem, state.current, settings) > least and not little_is_left(study, state)
+    return (
+        not negligible(study, state.plain)
+        and times_noise(study.problem, state.current, settings) > least
+        and not little_is_left(study, state)
+    )
 
 
 def _in_place(state: SearchState, alone: SearchState) -> SearchState:

@@ -11,6 +11,7 @@ from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.mismatch import negligible
 from greybox_torch.diagnosis.hypothesis.significance import overall_significance
 from greybox_torch.diagnosis.one_of import Alternative
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
@@ -161,7 +162,9 @@ def confidence(
         return settings.confidence_stopped
     if unexplained is not None:
         return settings.confidence_missing_unnamed
-    if times_noise(study.problem, state.current, settings) > settings.above_noise:
+    if times_noise(study.problem, state.current, settings) > settings.above_noise and not negligible(
+        study, state.plain
+    ):
         return settings.confidence_nothing_above_noise
     best = max((r.gain for r in state.steps[-1].ranked), default=0.0) if state.steps else 0.0
     return settings.confidence_nothing if best < settings.least_gain else settings.confidence_nothing_with_rivals
