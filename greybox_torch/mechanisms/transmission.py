@@ -39,7 +39,7 @@ class Backlash(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         reach = around.ranges["deflection"].reach
-        return [Probe(("half_gap",)), *(Probe((SHARE,), {"half_gap": f * reach}) for f in (0.03, 0.1, 0.3))]
+        return [Probe(("half_gap",)), *(Probe((SHARE,), {"half_gap": f * reach}) for f in (0.03, 0.1, 0.3, 0.7))]
 
 
 class NonlinearStiffness(Mechanism):
