@@ -77,7 +77,7 @@ def test_weights_count() -> None:
 def test_kinematic_laws() -> None:
     found = {law.name: sizes for law, sizes in kinematic_laws(AROUND, {"deflection", "rate"})}
     assert list(found) == ["backlash"]
-    assert len(found["backlash"]) == 3 and all(0 < values["half_gap"] < 5.0 for values in found["backlash"])
+    assert len(found["backlash"]) == 4 and all(0 < values["half_gap"] < 5.0 for values in found["backlash"])
 
 
 INPUT = torch.linspace(-5, 5, 201, dtype=torch.float64)
