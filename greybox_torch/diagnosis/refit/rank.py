@@ -10,9 +10,9 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, augmented, score_of, window_lengths, without_free
-from greybox_torch.diagnosis.hypothesis.noise import at_floor
 from greybox_torch.diagnosis.hypothesis.significance import white_samples, window_significance
 from greybox_torch.diagnosis.refit.curve import laws_on_curve
+from greybox_torch.diagnosis.refit.finalists import finalists, leading_and_rest
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.refit.twins import from_twin
 from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of
@@ -128,7 +128,13 @@ def rank(
 
     def tried_again(candidate: Candidate, simulator: Simulator, own: Hypothesis | None) -> Hypothesis | None:
         start = from_twin(candidate, own, known, study.settings.score_tie)
-        again = tried(candidate, simulator, (start,)) if start else None
+        starts = [start] if start else []
+        if candidate.absent and (own is None or own.score > _score_over(current, steps[middle])):
+            without = next(f for f in current.fits if f.windows.steps == steps[middle])
+            starts.append(
+                {**without.problem.values_by_name, **candidate.absent}
+            )  # worse than without it: begun too far away
+        again = tried(candidate, simulator, starts) if starts else None
         return again if again is not None and (own is None or again.score < own.score) else own
 
     reached = side_by_side(partial(tried_again, *pair, own) for pair, own in zip(pairs, reached, strict=True))
@@ -140,7 +146,7 @@ def rank(
     ]
     first.sort(key=lambda entry: entry[0])
     final: list[RankedCandidate] = []
-    for some in _leading_and_rest(study, _finalists(first, study)):
+    for some in leading_and_rest(study, finalists(first, study)):
         if any(_pays(study, r) for r in final):
             break
         # Curves take longest: begun last, they would leave the other cores idle.
@@ -175,22 +181,6 @@ def sound(study: Study, ranked: RankedCandidate) -> bool:
     return degenerate(ranked.candidate.attachment, study.surroundings, ranked.fitted.values()) is None
 
 
-def _leading_and_rest(
-    study: Study, entries: Sequence[tuple[float, Candidate, Hypothesis, Simulator]]
-) -> list[list[tuple[float, Candidate, Hypothesis, Simulator]]]:
-    """Those whose trial came within reach of the best, and the others.
-
-    Where a named one came to the noise, no other name that is clearly behind it can still win; a curve is what it is measured against.
-    """
-    settings = study.settings
-    best = min((entry[0] for entry in entries), default=0.0)
-    reach = named_reach = settings.finalist_share * best + settings.trial_allowance
-    if any(not c.unknown and at_floor(study.problem, trial.fits[-1], settings) for _, c, trial, _ in entries):
-        named_reach = min(reach, best + settings.trial_allowance + settings.score_tie)
-    near = [entry[0] <= (reach if entry[1].unknown else named_reach) for entry in entries]
-    return [[entry for entry, is_near in zip(entries, near, strict=True) if is_near is kind] for kind in (True, False)]
-
-
 def _laws_behind_curve(
     study: Study, current: Hypothesis, final: Sequence[RankedCandidate], frozen: frozenset[str]
 ) -> list[RankedCandidate]:
@@ -216,21 +206,6 @@ def _laws_behind_curve(
         law for law in laws if not study.beliefs.exclude(law.attachment) and identity_of(law.attachment) not in there
     ]
     return [r for r in side_by_side(partial(tried, law) for law in allowed) if r is not None]
-
-
-def _finalists(
-    first: list[tuple[float, Candidate, Hypothesis, Simulator]], study: Study
-) -> list[tuple[float, Candidate, Hypothesis, Simulator]]:
-    """The best few, the best few named ones and what ties with the best of those, what they generalise, and the best curve."""
-    named = [e for e in first if not e[1].unknown]
-    chosen = first[: study.budget.finalists]
-    tied = [e for e in named[: study.budget.most_tied] if e[0] < named[0][0] + study.settings.score_tie]
-    chosen += [e for e in named[: max(study.budget.finalists, len(tied))] if e not in chosen]
-    contained = {(e[1].attachment.port, name) for e in chosen for name in e[1].attachment.mechanism.generalises}
-    chosen += [e for e in first if e[1].attachment.named in contained and e not in chosen]
-    if not any(e[1].unknown for e in chosen):
-        chosen += [e for e in first if e[1].unknown][:1]
-    return chosen
 
 
 def _compiled(study: Study, current: Hypothesis, found: Sequence[Candidate], frozen: frozenset[str]) -> list[Simulator]:

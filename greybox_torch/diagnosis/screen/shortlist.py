@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -27,6 +27,8 @@ class Candidate:
     """Samples of the longest of the windows over which the screen saw it explain most; zero where no screen saw it."""
     found_before: tuple[dict[str, float], ...] = ()
     """Values that a search with fewer experiments came to, which come before all others."""
+    absent: Mapping[str, float] = field(default_factory=dict)
+    """Its parameters with no size: the model without it. Empty for a law that has no amplitude."""
 
     def first_starts(self, count: int) -> tuple[dict[str, float], ...]:
         """The first ``count`` of the screen's start values, those of the measured motion, and before them what was found before."""
@@ -95,17 +97,19 @@ def _followed(
             shape = suggested(score, surroundings)
             starts = ({**fitted, **card, **shape}, {**fitted, **shape})
             if getattr(score.attachment.mechanism, "knots", 0):
-                starts = (
-                    {**fitted, **shape},
-                    {**fitted, **_lower(score, shape, study.budget.part_of_curve)},
-                    starts[0],
-                )
+                starts = (starts[1], {**fitted, **_scaled(score, shape, study.budget.part_of_curve)}, starts[0])
+            own = Candidate(
+                score.attachment,
+                starts,
+                score.explained,
+                steps=score.length,
+                absent=_scaled(score, shape, 0.0),
+            )
             before = found.get(identity)
             if before is None:
-                found[identity] = Candidate(score.attachment, starts, score.explained, steps=score.length)
+                found[identity] = own
             elif score.explained > before.explained:
-                order = (*starts, *before.starts)
-                found[identity] = Candidate(score.attachment, order, score.explained, steps=score.length)
+                found[identity] = replace(own, starts=(*starts, *before.starts))
             else:
                 found[identity] = replace(before, starts=(*before.starts, *starts))
     return sorted(found.values(), key=lambda candidate: -candidate.explained)
@@ -163,10 +167,10 @@ def _physical(score: ScreenScore, surroundings: Mapping[str, Surroundings]) -> b
     return any(inside)
 
 
-def _lower(score: ScreenScore, suggested: Mapping[str, float], part: float) -> dict[str, float]:
-    """The suggested values with a smaller amplitude: the whole of a curve at once can lead out of the valley its parent is in."""
-    heights = {f"{score.attachment.prefix}.{n}" for n in score.probe.directions}
-    return {n: part * v if n in heights else v for n, v in suggested.items()}
+def _scaled(score: ScreenScore, suggested: Mapping[str, float], part: float) -> dict[str, float]:
+    """The suggested values with a part of the amplitudes; nothing where the law has none."""
+    sizes = {f"{score.attachment.prefix}.{n}" for n in score.probe.directions if n != SHARE}
+    return {n: part * v if n in sizes else v for n, v in suggested.items()} if sizes else {}
 
 
 def suggested(score: ScreenScore, surroundings: Mapping[str, Surroundings]) -> dict[str, float]:

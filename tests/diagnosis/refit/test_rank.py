@@ -6,12 +6,17 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+import numpy as np
+import pytest
+
 from greybox_torch.diagnosis.hypothesis.fit import window_lengths
 from greybox_torch.diagnosis.refit import rank as rank_module
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, _laws_behind_curve, rank
+from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
 from greybox_torch.diagnosis.select.offered import screen_scores
-from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.actuator import ActuatorDeadzone
+from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.unknown import Unknown
 
@@ -35,6 +40,36 @@ def test_far_behind_the_best_trial_none_is_refitted_unless_the_best_do_not_pay(d
     assert 0 < len(near) < len(everyone)
     unsure = refitted_in_full(dead_zone_search, finalist_share=0.9, least_significance=1e9, **NOISE_UNKNOWN)
     assert sorted(unsure) == sorted(everyone)
+
+
+@pytest.mark.parametrize(("ends", "tries"), [(1.5, 2), (0.9, 1)])
+def test_a_trial_that_ends_worse_than_without_the_effect_begins_again_from_there(
+    dead_zone_search, monkeypatch, ends, tries
+) -> None:
+    """As where a screen suggests far too much of a friction that sticks."""
+    found, begins, current = dead_zone_search, [], dead_zone_search.state.current
+    (one, *_) = shortlist(found.study, screen_scores(found.study, found.state, curves=False, fine=False), current.fits)
+
+    def fit(study: Any, effects: Any, starts: Any, *, at: Any = None, **how: Any) -> Any:
+        begins.extend(starts if at else ())
+        times, fits = ends if len(begins) == 1 else 0.5, current.fits[1:2] if at else current.fits
+        return replace(current, fits=tuple(replace(f, mean_square=times * f.mean_square) for f in fits))
+
+    monkeypatch.setattr("greybox_torch.diagnosis.refit.rank.fit", fit)
+    astray = Candidate(one.attachment, ({"size": 9.0},), 0.5, steps=current.fits[1].windows.steps, absent={"size": 0.0})
+    rank(found.study, current, [astray])
+    assert begins == [{"size": 9.0}, {**current.fits[1].problem.values_by_name, "size": 0.0}][:tries]
+
+
+def test_the_law_without_its_size_is_at_hand_where_it_has_one(dead_zone_search) -> None:
+    search, around = dead_zone_search, dead_zone_search.surroundings
+    dry = attach(search.problem.model, "rotor", CoulombFriction())
+    zone = attach(search.problem.model, "actuator", ActuatorDeadzone())
+    scores = [ScreenScore(a, a.mechanism.probes(around[a.port])[-1], 31, 0.4, np.array([2.0])) for a in (dry, zone)]
+    of_dry, of_zone = (shortlist(search.study, [[score]], search.plain.fits[:1])[0] for score in scores)
+    size, width = (f"{dry.prefix}.{name}" for name in ("F_c", "v_0"))
+    assert of_dry.starts[0][size] > 0 and of_dry.absent == {size: 0.0, width: of_dry.starts[0][width]}
+    assert not of_zone.absent, "probed with a width, a dead zone has no size"
 
 
 def test_what_does_not_show_over_middle_windows_is_tried_where_the_screen_saw_it(dead_zone_search, monkeypatch) -> None:
