@@ -2,8 +2,8 @@
 
 What a controller answers to a sample acts after it, so that the loop could be simulated sample by sample. Blocks of samples take far fewer
 passes: the inputs of a block are guessed and the block is simulated; the next guess is what the controller answers, where outputs change
-with the inputs as the machine's response to a short push says (a Newton iteration, with the response of an earlier block). It ends where
-the guess is what the controller answers. Each round settles one sample more at least, most of them a whole block.
+with the inputs as the machine's response to a short push says (a Newton iteration, with the response of an earlier block). Samples up
+to which the guess is what the controller answers are settled, one at least in every second pass; the next block begins behind them.
 Source: P. Deuflhard, "Newton Methods for Nonlinear Problems", 2004, ch. 2 (simplified Newton).
 """
 
@@ -20,9 +20,9 @@ from greybox_torch.experiment_design.controller import Loop, Memory
 from greybox_torch.simulation.simulator import Simulator
 
 SHORTEST, LONGEST = 16, 128
-"""Samples of the first block, and of the longest."""
-ROUNDS, FEW, MANY = 10, 4, 6
-"""Simulations of a block, at most. After ``FEW`` that settle it the next one is twice as long, after ``MANY`` the response is measured."""
+"""Samples of a block, at least and at most. After one that is settled whole the next is longer, after one that hardly is, shorter."""
+PATIENCE = 2
+"""Blocks in a row of which little is settled before the response is measured again."""
 SETTLED = 1e-9
 """Change of an input, as a share of the largest so far, that counts as none."""
 PUSH = 1e-3
@@ -37,7 +37,7 @@ def under_feedback(
     commands: Sequence[np.ndarray],
     step: float,
 ) -> list[np.ndarray]:
-    """The inputs (n_u, N) that reach C machines; they are not finite from where a simulation is not.
+    """The inputs (n_u, N) that reach C machines; those mean nothing where a simulation is not finite.
 
     Args:
         values: parameters of each, (C, n_p).
@@ -50,31 +50,31 @@ def under_feedback(
     machines = Machines(problem, simulator, values, step)
     references = np.stack(commands, axis=1)
     count, total = references.shape[1:]
-    u, starts, response, at, length = references.copy(), None, None, 0, SHORTEST
+    u, starts, response = references.copy(), None, None
+    at, length, poor, settled = 0, SHORTEST, 0, 1
     memories, rows = [loop.begun(count) for loop in loops], [loop.driven for loop in loops]
     for loop in loops:
         u[loop.driven] = loop.rest
     while at < total:
-        end = min(at + length, total)
-        guess = u[rows, :, at:end]
-        settled, rounds, run, followed = 0, 0, None, [memories]
-        while settled < end - at and rounds < ROUNDS:
-            u[rows, :, at:end] = given = guess
-            run, rounds = machines.run(u, at, end, starts), rounds + 1
-            measured = run.y[:, : end - at, [loop.measured for loop in loops]]
-            if response is None:
-                response = _response(machines, loops, u, at, starts, measured)
-            guess, followed = _answers(loops, memories, references, at, given, measured, response)
-            settled = _settled(guess, given, u[rows, :, :end])
-        if settled == 0:
+        end, before = min(at + length, total), settled
+        run = machines.run(u, at, end, starts)
+        assert run.states is not None
+        measured, given = run.y[:, : end - at, [loop.measured for loop in loops]], u[rows, :, at:end]
+        if response is None or poor > PATIENCE:
+            response, poor = _response(machines, loops, u, at, starts, measured), 0
+        guess, followed = _answers(loops, memories, references, at, given, measured, response)
+        settled = _settled(guess, given, u[rows, :, :end])
+        if settled == before == 0:
             raise _at_once(problem, loops)
-        assert run is not None and run.states is not None
-        starts = run.x_end if settled == end - at else run.states[:, settled]
-        memories = followed[settled]
-        response = None if rounds >= MANY else response
-        length = max(settled, 2) if settled < end - at else min(2 * length, LONGEST) if rounds <= FEW else length
-        at += settled
-        u[rows, :, at:] = u[rows, :, at - 1 : at]  # the first guess of what follows
+        u[rows, :, at + settled : end] = guess[:, :, settled:]
+        u[rows, :, end:] = u[rows, :, end - 1 : end]  # the first guess of what follows
+        if settled == end - at:
+            length, poor = min(2 * length, LONGEST), 0
+        elif 0 < settled < length // 4:
+            length, poor = max(length // 2, SHORTEST), poor + 1
+        if settled:
+            starts = run.x_end if settled == end - at else run.states[:, settled]
+            memories, at = followed[settled], at + settled
     return list(np.moveaxis(u, 1, 0))
 
 

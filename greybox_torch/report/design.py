@@ -64,7 +64,7 @@ def plot_design(
                 _legend_above(axis)
             if several and name in outputs:
                 compared = list(runs.values()) if feedback is None else feedback.on_one_input[name]
-                told = "" if feedback is None else f"{next(iter(runs))}'s input: "
+                told = "" if feedback is None else f"on the input of {next(iter(runs))}; "
                 _distances(next(panels), time, compared, units.get(name, ""), level[name], told)
         axes[-1].set_xlabel("time [s]")
     return figure
