@@ -8,12 +8,14 @@ from typing import Any, get_args
 from documentation.tables import table
 from greybox_torch.data.card import Card, InitialEntry, ParameterEntry
 from greybox_torch.data.card_channels import ChannelEntry, Entry, ExperimentEntry, TimeEntry
+from greybox_torch.data.card_controller import LoopEntry
 
 TABLES: tuple[tuple[str, type[Entry]], ...] = (
     ("At the top", Card),
     ("`time = { … }`", TimeEntry),
     ("`[channels]`: `NAME = { … }`", ChannelEntry),
     ("`[[experiment]]`", ExperimentEntry),
+    ("`[controller]`: `INPUT = { … }`", LoopEntry),
     ("`[model.parameters]`: `NAME = { … }`", ParameterEntry),
     ("`[model.initial]`: `STATE = { … }`", InitialEntry),
 )

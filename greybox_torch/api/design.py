@@ -1,14 +1,15 @@
-"""The next recording: the input that would tell the leading hypotheses apart, or shrink a parameter's standard deviation."""
+"""The next recording: an input, or a set point, that would tell the leading hypotheses apart or shrink a parameter's deviation."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from greybox_torch.api.arguments import check_seconds, check_seed
+from greybox_torch.api.design_loops import entries_of, loops_for
 from greybox_torch.api.design_result import DesignResult
 from greybox_torch.api.diagnosis_result import DiagnosisResult
 from greybox_torch.api.expected import Expected
@@ -16,16 +17,17 @@ from greybox_torch.api.hypotheses import Hypotheses, Kept, hypotheses_of, read_h
 from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
 from greybox_torch.estimate.problem import with_card
 from greybox_torch.experiment_design.aim import Aim, Trial
-from greybox_torch.experiment_design.contender import Contender, Prediction, contender, records_of
+from greybox_torch.experiment_design.contender import Contender, contender
+from greybox_torch.experiment_design.controller import Loop
 from greybox_torch.experiment_design.excitation import Excitation
 from greybox_torch.experiment_design.imitation import THOROUGH
 from greybox_torch.experiment_design.judged import judged
 from greybox_torch.experiment_design.limits import Limits, limits_of
 from greybox_torch.experiment_design.search import MOST_SAMPLES, frequencies, sampled, search
-from greybox_torch.experiment_design.simulated import within
+from greybox_torch.experiment_design.simulated import predictions, within
 
 RANDOM = 5
-"""Random multisines of the same power that the best input is compared with."""
+"""Random multisines of the same power that the best input (or set point) is compared with."""
 
 
 def design(
@@ -34,6 +36,7 @@ def design(
     precision: str | None = None,
     seconds: float | None = None,
     limits: Mapping[str, Any] | None = None,
+    controller: Mapping[str, Any] | None = None,
     model: str | None = None,
     seed: int = 0,
     progress: Callable[[str], None] = lambda text: None,
@@ -42,13 +45,15 @@ def design(
 
     The input is searched among multisines, steps, chirps and slow reversals around operating points, so that the evidence that it is
     expected to give between the leading hypotheses is largest: what a rival cannot imitate with other parameters and start states
-    (T-optimality, Atkinson & Fedorov 1975). The experiment is open loop and begins as the first recording did.
+    (T-optimality, Atkinson & Fedorov 1975). The experiment begins as the first recording did. Where a controller drives an input, its set
+    point is designed, and the machine is simulated under feedback; else the experiment is open loop.
 
     Args:
         found: the result of ``diagnose``, or the folder that it was saved in.
         precision: a free parameter of the recommended model; its standard deviation is made small instead.
         seconds: how long the recording may be; by default what the limits say, else the longest one that there is.
         limits: as the card's table [limits]; by default that table. What it leaves out is limited to what was recorded.
+        controller: as the card's table [controller]; by default that table. An empty one is none.
         model: how to load the plain model, where ``found`` is a folder and the card names none.
         seed: draws inputs, their phases and levels.
         progress: is told what is being done.
@@ -65,19 +70,25 @@ def design(
     if seconds is not None:
         given["seconds"] = check_seconds("seconds", seconds)
     place = held.data.place("[limits]") if limits is None else "argument limits:"
-    own = limits_of(held.data, held.recommended.model, given, place)
+    plain = held.recommended.model.plain
+    entries = entries_of(held.data, controller, plain)
+    own = limits_of(held.data, plain, given, place, {name: loop.measured for name, loop in entries.items()})
     progress("reading what the recordings say of each hypothesis")
-    aim = _aim(held, precision)
     step = held.data.recordings[0].sample_time
+    aim = _aim(held, precision, loops_for(entries, plain, own, step))
     time = step * np.arange(int(np.clip(round(own.seconds / step), 16, MOST_SAMPLES)))
     best = search(aim, own, time, check_seed(seed), progress)
     if not best:
         raise UserError(
             f"{place} no input was found under which every hypothesis keeps outputs and states within their limits, open loop, "
             "from the start of the first recording; expected wider limits or fewer seconds"
+            if not entries
+            else f"{place} no set point of {' and '.join(e.measured for e in entries.values())} was found under which every hypothesis "
+            "keeps inputs, outputs and states within their limits, under feedback, from the start of the first recording; "
+            "expected wider limits, fewer seconds, or a controller that holds the machine"
         )
     progress("judging the best input")
-    return _result(held, aim, own, time, best[0], precision, seed)
+    return _result(held, aim, own, time, best[0], precision, seed, {n: e.measured for n, e in entries.items()})
 
 
 def _hypotheses(found: Any, model: str | None) -> Hypotheses:
@@ -88,9 +99,9 @@ def _hypotheses(found: Any, model: str | None) -> Hypotheses:
     raise ArgumentError("found", Kind.of(found), "expected the result of diagnose, or the folder that it was saved in")
 
 
-def _aim(held: Hypotheses, precision: str | None) -> Aim:
+def _aim(held: Hypotheses, precision: str | None, loops: Sequence[Loop]) -> Aim:
     if precision is not None:
-        one = _contender(held.recommended, held)
+        one = _contender(held.recommended, held, loops)
         free = list(one.problem.free_names)
         if precision not in free:
             hint = did_you_mean(precision, free)
@@ -102,17 +113,26 @@ def _aim(held: Hypotheses, precision: str | None) -> Aim:
             "the diagnosis left no rivals to tell apart; expected a finding with named alternatives, or a parameter to sharpen: "
             "--precision (in Python: precision=)"
         )
-    return Aim(tuple(_contender(kept, held) for kept in group))
+    return Aim(tuple(_contender(kept, held, loops) for kept in group))
 
 
-def _contender(kept: Kept, held: Hypotheses) -> Contender:
-    return contender(kept.name, kept.probability, kept.model, held.data, kept.starts)
+def _contender(kept: Kept, held: Hypotheses, loops: Sequence[Loop] = ()) -> Contender:
+    return contender(kept.name, kept.probability, kept.model, held.data, kept.starts, loops)
 
 
 def _result(
-    held: Hypotheses, aim: Aim, limits: Limits, time: np.ndarray, best: Trial, precision: str | None, seed: int
+    held: Hypotheses,
+    aim: Aim,
+    limits: Limits,
+    time: np.ndarray,
+    best: Trial,
+    precision: str | None,
+    seed: int,
+    follows: Mapping[str, str],
 ) -> DesignResult:
-    predictions = _predicted(aim, best.inputs, time)
+    along = predictions(aim.contenders, [best.commands], time)
+    names = list(limits.inputs)
+    reached = [one.driven([best.commands], float(time[1] - time[0]))[0] for one in aim.contenders]
     shares = tuple(c.probability for c in aim.contenders)
     nats, random = np.zeros((len(shares),) * 2), None
     before = after = None
@@ -122,18 +142,18 @@ def _result(
         random = _by_random_inputs(aim, limits, time, best, seed)
     else:
         one = aim.contenders[0]
-        after = aim.deviation_after(predictions[0], 0)
+        after = aim.deviation_after(along[0][0], 0)
         before = one.deviation(aim.parameter)
     return DesignResult(
         data=held.data,
         reference=held.reference,
         limits=limits,
         time=time,
-        inputs={s.name: u for s, u in zip(held.recommended.model.inputs, best.inputs, strict=True)},
+        inputs=dict(zip(names, reached[0], strict=True)),
         excitations=best.candidate,
         names=tuple(c.name for c in aim.contenders),
         hypotheses=tuple(c.problem.model for c in aim.contenders),
-        outputs=tuple(p.y[0] for p in predictions),
+        outputs=tuple(own[k].y[0] for k, own in enumerate(along)),
         level=aim.contenders[0].level,
         memory=aim.contenders[0].memory,
         expected=Expected(shares, nats, random),
@@ -144,12 +164,11 @@ def _result(
         before=before,
         after=after,
         seed=seed,
+        follows=dict(follows),
+        set_points={output: best.commands[names.index(name)] for name, output in follows.items()},
+        driven=tuple({name: u[names.index(name)] for name in follows} for u in reached),
+        on_one_input=tuple(p.y[0] for p in along[0]),
     )
-
-
-def _predicted(aim: Aim, inputs: np.ndarray, time: np.ndarray) -> list[Prediction]:
-    step = float(time[1] - time[0])
-    return [c.predicted(records_of([inputs], c.problem.records, step)) for c in aim.contenders]
 
 
 def _by_random_inputs(aim: Aim, limits: Limits, time: np.ndarray, best: Trial, seed: int) -> np.ndarray | None:
@@ -157,18 +176,18 @@ def _by_random_inputs(aim: Aim, limits: Limits, time: np.ndarray, best: Trial, s
     slowest, fastest = frequencies(time)
     found: list[Trial] = []
     for k in range(RANDOM):
-        inputs = sampled(
-            tuple(Excitation("multisine", slowest, fastest, 0.0, 1.0, seed + 1000 + k) for _ in limits.inputs),
+        commands = sampled(
+            tuple(Excitation("multisine", slowest, fastest, 0.0, 1.0, seed + 1000 + k) for _ in limits.commanded),
             time,
             limits,
         )
-        power, wanted = (np.std(u, axis=1, keepdims=True) for u in (inputs, best.inputs))
-        centre = inputs.mean(axis=1, keepdims=True)
-        inputs = centre + (inputs - centre) * wanted / np.maximum(power, 1e-300)
-        low, high = (np.array([[getattr(r, end)] for r in limits.inputs.values()]) for end in ("lower", "upper"))
-        inputs = np.clip(inputs, low, high)
-        if within(aim.contenders, limits, [inputs], time)[0]:
-            found.append(judged(aim, [aim.contenders], Trial(best.candidate, inputs, 0.0), time, limits))
+        power, wanted = (np.std(u, axis=1, keepdims=True) for u in (commands, best.commands))
+        centre = commands.mean(axis=1, keepdims=True)
+        commands = centre + (commands - centre) * wanted / np.maximum(power, 1e-300)
+        low, high = (np.array([[getattr(r, end)] for r in limits.commanded.values()]) for end in ("lower", "upper"))
+        commands = np.clip(commands, low, high)
+        if within(aim.contenders, limits, [commands], time)[0]:
+            found.append(judged(aim, [aim.contenders], Trial(best.candidate, commands, 0.0), time, limits))
     if not found:
         return None
     middle = sorted(found, key=lambda t: t.score)[len(found) // 2]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,12 +11,12 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
+from greybox_torch.api.design_files import CARD, FIGURE, INPUT, RECORDED, card_text, columns_of, csv_text
 from greybox_torch.api.expected import Expected
 from greybox_torch.api.result import Result
 from greybox_torch.data import DataSet
 from greybox_torch.experiment_design.excitation import Excitation
 from greybox_torch.experiment_design.limits import Limits
-from greybox_torch.files import toml_key, toml_text
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SCHEMA = "greybox-design/1"
-INPUT, FIGURE, CARD, RECORDED = "design.csv", "design.png", "next.toml", "recorded.csv"
 WANTED = 0.95
 HARDLY_ANY = 0.01
 """Part of a recording below which its length is not told: evidence grows with time on the whole, not period by period."""
@@ -40,6 +39,10 @@ class DesignResult(Result):
     ``memory`` samples. ``start``: the states that it begins with, those of the recording
     ``begins_like``. Where a ``parameter`` is to be sharpened, ``before`` and ``after`` are its
     standard deviations in ``unit``.
+
+    Where a controller drives inputs, ``follows`` names the output that each of them follows, ``set_points`` (N,) by output are what is
+    designed, and ``driven`` (N,) by input what that makes of them under each hypothesis; ``inputs`` are then those under the first one.
+    ``on_one_input`` (N, n_y) is what each hypothesis predicts on these.
     """
 
     data: DataSet
@@ -61,6 +64,10 @@ class DesignResult(Result):
     before: float | None
     after: float | None
     seed: int
+    follows: Mapping[str, str] = field(default_factory=dict)
+    set_points: Mapping[str, np.ndarray] = field(default_factory=dict)
+    driven: tuple[Mapping[str, np.ndarray], ...] = ()
+    on_one_input: tuple[np.ndarray, ...] = ()
 
     @property
     def seconds(self) -> float:
@@ -82,7 +89,7 @@ class DesignResult(Result):
     @property
     def sentence(self) -> str:
         """What the recording is expected to do, in a sentence."""
-        kinds = " and ".join(dict.fromkeys(e.kind for e in self.excitations))
+        kinds = " and ".join(dict.fromkeys(e.kind for e in self.excitations)) + self._as_set_points
         if self.parameter is not None:
             return (
                 f"{self.seconds:.3g} s of {kinds} are expected to bring the standard deviation of {self.parameter} "
@@ -90,7 +97,7 @@ class DesignResult(Result):
                 + "."
             )
         if not self.expected.decides:
-            return f"No input within the limits was found that tells these hypotheses apart: {', '.join(self.names)}."
+            return f"No {self._what} within the limits was found that tells these hypotheses apart: {', '.join(self.names)}."
         told = (
             f"{self.seconds:.3g} s of {kinds} are expected to bring the right one of {len(self.names)} hypotheses to a probability of "
             f"{self.expected.after:.2f}"
@@ -103,6 +110,7 @@ class DesignResult(Result):
         return f"<design for {self.data.name}: {self.sentence}>"
 
     def content(self, folder: Path) -> dict[str, Any]:
+        excitations = {name: vars(e) for name, e in zip(self.inputs, self.excitations, strict=True)}
         result: dict[str, Any] = {
             "schema": SCHEMA,
             "dataset": self.data.name,
@@ -110,9 +118,11 @@ class DesignResult(Result):
             "seconds": self.seconds,
             "seed": self.seed,
             "start": dict(self.start),
-            "inputs": {name: vars(e) for name, e in zip(self.inputs, self.excitations, strict=True)},
+            "inputs": {name: e for name, e in excitations.items() if name not in self.follows},
             "files": {"input": str(folder / INPUT), "figure": str(folder / FIGURE), "card": str(folder / CARD)},
         }
+        if self.follows:
+            result["set_points"] = {o: {"drives": name} | excitations[name] for name, o in self.follows.items()}
         if self.parameter is not None:
             deviation = {"before": self.before, "after": self.after, "unit": self.unit}
             return result | {"parameter": self.parameter, "deviation": deviation}
@@ -139,17 +149,22 @@ class DesignResult(Result):
     def notes(self) -> list[str]:
         """What else a reader has to know."""
         lines = [
-            f"No input within the limits was found that tells {a} from {b} in {self.seconds:.3g} s."
+            f"No {self._what} within the limits was found that tells {a} from {b} in {self.seconds:.3g} s."
             for a, b in self.alike
         ]
         if self.alike and self.parameter is None and self.expected.decides:
             lines.append("Those count as one in the probability that is expected.")
         if self.expected.random is not None and self.parameter is None:
-            lines.append(f"A random multisine of the same power: {self.expected.random:.2f}.")
+            lines.append(f"A random multisine of the same power{self._as_set_points}: {self.expected.random:.2f}.")
         if self.limits.seconds > 1.001 * self.seconds:
             lines.append(
                 f"Designed for the first {self.seconds:.3g} of {self.limits.seconds:.3g} s; "
                 "repeated, it says more in proportion to the time."
+            )
+        for name, output in self.follows.items():
+            lines.append(
+                f"Simulated under feedback: the controller drives {name}, so that {output} follows its set point, which {INPUT} holds. "
+                f"Record the {name} that reaches the machine; a diagnosis takes that."
             )
         began = ", ".join(f"{name} = {value:.3g}" for name, value in self.start.items())
         lines.append(f"Begin as {self.begins_like} began: {began}.")
@@ -161,14 +176,14 @@ class DesignResult(Result):
     def files(self, folder: Path) -> dict[Path, str | bytes]:
         """The input as CSV, a figure, and a card for the new recording."""
         return {
-            folder / INPUT: self._csv(),
+            folder / INPUT: csv_text(self.time, columns_of(self.inputs, self.set_points, self.follows)),
             folder / FIGURE: notebook.png(self.plot()),
-            folder / CARD: self._card(),
+            folder / CARD: card_text(self.data, self.time, self.reference),
         }
 
     def plot(self) -> Figure:
         """The input, what each hypothesis predicts, and their differences."""
-        from greybox_torch.report.design import plot_design  # matplotlib takes half a second
+        from greybox_torch.report.design import Feedback, plot_design  # matplotlib takes half a second
 
         model_outputs = [n for n in self.data.channels if n not in self.inputs]
         names = list(self.limits.outputs)
@@ -179,7 +194,23 @@ class DesignResult(Result):
         }
         units = {name: channel.unit for name, channel in self.data.channels.items()}
         level = {name: float(self.level[k]) for k, name in enumerate(names)}
-        return plot_design(f"{self.data.name}: the next recording", self.time, self.inputs, outputs, units, level)
+        set_ones = {name: u for name, u in self.inputs.items() if name not in self.follows}
+        title = f"{self.data.name}: the next recording"
+        if not self.follows:
+            return plot_design(title, self.time, set_ones, outputs, units, level)
+        driven = {name: {n: u[name] for n, u in zip(self.names, self.driven, strict=True)} for name in self.follows}
+        on_one = {name: [y[:, k] for y in self.on_one_input] for k, name in enumerate(names)}
+        feedback = Feedback(self.set_points, driven, on_one)
+        return plot_design(title, self.time, set_ones, outputs, units, level, feedback)
+
+    @property
+    def _what(self) -> str:
+        return "set point" if self.follows else "input"
+
+    @property
+    def _as_set_points(self) -> str:
+        """What is designed, where that is not the inputs."""
+        return f" as the set point of {' and '.join(self.set_points)}" if self.follows else ""
 
     def _repr_html_(self) -> str:
         table = [] if self.parameter is not None else [notebook.table(*self._table())]
@@ -197,24 +228,3 @@ class DesignResult(Result):
             for k, (name, p) in enumerate(zip(self.names, self.expected.before, strict=True))
         ]
         return ["hypothesis", "probability\nnow", "expected evidence\nif right [nats]"], rows
-
-    def _csv(self) -> str:
-        lines = [",".join(["time", *self.inputs])]
-        for k, t in enumerate(self.time):
-            lines.append(",".join(f"{v:.9g}" for v in (t, *(u[k] for u in self.inputs.values()))))
-        return "\n".join(lines) + "\n"
-
-    def _card(self) -> str:
-        channels = "\n".join(
-            f"{toml_key(name)} = {{ column = {toml_text(name)}, unit = {toml_text(channel.unit)} }}"
-            for name, channel in self.data.channels.items()
-        )
-        return (
-            f"# A card for the recording that {INPUT} asks for. Save what you record as {RECORDED}, with these columns.\n"
-            f"# To diagnose old and new recordings together, copy the [[experiment]] below to the card of the old ones.\n"
-            f"name = {toml_text(f'{self.data.name}: designed recording')}\n"
-            f"sample_time = {float(self.time[1] - self.time[0])!r}\n"
-            f'hold = "{self.data.hold}"\n\n[channels]\n{channels}\n\n'
-            f'[[experiment]]\nname = "Designed"\nfile = "{RECORDED}"\nrole = "estimation"\n\n'
-            f"[model]\nname = {toml_text(self.reference)}\n"
-        )

@@ -15,6 +15,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, PlainValidator, ValidationError, field_validator, model_validator
 
 from greybox_torch.data.card_channels import ChannelEntry, Entry, ExperimentEntry, Finite, Text, TimeEntry, printable
+from greybox_torch.data.card_controller import LoopEntry, check_loops
 from greybox_torch.data.card_errors import describe
 from greybox_torch.data.readers import READERS
 from greybox_torch.errors import UserError, did_you_mean, quoted
@@ -77,7 +78,7 @@ class Card(Entry):
 
     `resample` makes the time stamps even, that many seconds apart; `decimate` keeps one sample of so many, behind a low pass.
     `diagnosis` names settings of `greybox diagnose`, `beliefs` what is known beforehand of what that looks for, `limits` what
-    `greybox design` may ask of the machine; those commands check them.
+    `greybox design` may ask of the machine; those commands check them. `controller` has the loops that a designed recording runs under.
     For `greybox fleet`, `machine` says which machine was recorded (several cards may be of one) and `recorded` when.
     """
 
@@ -92,6 +93,7 @@ class Card(Entry):
     model: ModelEntry = ModelEntry()
     diagnosis: dict[str, Any] = {}
     limits: dict[str, Any] = {}
+    controller: dict[str, LoopEntry] = {}
     beliefs: dict[str, Any] = {}
     machine: Text | None = None
     recorded: Annotated[date | None, PlainValidator(_a_date)] = None
@@ -152,6 +154,11 @@ class Card(Entry):
                     raise ValueError(
                         f'{place}: no channel is named "{key}"{did_you_mean(key, known)}; expected {", ".join(known)}'
                     )
+        return self
+
+    @model_validator(mode="after")
+    def _loops_are_of_channels(self) -> Self:
+        check_loops(self.controller, self.channels, self.hold)
         return self
 
 

@@ -34,6 +34,7 @@ _EXPECTED = {
 # Places where the general words would not help.
 _EXPECTED_AT = {
     ("channels",): "a table [channels] with an entry for every input and output",
+    ("controller",): "a table [controller] with an entry for every input that a loop drives",
     ("experiment",): "one table [[experiment]], in double brackets, for every recording",
     ("rows",): "two whole numbers, [start, stop]",
     ("file",): "the name of a file, or a list of names",
@@ -81,6 +82,8 @@ def _at(location: Sequence[str | int], content: dict[str, Any]) -> str:
             return ""
         case ["channels", *rest]:
             parts = ["[channels]", *rest]
+        case ["controller", *rest]:
+            parts = ["[controller]", *rest]
         case ["experiment", int(index), *rest]:
             entry = content["experiment"][index]
             name = entry.get("name") if isinstance(entry, dict) else None
@@ -109,10 +112,12 @@ def _without_none(kind: Any) -> Any:
     return next(k for k in kinds if k is not NoneType) if NoneType in kinds else kind
 
 
-def entries(argument: str, given: Mapping[str, Any] | None, entry: type[_Entry]) -> dict[str, _Entry]:
+def entries(
+    argument: str, given: Mapping[str, Any] | None, entry: type[_Entry], of: str = "DataSet"
+) -> dict[str, _Entry]:
     """Entries of the card given as an argument: each as it is on the card, as a table of it, or as its value alone.
 
-    Raises UserError naming the argument and the entry where one does not validate.
+    Raises UserError naming the argument, what it belongs to, and the entry where one does not validate.
     """
     held: dict[str, _Entry] = {}
     for name, what in (given or {}).items():
@@ -120,7 +125,7 @@ def entries(argument: str, given: Mapping[str, Any] | None, entry: type[_Entry])
             held[name] = what if isinstance(what, entry) else entry.model_validate(_table(what))
         except ValidationError as error:
             problems = (_problem(details, {}, entry) for details in error.errors())
-            raise UserError(f"DataSet, {argument}, {name}: {'; '.join(problems)}") from None
+            raise UserError(f"{of}, {argument}, {name}: {'; '.join(problems)}") from None
     return held
 
 

@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import Any, Literal, get_args
 
 from greybox_torch.data.card import InitialEntry, ParameterEntry
+from greybox_torch.data.card_controller import LoopEntry
 from greybox_torch.data.card_errors import entries
+from greybox_torch.data.given_loops import loops_of
 from greybox_torch.data.holding_out import check_no_channel_is_empty, check_same_names, hold_out_last_quarters
 from greybox_torch.data.recording import Channel, Recording
 from greybox_torch.errors import UserError
@@ -49,6 +51,7 @@ class DataSet:
     held_out_by_default: bool
     diagnosis: dict[str, Any]
     limits: dict[str, Any]
+    controller: dict[str, LoopEntry]
     beliefs: dict[str, Any]
 
     def __init__(
@@ -65,6 +68,7 @@ class DataSet:
         held_out_by_default: bool | None = None,
         diagnosis: Mapping[str, Any] | None = None,
         limits: Mapping[str, Any] | None = None,
+        controller: Mapping[str, LoopEntry | Mapping[str, Any]] | None = None,
         beliefs: Mapping[str, Any] | None = None,
     ) -> None:
         """A data set of recordings that are in memory.
@@ -83,6 +87,7 @@ class DataSet:
             diagnosis: settings of a diagnosis by name, as the card's table [diagnosis] has them; what is given to `diagnose` goes before.
             limits: of a next recording, as the card's table [limits] has them: seconds, and by input, output or state
                 {"lower": …, "upper": …, "rate": …}.
+            controller: the loops that a next recording runs under, as the card's table [controller] has them.
             beliefs: what is known beforehand of what a diagnosis looks for, as the card's table [beliefs] has it: by "port/mechanism"
                 "likely", "unlikely" or a probability.
 
@@ -116,6 +121,7 @@ class DataSet:
             "held_out_by_default": hold_out or bool(held_out_by_default),
             "diagnosis": dict(diagnosis or {}),
             "limits": dict(limits or {}),
+            "controller": loops_of(controller, channels, hold, "DataSet"),
             "beliefs": dict(beliefs or {}),
         }
         for field, value in own.items():

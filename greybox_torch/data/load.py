@@ -45,6 +45,7 @@ def load_dataset(path: str | PathLike[str]) -> DataSet:
         initial=card.model.initial,
         diagnosis=card.diagnosis,
         limits=card.limits,
+        controller=card.controller,
         beliefs=card.beliefs,
     )
 

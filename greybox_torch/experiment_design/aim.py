@@ -15,7 +15,7 @@ DECIDED = 20.0
 """Nats of which a pair of hypotheses counts as half decided: what is far beyond says little more."""
 
 Candidate = tuple[Excitation, ...]
-"""An excitation for every input."""
+"""An excitation for every input, or for the set point of the loop that drives it."""
 
 
 @dataclass(frozen=True)
@@ -34,24 +34,33 @@ class Aim:
         first = self.contenders[0]
         return first.level * np.sqrt(first.memory)
 
-    def nats(self, predictions: Sequence[Prediction], record: int) -> np.ndarray:
-        """The evidence (n, n) of one record for each hypothesis (row) against each other one (column), rivals being linear."""
-        count = len(predictions)
+    def nats(self, along: Sequence[Sequence[Prediction]], record: int) -> np.ndarray:
+        """The evidence (n, n) of one record for each hypothesis (row) against each other one (column), rivals being linear.
+
+        Args:
+            along: for each hypothesis, what all of them predict on the input that reaches the machine if it is right.
+        """
+        count = len(along)
         found = np.zeros((count, count))
-        for b, rival in enumerate(predictions):
-            slopes, known = self._of_rival(b, rival, record)
-            for a, right in enumerate(predictions):
-                if a != b:
-                    difference = ((right.y[record] - rival.y[record]) / self.level).ravel()
-                    found[a, b] = evidence(difference, slopes, known)
+        for b in range(count):
+            rival = along[b][b]
+            told = self._of_rival(b, rival, record)
+            for a in range(count):
+                if a == b:
+                    continue
+                if along[a][b] is not rival:
+                    rival = along[a][b]
+                    told = self._of_rival(b, rival, record)
+                difference = ((along[a][a].y[record] - rival.y[record]) / self.level).ravel()
+                found[a, b] = evidence(difference, *told)
         return found
 
-    def score(self, predictions: Sequence[Prediction], record: int) -> float:
-        """Larger is better: less deviation, or how far the pairs of hypotheses are decided."""
+    def score(self, along: Sequence[Sequence[Prediction]], record: int) -> float:
+        """Larger is better: less deviation, or how far the pairs of hypotheses are decided; see :meth:`nats`."""
         if self.parameter is not None:
-            slopes, known = self._of_rival(0, predictions[0], record)
+            slopes, known = self._of_rival(0, along[0][0], record)
             return -float(np.log(deviation(slopes, known, self.parameter)))
-        return self.decided(self.nats(predictions, record))
+        return self.decided(self.nats(along, record))
 
     def decided(self, nats: np.ndarray) -> float:
         """From 0 to 1: how far pairs are decided, each by the probability that it is about. What no input decides blurs nothing else."""
@@ -78,12 +87,13 @@ class Aim:
 
 @dataclass(frozen=True)
 class Trial:
-    """A candidate within the limits, its input (n_u, N), and how good it is.
+    """A candidate within the limits, what is commanded with it (inputs, and set points of those that a loop drives: (n_u, N)), and how
+    good it is.
 
     ``nats`` (n, n): the evidence for each hypothesis against each other one, once that has been judged with rivals estimated anew.
     """
 
     candidate: Candidate
-    inputs: np.ndarray
+    commands: np.ndarray
     score: float
     nats: np.ndarray | None = None

@@ -12,6 +12,8 @@ from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.correlation_length import correlation_length
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.simulators import simulator_for
+from greybox_torch.experiment_design.closed_loop import under_feedback
+from greybox_torch.experiment_design.controller import Loop
 from greybox_torch.experiment_design.separation import deviation, scaled_inverse
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.passes import Pass, Run
@@ -25,7 +27,8 @@ class Contender:
     """A model with its values and the ``probability`` of being right, on the recordings that it was estimated from.
 
     ``information`` (n_p, n_p) is what they say of the free parameters: [J]ᵀ[J] of the outputs in units of the errors, over the number of
-    samples that errors are correlated for. ``level`` (n_y,) are the root mean square errors, ``memory`` is that number.
+    samples that errors are correlated for. ``level`` (n_y,) are the root mean square errors, ``memory`` is that number. ``loops``: the
+    controller that a new recording runs under.
     """
 
     name: str
@@ -35,6 +38,7 @@ class Contender:
     information: np.ndarray
     level: np.ndarray
     memory: float
+    loops: tuple[Loop, ...] = ()
 
     @property
     def free(self) -> np.ndarray:
@@ -64,6 +68,14 @@ class Contender:
         slopes = None if run.dy is None else run.dy[:, :steps]
         return Prediction(run.y[:, :steps], run.states[:, :steps], slopes, first)
 
+    def driven(self, commands: Sequence[np.ndarray], step: float) -> list[np.ndarray]:
+        """The inputs (n_u, N) that reach the machine on what is commanded (n_u, N): inputs, and set points of those that a loop drives.
+
+        Args:
+            step: the sample time, s.
+        """
+        return driven_under([self] * len(commands), commands, step)
+
     def deviation(self, index: int) -> float:
         """The standard deviation of a free parameter after the recordings so far."""
         return deviation(np.zeros((0, len(self.free))), self.information, index)
@@ -82,6 +94,15 @@ class Contender:
         return self.at(values) if self.problem.admissible(values) else self
 
 
+def driven_under(machines: Sequence[Contender], commands: Sequence[np.ndarray], step: float) -> list[np.ndarray]:
+    """:meth:`Contender.driven` of one hypothesis with several values of its parameters, each on commands (n_u, N) of its own."""
+    first = machines[0]
+    if not first.loops:
+        return list(commands)
+    values = np.array([one.problem.values for one in machines])
+    return under_feedback(first.problem, first.simulator, first.loops, values, commands, step)
+
+
 @dataclass(frozen=True)
 class Prediction:
     """Outputs ``y`` (C, N, n_y) and ``states`` (C, N, n_x) of C records; ``slopes`` (C, N, n_y, n_d), the outputs' derivatives by the free
@@ -95,12 +116,18 @@ class Prediction:
 
 
 def contender(
-    name: str, probability: float, model: GreyBoxModel, data: DataSet, starts: Mapping[str, Mapping[str, float]]
+    name: str,
+    probability: float,
+    model: GreyBoxModel,
+    data: DataSet,
+    starts: Mapping[str, Mapping[str, float]],
+    loops: Sequence[Loop] = (),
 ) -> Contender:
     """A hypothesis on the recordings of ``data`` that it was estimated from, holding its values.
 
     Args:
         starts: its start states, by recording and state.
+        loops: the controller that a new recording runs under.
 
     Raises:
         NumericalError: it cannot be simulated on any of them.
@@ -120,7 +147,7 @@ def contender(
         raise NumericalError(
             f"{name}: its simulation of {', '.join(r.name for r in used)} overflows; nothing can be designed with it"
         )
-    return Contender(name, probability, problem, simulator, information, level, memory)
+    return Contender(name, probability, problem, simulator, information, level, memory, tuple(loops))
 
 
 def _pass(problem: Problem, records: Records, starts: np.ndarray, tangents: bool) -> Pass:
@@ -160,19 +187,3 @@ def _without_starts(whole: np.ndarray, count: int) -> np.ndarray:
     """The information on the first ``count`` unknowns where the others are unknown too (Schur complement)."""
     mixed = whole[:count, count:]
     return whole[:count, :count] - mixed @ scaled_inverse(whole[count:, count:]) @ mixed.T
-
-
-def records_of(inputs: Sequence[np.ndarray], like: Records, sample_time: float) -> Records:
-    """Records of C inputs (n_u, N) each, to be simulated side by side."""
-    count, steps = len(inputs), inputs[0].shape[1]
-    total = count * steps
-    first = steps * np.arange(count, dtype=np.int64)
-    return Records(
-        u=np.ascontiguousarray(np.concatenate(inputs, axis=1)),
-        y=np.zeros((len(like.y), total)),
-        dt=np.full(total, sample_time),
-        first=first,
-        last=first + steps - 1,
-        names=tuple(str(k) for k in range(count)),
-        hold=like.hold,
-    )

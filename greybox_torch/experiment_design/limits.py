@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -37,20 +37,37 @@ class Range:
 
 @dataclass(frozen=True)
 class Limits:
-    """``inputs`` has a range for every input; ``outputs`` and ``states`` for those that are limited. ``seconds``: how long it may be."""
+    """``inputs`` has a range for every input; ``outputs`` and ``states`` for those that are limited. ``seconds``: how long it may be.
+
+    ``set_points`` has the range of the set point for every input that a loop drives.
+    """
 
     seconds: float
     inputs: Mapping[str, Range]
     outputs: Mapping[str, Range]
     states: Mapping[str, Range]
+    set_points: Mapping[str, Range] = field(default_factory=dict)
+
+    @property
+    def commanded(self) -> dict[str, Range]:
+        """By input, the range of what is commanded: the input, or the set point of the loop that drives it."""
+        return {name: self.set_points.get(name, own) for name, own in self.inputs.items()}
 
 
-def limits_of(data: DataSet, model: GreyBoxModel, given: Mapping[str, Any], place: str) -> Limits:
+def limits_of(
+    data: DataSet,
+    model: GreyBoxModel,
+    given: Mapping[str, Any],
+    place: str,
+    follows: Mapping[str, str] | None = None,
+) -> Limits:
     """The limits that are ``given`` by signal; where none are, what was recorded: its range, and the length of the longest recording.
 
     Args:
         given: as the card's table [limits] has them: ``seconds``, and by input, output or state ``{ lower, upper, rate }``.
         place: how a message begins.
+        follows: the output that each input follows which a loop drives. Set points have the range that the output is given, else what
+            was recorded, and its rate.
 
     Raises:
         UserError: a name that the model does not have, or a limit that cannot be one.
@@ -70,6 +87,7 @@ def limits_of(data: DataSet, model: GreyBoxModel, given: Mapping[str, Any], plac
         {n: _range(given.get(n), f"{place} {n}", _recorded(data, n, 0.0)) for n in inputs},
         {n: _range(given.get(n), f"{place} {n}", _recorded(data, n, WIDENED)) for n in outputs},
         {n: _range(entry, f"{place} {n}", None) for n, entry in given.items() if n in own and n not in outputs},
+        {n: _range(given.get(o), f"{place} {o}", _recorded(data, o, 0.0)) for n, o in (follows or {}).items()},
     )
 
 

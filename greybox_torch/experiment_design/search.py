@@ -11,7 +11,7 @@ from greybox_torch.experiment_design.excitation import drawn, varied
 from greybox_torch.experiment_design.imitation import THOROUGH
 from greybox_torch.experiment_design.judged import Draws, draws_of, judged
 from greybox_torch.experiment_design.limits import Limits
-from greybox_torch.experiment_design.simulated import chunks, input_records, within
+from greybox_torch.experiment_design.simulated import chunks, predictions, within
 
 MOST_SAMPLES = 20_000
 """A longer recording is designed for so many samples: what it tells grows in proportion to its length."""
@@ -38,7 +38,7 @@ def search(aim: Aim, limits: Limits, time: np.ndarray, seed: int, progress: Call
     """
     rng = np.random.default_rng(seed)
     slowest, fastest = frequencies(time)
-    count = len(limits.inputs)
+    count = len(limits.commanded)
     tried, again = tries(len(time))
     begun = [tuple(drawn(rng, slowest, fastest) for _ in range(count)) for _ in range(tried)]
     progress(f"simulating {tried} inputs")
@@ -98,9 +98,9 @@ def _tried(aim: Aim, limits: Limits, time: np.ndarray, candidates: Sequence[Cand
     left = list(candidates)
     for factor in SMALLER:
         smaller = [tuple(e.smaller(factor) for e in candidate) for candidate in left]
-        inputs = [sampled(candidate, time, limits) for candidate in smaller]
-        fine = within(aim.contenders, limits, inputs, time)
-        ready += [(c, u) for c, u, ok in zip(smaller, inputs, fine, strict=True) if ok]
+        commands = [sampled(candidate, time, limits) for candidate in smaller]
+        fine = within(aim.contenders, limits, commands, time)
+        ready += [(c, u) for c, u, ok in zip(smaller, commands, fine, strict=True) if ok]
         left = [c for c, ok in zip(left, fine, strict=True) if not ok]
         if not left:
             break
@@ -110,16 +110,17 @@ def _tried(aim: Aim, limits: Limits, time: np.ndarray, candidates: Sequence[Cand
 
 
 def sampled(candidate: Candidate, time: np.ndarray, limits: Limits) -> np.ndarray:
-    """The inputs (n_u, N) of a candidate."""
-    return np.array([e.sampled(time, w) for e, w in zip(candidate, limits.inputs.values(), strict=True)])
+    """What is commanded with a candidate, (n_u, N)."""
+    return np.array([e.sampled(time, w) for e, w in zip(candidate, limits.commanded.values(), strict=True)])
 
 
-def _scores(aim: Aim, inputs: Sequence[np.ndarray], time: np.ndarray) -> list[float]:
+def _scores(aim: Aim, commands: Sequence[np.ndarray], time: np.ndarray) -> list[float]:
     scores: list[float] = []
     largest = max(len(c.free) + int(c.problem.initial_free.sum()) for c in aim.contenders)
-    for chunk in chunks(len(inputs), len(time) * len(aim.level) * largest):
-        found = [one.predicted(input_records(one, inputs[chunk], time)) for one in aim.contenders]
-        for k in range(len(inputs[chunk])):
+    for chunk in chunks(len(commands), len(time) * len(aim.level) * largest):
+        along = predictions(aim.contenders, commands[chunk], time)
+        for k in range(len(commands[chunk])):
+            found = [one for right in along for one in right]
             sound = all(f.slopes is not None and np.isfinite(f.slopes[k]).all() for f in found)
-            scores.append(aim.score(found, k) if sound else -np.inf)
+            scores.append(aim.score(along, k) if sound else -np.inf)
     return scores

@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from greybox_torch.experiment_design.contender import Contender, records_of
+from greybox_torch.experiment_design.contender import Contender, Prediction
 from greybox_torch.experiment_design.limits import Limits, Range
+from greybox_torch.experiment_design.side_by_side import records_of
 from greybox_torch.simulation.records import Records
 
 MOST_NUMBERS = 20_000_000
@@ -15,16 +16,47 @@ MOST_NUMBERS = 20_000_000
 
 
 def within(
-    contenders: Sequence[Contender], limits: Limits, inputs: Sequence[np.ndarray], time: np.ndarray
+    contenders: Sequence[Contender], limits: Limits, commands: Sequence[np.ndarray], time: np.ndarray
 ) -> list[bool]:
-    """Whether outputs and states stay within the limits under every hypothesis, for each of some inputs."""
-    fine = np.ones(len(inputs), dtype=bool)
+    """Whether outputs and states stay within the limits under every hypothesis, and inputs that a loop drives, for each of some commands.
+
+    Args:
+        commands: inputs, and set points of those that a loop drives, (n_u, N) each.
+    """
+    fine = np.ones(len(commands), dtype=bool)
     for one in contenders:
-        for chunk in chunks(len(inputs), len(time) * (len(one.level) + len(one.problem.model.states))):
-            found = one.predicted(input_records(one, inputs[chunk], time), tangents=False)
-            fine[chunk] &= _inside(found.y, [o.name for o in one.problem.model.outputs], limits.outputs)
-            fine[chunk] &= _inside(found.states, [s.name for s in one.problem.model.states], limits.states)
+        for chunk in chunks(len(commands), len(time) * (len(one.level) + len(one.problem.model.states))):
+            inputs = one.driven(commands[chunk], float(time[1] - time[0]))
+            fine[chunk] &= keeps(one, limits, inputs, time)
     return [bool(f) for f in fine]
+
+
+def predictions(
+    contenders: Sequence[Contender], commands: Sequence[np.ndarray], time: np.ndarray
+) -> list[list[Prediction]]:
+    """For each hypothesis, what all of them predict, with slopes, on the inputs that reach the machine if it is right."""
+    if not contenders[0].loops:
+        return [[one.predicted(input_records(one, commands, time)) for one in contenders]] * len(contenders)
+    along = []
+    for right in contenders:
+        inputs = right.driven(commands, float(time[1] - time[0]))
+        along.append([one.predicted(input_records(one, inputs, time)) for one in contenders])
+    return along
+
+
+def keeps(one: Contender, limits: Limits, inputs: Sequence[np.ndarray], time: np.ndarray) -> np.ndarray:
+    """Whether a hypothesis keeps the limits, (C,), on inputs (n_u, N) that reach the machine."""
+    found = one.predicted(input_records(one, inputs, time), tangents=False)
+    fine = _inside(found.y, [o.name for o in one.problem.model.outputs], limits.outputs)
+    fine &= _inside(found.states, [s.name for s in one.problem.model.states], limits.states)
+    names = [i.name for i in one.problem.model.inputs]
+    for loop in one.loops:
+        own = limits.inputs[names[loop.driven]]
+        u = np.array([row[loop.driven] for row in inputs])
+        fine &= _inside(u[..., None], names[loop.driven : loop.driven + 1], limits.inputs)
+        with np.errstate(invalid="ignore"):
+            fine &= (np.abs(np.diff(u, axis=1)) <= own.rate * float(time[1] - time[0])).all(axis=1)
+    return fine
 
 
 def _inside(values: np.ndarray, names: Sequence[str], limits: Mapping[str, Range]) -> np.ndarray:

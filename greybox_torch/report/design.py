@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import matplotlib as mpl
 import numpy as np
@@ -12,6 +13,17 @@ from matplotlib.figure import Figure
 from greybox_torch.report.style import STYLE, dots_within, with_unit
 
 
+@dataclass(frozen=True)
+class Feedback:
+    """Of a machine under a controller: ``set_points`` (N,) by output, ``driven`` inputs (N,) by input and hypothesis, and by output what
+    each hypothesis predicts on the inputs of the first one, ``on_one_input`` (N,).
+    """
+
+    set_points: Mapping[str, np.ndarray]
+    driven: Mapping[str, Mapping[str, np.ndarray]]
+    on_one_input: Mapping[str, Sequence[np.ndarray]]
+
+
 def plot_design(
     title: str,
     time: np.ndarray,
@@ -19,14 +31,18 @@ def plot_design(
     outputs: Mapping[str, Mapping[str, np.ndarray]],
     units: Mapping[str, str],
     level: Mapping[str, float],
+    feedback: Feedback | None = None,
 ) -> Figure:
     """Inputs (N,), then every output (N,) by the name of the hypothesis, and below it their distance from the first one.
 
     Args:
         level: by output, the root mean square error of the recordings so far, drawn as a band.
+        feedback: where a controller drives inputs. Set points are drawn beside their outputs, and distances are those on one input, as
+            rivals are judged by the input that was recorded.
     """
     several = max((len(o) for o in outputs.values()), default=1) > 1
-    rows = len(inputs) + (2 if several else 1) * len(outputs)
+    driven = {} if feedback is None else feedback.driven
+    rows = len(inputs) + len(driven) + (2 if several else 1) * len(outputs)
     with mpl.rc_context(STYLE):
         height = 0.6 + 1.7 * rows
         figure = Figure(figsize=(11, height), dpi=dots_within(height), layout="constrained")
@@ -37,21 +53,26 @@ def plot_design(
             axis = next(panels)
             axis.plot(time, values, color="0.25", linewidth=1.0)
             axis.set_ylabel(with_unit(name, units.get(name, "")))
-        for name, runs in outputs.items():
-            axis, labels = next(panels), list(runs)
+        for name, runs in (*driven.items(), *outputs.items()):
+            axis = next(panels)
             for label, values in runs.items():
                 axis.plot(time, values, linewidth=1.0, label=label)
+            if feedback is not None and name in feedback.set_points:
+                axis.plot(time, feedback.set_points[name], "k--", linewidth=0.8, label="set point")
             axis.set_ylabel(with_unit(name, units.get(name, "")))
-            if several:
+            if several or feedback is not None:
                 _legend_above(axis)
-                _distances(next(panels), time, [runs[label] for label in labels], units.get(name, ""), level[name])
+            if several and name in outputs:
+                compared = list(runs.values()) if feedback is None else feedback.on_one_input[name]
+                told = "" if feedback is None else f"on the input of {next(iter(runs))}; "
+                _distances(next(panels), time, compared, units.get(name, ""), level[name], told)
         axes[-1].set_xlabel("time [s]")
     return figure
 
 
-def _distances(axis: Axes, time: np.ndarray, runs: Sequence[np.ndarray], unit: str, level: float) -> None:
+def _distances(axis: Axes, time: np.ndarray, runs: Sequence[np.ndarray], unit: str, level: float, on: str) -> None:
     """The other hypotheses minus the first one, over a band of one error each way."""
-    axis.axhspan(-level, level, color="0.85", label="error of the recordings so far, ±1 rms")
+    axis.axhspan(-level, level, color="0.85", label=f"{on}error of the recordings so far, ±1 rms")
     axis.plot([], [])  # the first hypothesis has the first colour
     for values in runs[1:]:
         axis.plot(time, values - runs[0], linewidth=1.0)

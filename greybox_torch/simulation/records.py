@@ -10,6 +10,7 @@ import numpy as np
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulation.driven_inputs import check_controller
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,7 @@ def make_records(dataset: DataSet, model: GreyBoxModel, recordings: Sequence[Rec
 
 
 def check_channels(dataset: DataSet, model: GreyBoxModel) -> None:
-    """Whether the channels of a data set are the inputs and outputs of a model, in the same units.
+    """Whether the channels of a data set are the inputs and outputs of a model, in the same units, and its controller drives inputs.
 
     Raises:
         UserError: naming the file, the channel, and what the model expects.
@@ -104,6 +105,7 @@ def check_channels(dataset: DataSet, model: GreyBoxModel) -> None:
             raise UserError(
                 f"{dataset.place('[channels]')} {name}: model {model.title} has no such signal; expected: {expected}"
             )
+    check_controller(dataset.controller, model, dataset.place("[controller]"))
 
 
 def _plain(unit: str) -> str:

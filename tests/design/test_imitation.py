@@ -9,9 +9,10 @@ import pytest
 
 from greybox_torch.api.design import _contender
 from greybox_torch.api.hypotheses import hypotheses_of
-from greybox_torch.experiment_design.contender import Contender, records_of
+from greybox_torch.experiment_design.contender import Contender
 from greybox_torch.experiment_design.imitation import not_imitated
 from greybox_torch.experiment_design.separation import evidence
+from greybox_torch.experiment_design.side_by_side import records_of
 
 VOLTAGE = np.repeat([2.0, -2.0, 1.0, -1.0], 50)[None]
 

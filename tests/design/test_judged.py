@@ -20,7 +20,8 @@ def test_an_input_keeps_the_limits_under_every_draw(monkeypatch, leaves: int | N
     """Also under the many draws that are simulated only for the limits; the evidence is taken from the first few."""
     draws = [(k,) for k in range(SAFE + 1)]
     taken: list[int] = []
-    monkeypatch.setattr(module, "within", lambda own, *given: [own[0] != leaves])
+    monkeypatch.setattr(module, "driven_under", lambda own, commands, step: commands)
+    monkeypatch.setattr(module, "keeps", lambda one, *given: [one != leaves])
     monkeypatch.setattr(module, "_nats", lambda aim, own, *given: taken.append(own[0]) or np.full((2, 2), 5.0))
     found = judged(stub(decided=lambda nats: 0.6), draws, Trial((), np.zeros((1, 3)), 0.0), np.arange(3.0), stub())
     assert found.score == pytest.approx(0.6 - cost) and found.nats == pytest.approx(np.full((2, 2), 5.0))
