@@ -27,8 +27,7 @@ class Study:
     ``options`` are those of every simulation. ``surroundings`` and ``shifts`` are what mechanisms need to know of the ports: where signals
     moved, and which state carries the deflection of a coupling; both are known once the model as it stands is fitted. ``motion``: what the
     outputs show of the states, or why they do not. ``recorded``: all samples of the estimation experiments, where ``problem`` has some of
-    them. ``beliefs``: what is known beforehand. ``report`` is told
-    what is being done, ``journal`` which candidates are tried.
+    them. ``beliefs``: what is known beforehand. ``report`` is told what is being done, ``journal`` which candidates are tried.
     """
 
     problem: Problem

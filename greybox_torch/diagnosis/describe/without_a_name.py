@@ -60,5 +60,5 @@ def is_missing(
     if error is None:
         return False
     repeats = any(d.plain.past.beyond for d in detected)
-    looked_at = tried and chosen_by > error / settings.far_above_noise  # the error elsewhere is no other one
+    looked_at = tried and error < settings.most_error_elsewhere * chosen_by
     return not looked_at or repeats or error > settings.far_above_disturbances

@@ -46,6 +46,12 @@ class NoiseSettings:
         unit=NOISE_MULTIPLE,
         chosen_by="what was missing and could not be named left 36 times the noise and more; complete machines with disturbances 3 to 8",
     )
+    most_error_elsewhere: float = ratio(
+        3.0,
+        "Error of the other experiments up to which it is the one that a search without result has looked at.",
+        unit="times the error of the experiments to choose with",
+        chosen_by="experiments that move alike leave errors alike; a stop that one of them never reaches, ten times as much and more",
+    )
     negligible_error: float = number(
         1e-5,
         "Error below which nothing matters.",
