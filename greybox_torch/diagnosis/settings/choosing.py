@@ -50,7 +50,7 @@ class NoiseSettings:
         3.0,
         "Error of the other experiments up to which it is the one that a search without result has looked at.",
         unit="times the error of the experiments to choose with",
-        chosen_by="experiments that move alike leave errors alike; a stop that one of them never reaches, ten times as much and more",
+        chosen_by="convention",
     )
     negligible_error: float = number(
         1e-5,
