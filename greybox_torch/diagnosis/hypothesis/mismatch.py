@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
+from greybox_torch.diagnosis.hypothesis.final import finish
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import floor_known, mean_squared_step, noise_floor
-from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.problem import Problem
 
 
@@ -24,20 +27,37 @@ def mismatch_share(fitted: Hypothesis, settings: DiagnosisSettings) -> float:
 
 
 def least_mismatch(study: Study) -> float:
-    """The mismatch, in the same unit, below which nothing is looked for: simulations of one machine differ by as much, or it is small and
-    no more than a shift in time by a small part of the sampling interval.
+    """The mismatch, in the same unit, below which nothing is looked for: simulations of one machine differ by as much, or sensors are so
+    good that they show a shift in time by a small part of the sampling interval.
 
-    When within its interval a sample was taken, and when the input began to act, nobody knows better than that.
+    When within its interval a sample was taken, and when the input began to act, nobody knows better than that. Where the noise is larger
+    than the error of such a shift, what an effect leaves beyond it over windows may be less, and is told by its many samples.
     """
     settings, problem = study.settings, study.problem
     recorded = problem if study.recorded is None else replace(problem, records=study.recorded)
-    step = np.sqrt(mean_squared_step(recorded, settings) / _mean_squared_spread(recorded))
-    return max(settings.least_mismatch, min(settings.least_shift * float(step), settings.most_of_shift))
+    spread = _mean_squared_spread(recorded)
+    shift = settings.least_shift * float(np.sqrt(mean_squared_step(recorded, settings) / spread))
+    shown = float(np.sqrt(noise_floor(recorded, settings) / spread)) < shift
+    return max(settings.least_mismatch, min(shift, settings.most_of_shift)) if shown else settings.least_mismatch
 
 
 def negligible(study: Study, fitted: Hypothesis) -> bool:
-    """Whether a mismatch is below that."""
-    return mismatch_share(fitted, study.settings) < least_mismatch(study)
+    """Whether a mismatch is below that: over windows and, as what drifts shows there alone, over whole records."""
+    share, least = mismatch_share(fitted, study.settings), least_mismatch(study)
+    if share < study.settings.least_mismatch or share >= least:
+        return share < study.settings.least_mismatch
+    return _share_of_whole_records(fitted, study.settings, study.budget) < least
+
+
+@lru_cache(maxsize=1)
+def _share_of_whole_records(fitted: Hypothesis, settings: DiagnosisSettings, budget: SearchBudget) -> float:
+    """:func:`mismatch_share` of a fit to whole records."""
+    problem = finish(fitted, settings, budget).problem
+    runs = simulate(problem, fitted.simulator)
+    measured = (problem.records.y[:, problem.records.span(e)].T for e in range(len(runs)))
+    errors = np.concatenate([y - run for y, run in zip(measured, runs, strict=True)]) * problem.weights
+    beyond = float(np.nanmean(errors**2)) - floor_known(problem, settings) * noise_floor(problem, settings)
+    return float(np.sqrt(max(beyond, 0.0) / _mean_squared_spread(problem))) if np.isfinite(errors).any() else np.inf
 
 
 def _mean_squared_spread(problem: Problem) -> float:

@@ -43,7 +43,7 @@ class ConfirmationSettings:
     )
     least_shift: float = share(
         0.05,
-        "Shift in time that is not told as missing physics, where its error is small: no recording is timed better.",
+        "Shift in time that is not told as missing physics, where its error is small and above the noise: no recording is timed better.",
         unit="sampling intervals",
         chosen_by="a simulator of first order is late by half its step, usually a twentieth of an interval",
     )

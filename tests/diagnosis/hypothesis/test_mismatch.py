@@ -7,7 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.hypothesis.mismatch import least_mismatch, mismatch_share
+from greybox_torch.diagnosis.describe.evidence import _negligible
+from greybox_torch.diagnosis.hypothesis import mismatch as module
+from greybox_torch.diagnosis.hypothesis.mismatch import least_mismatch, mismatch_share, negligible
+from greybox_torch.diagnosis.hypothesis.noise import noise_floor
+from greybox_torch.diagnosis.select.posterior import confidence
 from greybox_torch.diagnosis.select.search import search
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import result_of
@@ -30,18 +34,44 @@ def test_nothing_is_looked_for_where_simulations_differ_by_as_much(dead_zone_sea
     assert result_of(search(coarse, found.state)).steps == ()
 
 
-def test_nor_where_a_shift_by_a_part_of_the_sampling_interval_does_as_much(dead_zone_search) -> None:
+def test_nor_where_sensors_show_a_shift_by_a_part_of_the_sampling_interval(dead_zone_search) -> None:
     found = dead_zone_search
-    share, study = mismatch_share(found.plain, found.study.settings), found.study
-    records = study.problem.records
+    study, records = found.study, found.study.problem.records
     steps = np.concatenate([np.diff(records.y[0, records.span(e)]) for e in range(len(records.first))])
     noise = 0.02
-    shift = 0.05 * float(np.sqrt(np.mean(steps**2) - 2 * noise**2) / np.std(records.y))
-    lenient = replace(study, settings=replace(study.settings, most_of_shift=1.0))
-    assert least_mismatch(lenient) == pytest.approx(shift, rel=0.05)
-    assert least_mismatch(study) == pytest.approx(min(least_mismatch(lenient), 1e-3))
+    step = float(np.sqrt(np.mean(steps**2) - 2 * noise**2) / np.std(records.y))
+    assert 0.05 * step < noise / np.std(records.y), "the noise hides such a shift"
+    assert least_mismatch(study) == study.settings.least_mismatch
     shifted = replace(study, settings=replace(study.settings, least_shift=1.0, most_of_shift=1.0))
-    assert (share < least_mismatch(shifted)) == (result_of(search(shifted, found.state)).steps == ())
+    assert least_mismatch(shifted) == pytest.approx(step, rel=0.05)
+    assert least_mismatch(replace(study, settings=replace(study.settings, least_shift=1.0))) == 1e-3
     turn = np.sin(2 * np.pi * np.arange(records.y.shape[1]) / 1000)[None]
     recorded = replace(study, recorded=replace(records, y=turn))
     assert least_mismatch(recorded) == pytest.approx(0.05 * 2 * np.pi / 1000, rel=0.01), "of what was recorded"
+
+
+def test_what_is_negligible_is_said_and_sure(dead_zone_search) -> None:
+    found = dead_zone_search
+    settings = replace(found.study.settings, least_shift=1.0, most_of_shift=1.0, least_mismatch=1.0)
+    study = replace(found.study, settings=settings)
+    assert negligible(study, found.plain) and not negligible(found.study, found.plain)
+    (sentence,) = _negligible(study, found.state)
+    assert sentence.endswith("nothing was looked for.")
+    assert not _negligible(found.study, found.state)
+    assert confidence(study, found.state, (), True, None) == settings.confidence_nothing
+
+
+def test_what_drifts_over_whole_records_is_not_negligible(dead_zone_search, monkeypatch) -> None:
+    """As dry friction of a drive whose angles alone are measured: over windows start states take it up."""
+    found = dead_zone_search
+    shifted = replace(found.study, settings=replace(found.study.settings, least_shift=1.0))
+    problem = found.plain.problem
+    beyond = 0.5 * least_mismatch(shifted) * float(np.std(problem.records.y))
+    error = noise_floor(problem, shifted.settings) + beyond**2
+    plain = replace(found.plain, fits=tuple(replace(fit, mean_square=error) for fit in found.plain.fits))
+    assert not negligible(found.study, plain)
+    for left, nothing in ((0.0, True), (1.0, False)):
+        module._share_of_whole_records.cache_clear()
+        monkeypatch.setattr(module, "simulate", lambda problem, simulator, of=1.0 - left: [of * problem.records.y.T])
+        assert negligible(shifted, plain) == nothing
+    module._share_of_whole_records.cache_clear()
