@@ -7,6 +7,7 @@ Source: K. Levenberg, Quarterly of Applied Mathematics 2, 1944; D. W. Marquardt,
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,30 +59,76 @@ def not_imitated(
         records: that record.
         level: errors (n_y,), in units of which outputs differ.
     """
-    point = _point(right, rival, first, level, rival.problem.values, first.start[0])
-    damping = DAMPED
-    if not np.isfinite(point.curvature).all():
-        return 0.0  # where it cannot be judged, nothing is promised
+    return not_imitated_each([right], rival, [first], records, level, effort)[0]
+
+
+def not_imitated_each(
+    rights: Sequence[np.ndarray],
+    rival: Contender,
+    firsts: Sequence[Prediction],
+    records: Records,
+    level: np.ndarray,
+    effort: Effort = THOROUGH,
+) -> list[float]:
+    """:func:`not_imitated` of several outputs (N, n_y), each on a record of its own, side by side: lanes of the same passes."""
+    own = rival.problem.values
+    points = [_point(y, rival, f, level, own, f.start[0]) for y, f in zip(rights, firsts, strict=True)]
+    damping = [DAMPED] * len(points)
+    sound = [
+        bool(np.isfinite(point.curvature).all()) for point in points
+    ]  # where it cannot be judged, nothing is promised
+    going = [k for k, fine in enumerate(sound) if fine]
     for _ in range(effort.steps):
-        if point.nats < NOTHING:
+        going = [k for k in going if points[k].nats >= NOTHING]
+        if not going:
             break
-        moved = _moved(right, rival, records, level, point, damping)
-        if moved is None or not moved.nats < point.nats:
-            damping *= MORE
-            if damping > HEAVIEST:
-                break
-            continue
-        settled = point.nats - moved.nats < effort.enough * point.nats
-        point, damping = moved, damping * LESS
-        if settled:
-            break
-    return point.nats
+        found = _moved([rights[k] for k in going], rival, records, going, level, [points[k] for k in going], damping)
+        for k, moved in zip(list(going), found, strict=True):
+            before = points[k].nats
+            if moved is None or not moved.nats < before:
+                damping[k] *= MORE
+                if damping[k] > HEAVIEST:
+                    going.remove(k)
+                continue
+            points[k], damping[k] = moved, damping[k] * LESS
+            if before - moved.nats < effort.enough * before:
+                going.remove(k)
+    return [point.nats if fine else 0.0 for point, fine in zip(points, sound, strict=True)]
 
 
 def _moved(
-    right: np.ndarray, rival: Contender, records: Records, level: np.ndarray, at: _Point, damping: float
-) -> _Point | None:
-    """The point one damped step on, None where the rival cannot be simulated there."""
+    rights: Sequence[np.ndarray],
+    rival: Contender,
+    records: Records,
+    which: Sequence[int],
+    level: np.ndarray,
+    at: Sequence[_Point],
+    damping: Sequence[float],
+) -> list[_Point | None]:
+    """The points one damped step on, None where the rival cannot be simulated there.
+
+    Args:
+        which: the records that ``rights`` and ``at`` are of; ``damping`` is by record.
+    """
+    proposed = [_proposed(rival, point, damping[k]) for k, point in zip(which, at, strict=True)]
+    tried = [n for n, point in enumerate(proposed) if point is not None]
+    found: list[_Point | None] = [None] * len(which)
+    if not tried:
+        return found
+    values, start = (np.array([own[n] for own in proposed if own is not None]) for n in range(2))
+    part = records.part([records.span(which[n]) for n in tried], [str(which[n]) for n in tried])
+    predictions = rival.predicted(part, start=start, values=values)
+    for lane, n in enumerate(tried):
+        prediction = predictions.of(lane)
+        if prediction.slopes is None or not (np.isfinite(prediction.y).all() and np.isfinite(prediction.slopes).all()):
+            continue
+        point = _point(rights[n], rival, prediction, level, values[lane], start[lane])
+        found[n] = point if np.isfinite(point.curvature).all() else None
+    return found
+
+
+def _proposed(rival: Contender, at: _Point, damping: float) -> tuple[np.ndarray, np.ndarray] | None:
+    """Values (n_p,) and start states (n_x,) one damped step on, None where they are no numbers or break a constraint."""
     problem, count = rival.problem, len(rival.free)
     moving = np.concatenate([~_held(rival, at), np.ones(len(at.gradient) - count, dtype=bool)])
     heavier = (at.curvature + damping * np.diag(np.diag(at.curvature))) * np.outer(moving, moving)
@@ -92,11 +139,7 @@ def _moved(
     start[problem.free_states] += step[count:]
     if not (np.isfinite(values).all() and np.isfinite(start).all() and problem.admissible(values)):
         return None
-    prediction = rival.at(values).predicted(records, start=start)
-    if prediction.slopes is None or not (np.isfinite(prediction.y).all() and np.isfinite(prediction.slopes).all()):
-        return None
-    point = _point(right, rival, prediction, level, values, start)
-    return point if np.isfinite(point.curvature).all() else None
+    return values, start
 
 
 def _held(rival: Contender, at: _Point) -> np.ndarray:
