@@ -67,18 +67,40 @@ class Contender:
                 input says.
             values: other parameters for each record, (C, n_p).
         """
-        count, steps = len(records.first), int(records.lengths[0])
-        model, rows = self.problem.model, np.atleast_2d(self.problem.values if values is None else values)
+        steps = int(records.lengths[0])
+        driven, problem, first = self._begun(records, start, values)
+        run = self.simulator.run(driven, _pass(problem, records, first, tangents))
+        assert run.states is not None
+        slopes = None if run.dy is None else run.dy[:, :steps]
+        return Prediction(run.y[:, :steps], run.states[:, :steps], slopes, first)
+
+    def normals(
+        self, records: Records, level: np.ndarray, *, start: np.ndarray | None = None, values: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Of each of C records the matrix [J e]ᵀ[J e], (C, n_d + 1, n_d + 1), and the states (C, n_x) that its run begins with.
+
+        J are the slopes of the outputs, e the recorded outputs less those of the run, both in units of ``level`` (n_y,); the rest is as for
+        :meth:`predicted`.
+        """
+        driven, problem, first = self._begun(records, start, values)
+        asked = replace(_pass(problem, records, first, True), keep_states=False, weights=1.0 / level)
+        run = self.simulator.run(replace(driven, y=records.y), asked)  # a delay hides no outputs here
+        assert run.normal is not None
+        return run.normal, first
+
+    def _begun(
+        self, records: Records, start: np.ndarray | None, values: np.ndarray | None
+    ) -> tuple[Records, Problem, np.ndarray]:
+        """The records that drive the model, the problem with the parameters of each, and the states (C, n_x) that they begin with."""
+        count, model = len(records.first), self.problem.model
+        rows = np.atleast_2d(self.problem.values if values is None else values)
         rows = np.broadcast_to(rows, (count, rows.shape[1]))
         driven = prepared_each(model, records, rows)
         first = np.broadcast_to(self.problem.initial[0] if start is None else start, (count, len(model.states)))
         if start is None:
             first = begun_each(model, first, driven, records.first, rows)
-        problem = replace(self.problem, values=self.problem.values if values is None else rows)
-        run = self.simulator.run(driven, _pass(problem, records, np.array(first), tangents))
-        assert run.states is not None
-        slopes = None if run.dy is None else run.dy[:, :steps]
-        return Prediction(run.y[:, :steps], run.states[:, :steps], slopes, np.array(first))
+        problem = self.problem if values is None else replace(self.problem, values=rows)
+        return driven, problem, np.array(first)
 
     def driven(self, commands: Sequence[np.ndarray], step: float) -> list[np.ndarray]:
         """The inputs (n_u, N) that reach the machine on what is commanded (n_u, N): inputs, and set points of those that a loop drives.
@@ -125,13 +147,6 @@ class Prediction:
     states: np.ndarray
     slopes: np.ndarray | None
     start: np.ndarray
-
-    def of(self, record: int) -> Prediction:
-        """That of one record alone."""
-        one = slice(record, record + 1)
-        return Prediction(
-            self.y[one], self.states[one], None if self.slopes is None else self.slopes[one], self.start[one]
-        )
 
 
 def contender(

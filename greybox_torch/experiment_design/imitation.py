@@ -8,11 +8,11 @@ Source: K. Levenberg, Quarterly of Applied Mathematics 2, 1944; D. W. Marquardt,
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from greybox_torch.experiment_design.contender import Contender, Prediction
+from greybox_torch.experiment_design.contender import Contender
 from greybox_torch.experiment_design.separation import scaled_inverse
 from greybox_torch.simulation.records import Records
 
@@ -44,35 +44,26 @@ class _Point:
 
 
 def not_imitated(
-    right: np.ndarray,
-    rival: Contender,
-    first: Prediction,
-    records: Records,
-    level: np.ndarray,
-    effort: Effort = THOROUGH,
+    right: np.ndarray, rival: Contender, records: Records, level: np.ndarray, effort: Effort = THOROUGH
 ) -> float:
     """The least over the rival's unknowns of ½ ‖(y − y_rival) / level‖² + ½ δᵀ I δ, in nats, with δ from its estimates.
 
     Args:
         right: the outputs to be imitated, y (N, n_y).
-        first: the rival's prediction of the one record at its estimates, with slopes.
-        records: that record.
+        records: the one record with the inputs that gave them.
         level: errors (n_y,), in units of which outputs differ.
     """
-    return not_imitated_each([right], rival, [first], records, level, effort)[0]
+    return not_imitated_each([right], rival, records, level, effort)[0]
 
 
 def not_imitated_each(
-    rights: Sequence[np.ndarray],
-    rival: Contender,
-    firsts: Sequence[Prediction],
-    records: Records,
-    level: np.ndarray,
-    effort: Effort = THOROUGH,
+    rights: Sequence[np.ndarray], rival: Contender, records: Records, level: np.ndarray, effort: Effort = THOROUGH
 ) -> list[float]:
     """:func:`not_imitated` of several outputs (N, n_y), each on a record of its own, side by side: lanes of the same passes."""
-    own = rival.problem.values
-    points = [_point(y, rival, f, level, own, f.start[0]) for y, f in zip(rights, firsts, strict=True)]
+    records = replace(records, y=np.concatenate(rights).T.copy())
+    values = np.repeat(rival.problem.values[None], len(rights), axis=0)
+    normals, starts = rival.normals(records, level)
+    points = [_point(rival, *own) for own in zip(normals, values, starts, strict=True)]
     damping = [DAMPED] * len(points)
     sound = [
         bool(np.isfinite(point.curvature).all()) for point in points
@@ -82,7 +73,7 @@ def not_imitated_each(
         going = [k for k in going if points[k].nats >= NOTHING]
         if not going:
             break
-        found = _moved([rights[k] for k in going], rival, records, going, level, [points[k] for k in going], damping)
+        found = _moved(rival, records, going, level, [points[k] for k in going], damping)
         for k, moved in zip(list(going), found, strict=True):
             before = points[k].nats
             if moved is None or not moved.nats < before:
@@ -97,7 +88,6 @@ def not_imitated_each(
 
 
 def _moved(
-    rights: Sequence[np.ndarray],
     rival: Contender,
     records: Records,
     which: Sequence[int],
@@ -108,7 +98,8 @@ def _moved(
     """The points one damped step on, None where the rival cannot be simulated there.
 
     Args:
-        which: the records that ``rights`` and ``at`` are of; ``damping`` is by record.
+        records: with the outputs that are to be imitated.
+        which: those that ``at`` is of; ``damping`` is by record.
     """
     proposed = [_proposed(rival, point, damping[k]) for k, point in zip(which, at, strict=True)]
     tried = [n for n, point in enumerate(proposed) if point is not None]
@@ -117,13 +108,10 @@ def _moved(
         return found
     values, start = (np.array([own[n] for own in proposed if own is not None]) for n in range(2))
     part = records.part([records.span(which[n]) for n in tried], [str(which[n]) for n in tried])
-    predictions = rival.predicted(part, start=start, values=values)
+    normals, _ = rival.normals(part, level, start=start, values=values)
     for lane, n in enumerate(tried):
-        prediction = predictions.of(lane)
-        if prediction.slopes is None or not (np.isfinite(prediction.y).all() and np.isfinite(prediction.slopes).all()):
-            continue
-        point = _point(rights[n], rival, prediction, level, values[lane], start[lane])
-        found[n] = point if np.isfinite(point.curvature).all() else None
+        if np.isfinite(normals[lane]).all():
+            found[n] = _point(rival, normals[lane], values[lane], start[lane])
     return found
 
 
@@ -149,23 +137,11 @@ def _held(rival: Contender, at: _Point) -> np.ndarray:
     return np.where(down, values <= rival.problem.lower[free], values >= rival.problem.upper[free])
 
 
-def _point(
-    right: np.ndarray,
-    rival: Contender,
-    prediction: Prediction,
-    level: np.ndarray,
-    values: np.ndarray,
-    start: np.ndarray,
-) -> _Point:
-    assert prediction.slopes is not None
-    slopes = prediction.slopes[0] / level[:, None]
-    slopes = slopes.reshape(-1, slopes.shape[-1])
-    left = ((right - prediction.y[0]) / level).ravel()
+def _point(rival: Contender, normal: np.ndarray, values: np.ndarray, start: np.ndarray) -> _Point:
+    """The point of a run whose slopes J and errors e have given [J e]ᵀ[J e], (n_d + 1, n_d + 1)."""
     away = (values - rival.problem.values)[rival.free]
     pull, count = rival.information @ away, len(rival.free)
-    with np.errstate(over="ignore", invalid="ignore"):
-        gradient, curvature = -slopes.T @ left, slopes.T @ slopes
-        nats = 0.5 * float(left @ left + away @ pull)
+    gradient, curvature = -normal[:-1, -1], normal[:-1, :-1].copy()
     gradient[:count] += pull
     curvature[:count, :count] += rival.information
-    return _Point(values, start, nats, gradient, curvature)
+    return _Point(values, start, 0.5 * float(normal[-1, -1] + away @ pull), gradient, curvature)

@@ -72,16 +72,8 @@ def _nats(
         lanes = [(d, a) for d in range(len(draws)) for a in range(count) if a != b and np.isfinite(outputs[a][d]).all()]
         if not lanes:
             continue
-        if rival.loops:
-            whole = rival.predicted(input_records(rival, [inputs[d][a] for d, a in lanes], time))
-            firsts = [whole.of(k) for k in range(len(lanes))]
-        else:
-            firsts = [rival.predicted(input_records(rival, [inputs[0][b]], time))] * len(lanes)
-        directions = len(rival.free) + int(rival.problem.initial_free.sum())
-        for some in chunks(len(lanes), len(time) * len(aim.level) * directions):
-            records = input_records(rival, [inputs[d][a] for d, a in lanes[some]], time)
-            rights = [outputs[a][d] for d, a in lanes[some]]
-            nats = not_imitated_each(rights, rival, firsts[some], records, aim.level, effort)
-            for (d, a), value in zip(lanes[some], nats, strict=True):
-                found[d][a, b] = value
+        records = input_records(rival, [inputs[d][a] for d, a in lanes], time)
+        nats = not_imitated_each([outputs[a][d] for d, a in lanes], rival, records, aim.level, effort)
+        for (d, a), value in zip(lanes, nats, strict=True):
+            found[d][a, b] = value
     return found
