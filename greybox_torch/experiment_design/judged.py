@@ -39,6 +39,15 @@ def judged(aim: Aim, draws: Draws, trial: Trial, time: np.ndarray, limits: Limit
     return replace(trial, nats=nats, score=score)
 
 
+def judged_at_estimates(aim: Aim, trials: Sequence[Trial], time: np.ndarray, effort: Effort = QUICK) -> list[Trial]:
+    """Trials with their evidence and scores at the hypotheses' own estimates alone, side by side."""
+    step = float(time[1] - time[0])
+    reached = [one.driven([trial.commands for trial in trials], step) for one in aim.contenders]
+    inputs = [list(own) for own in zip(*reached, strict=True)]
+    found = _nats(aim, [aim.contenders] * len(trials), inputs, time, effort)
+    return [replace(t, nats=n, score=aim.decided(n)) for t, n in zip(trials, found, strict=True)]
+
+
 def _inputs(draws: Draws, trial: Trial, time: np.ndarray) -> list[list[np.ndarray]]:
     """For each draw the inputs (n_u, N) that reach the machine under each of its hypotheses."""
     step = float(time[1] - time[0])
