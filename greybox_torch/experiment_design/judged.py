@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from greybox_torch.experiment_design.contender import Contender, driven_under
 from greybox_torch.experiment_design.imitation import QUICK, Effort, not_imitated_each
 from greybox_torch.experiment_design.limits import Limits
 from greybox_torch.experiment_design.simulated import chunks, input_records, keeps
+from greybox_torch.simulation.side_by_side import side_by_side
 
 DRAWS = 2
 """Draws of every hypothesis' parameters from what is known of them, beside its estimates, under which an input is judged."""
@@ -77,12 +79,16 @@ def _nats(
         values = np.array([draw[a].problem.values for draw in draws])
         records = input_records(one, [u[a] for u in inputs], time)
         outputs.append(one.predicted(records, tangents=False, values=values).y)
-    for b, rival in enumerate(aim.contenders):
+
+    def against(b: int) -> None:
+        rival = aim.contenders[b]
         lanes = [(d, a) for d in range(len(draws)) for a in range(count) if a != b and np.isfinite(outputs[a][d]).all()]
         if not lanes:
-            continue
+            return
         records = input_records(rival, [inputs[d][a] for d, a in lanes], time)
         nats = not_imitated_each([outputs[a][d] for d, a in lanes], rival, records, aim.level, effort)
         for (d, a), value in zip(lanes, nats, strict=True):
             found[d][a, b] = value
+
+    side_by_side([partial(against, b) for b in range(count)])
     return found
