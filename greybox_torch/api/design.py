@@ -21,7 +21,7 @@ from greybox_torch.experiment_design.contender import Contender, contender
 from greybox_torch.experiment_design.controller import Loop
 from greybox_torch.experiment_design.excitation import Excitation
 from greybox_torch.experiment_design.imitation import THOROUGH
-from greybox_torch.experiment_design.judged import judged
+from greybox_torch.experiment_design.judged import judged_at_estimates
 from greybox_torch.experiment_design.limits import Limits, limits_of
 from greybox_torch.experiment_design.search import MOST_SAMPLES, frequencies, sampled, search
 from greybox_torch.experiment_design.simulated import predictions, within
@@ -174,7 +174,7 @@ def _result(
 def _by_random_inputs(aim: Aim, limits: Limits, time: np.ndarray, best: Trial, seed: int) -> np.ndarray | None:
     """The evidence of a random multisine of the same power, over all frequencies; of several, of the middle one by what it decides."""
     slowest, fastest = frequencies(time)
-    found: list[Trial] = []
+    tried: list[np.ndarray] = []
     for k in range(RANDOM):
         commands = sampled(
             tuple(Excitation("multisine", slowest, fastest, 0.0, 1.0, seed + 1000 + k) for _ in limits.commanded),
@@ -185,10 +185,10 @@ def _by_random_inputs(aim: Aim, limits: Limits, time: np.ndarray, best: Trial, s
         centre = commands.mean(axis=1, keepdims=True)
         commands = centre + (commands - centre) * wanted / np.maximum(power, 1e-300)
         low, high = (np.array([[getattr(r, end)] for r in limits.commanded.values()]) for end in ("lower", "upper"))
-        commands = np.clip(commands, low, high)
-        if within(aim.contenders, limits, [commands], time)[0]:
-            found.append(judged(aim, [aim.contenders], Trial(best.candidate, commands, 0.0), time, limits))
-    if not found:
+        tried.append(np.clip(commands, low, high))
+    kept = [u for u, fine in zip(tried, within(aim.contenders, limits, tried, time), strict=True) if fine]
+    if not kept:
         return None
+    found = judged_at_estimates(aim, [Trial(best.candidate, u, 0.0) for u in kept], time)
     middle = sorted(found, key=lambda t: t.score)[len(found) // 2]
-    return judged(aim, [aim.contenders], middle, time, limits, THOROUGH).nats
+    return judged_at_estimates(aim, [middle], time, THOROUGH)[0].nats

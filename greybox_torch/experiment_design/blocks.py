@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.experiment_design.side_by_side import records_of
+from greybox_torch.experiment_design.side_by_side import begun_each, prepared_each, records_of
 from greybox_torch.mechanisms.delayed_input import CHANNELS
 from greybox_torch.simulation.passes import Pass, Run
 from greybox_torch.simulation.records import Records
@@ -29,7 +29,7 @@ class Machines:
     def run(self, u: np.ndarray, at: int, end: int, starts: np.ndarray | None) -> Run:
         """The samples from ``at`` to ``end`` on inputs (n_u, C, N), from states (C, n_x); from where a recording begins without them."""
         begin = max(0, at - self.reach)
-        records = self._prepared(np.ascontiguousarray(u[:, :, begin:end]))
+        records = prepared_each(self.problem.model, self._records(u[:, :, begin:end]), self.values)
         first = records.first + (at - begin)
         if starts is None:
             starts = self._started(records, first)
@@ -51,27 +51,11 @@ class Machines:
     def _records(self, u: np.ndarray) -> Records:
         return records_of(list(np.moveaxis(u, 1, 0)), self.problem.records, self.step)
 
-    def _prepared(self, u: np.ndarray) -> Records:
-        """The records of inputs (n_u, C, B), with those that the model's delays need."""
-        whole = self._records(u)
-        if not self.reach:
-            return whole
-        own = [self.problem.model.prepared(self._records(u[:, c : c + 1]), row).u for c, row in enumerate(self.values)]
-        return replace(whole, u=np.concatenate(own, axis=1))
-
     def _started(self, records: Records, first: np.ndarray) -> np.ndarray:
-        """:meth:`_begun`, kept as long as the inputs begin alike."""
+        """Start states (C, n_x): those of the first recording, and of memories as the inputs say; kept while these begin alike."""
         inputs = records.u[:, first].tobytes()
         if inputs not in self._kept:
             self._kept.clear()
-            self._kept[inputs] = self._begun(records, first)
+            own = np.repeat(self.problem.initial[:1], len(first), axis=0)
+            self._kept[inputs] = begun_each(self.problem.model, own, records, first, self.values)
         return self._kept[inputs]
-
-    def _begun(self, records: Records, first: np.ndarray) -> np.ndarray:
-        """Start states (C, n_x): those of the first recording, and of the effects' memory as the inputs say."""
-        found = np.repeat(self.problem.initial[:1], len(first), axis=0)
-        rows, which = np.unique(self.values, axis=0, return_inverse=True)
-        for k, row in enumerate(rows):
-            same = which.ravel() == k
-            found[same] = self.problem.model.begun(found[same], records, first[same], row)
-        return found

@@ -15,6 +15,7 @@ from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.experiment_design.closed_loop import under_feedback
 from greybox_torch.experiment_design.controller import Loop
 from greybox_torch.experiment_design.separation import deviation, scaled_inverse
+from greybox_torch.experiment_design.side_by_side import begun_each, prepared_each
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.passes import Pass, Run
 from greybox_torch.simulation.records import Records
@@ -51,22 +52,55 @@ class Contender:
         names = [s.name for s in self.problem.model.plain.states]
         return {name: float(value) for name, value in zip(names, self.problem.initial[0], strict=False)}
 
-    def predicted(self, records: Records, *, tangents: bool = True, start: np.ndarray | None = None) -> Prediction:
-        """Its free runs of records with as many samples each, begun as the first of its own recordings began.
+    def predicted(
+        self,
+        records: Records,
+        *,
+        tangents: bool = True,
+        start: np.ndarray | None = None,
+        values: np.ndarray | None = None,
+    ) -> Prediction:
+        """Its free runs of C records with as many samples each, begun as the first of its own recordings began.
 
         Args:
-            start: other states (n_x,) to begin with, those of the effects' memory among them; by default these begin as the input says.
+            start: other states (n_x,) or (C, n_x) to begin with, those of the effects' memory among them; by default these begin as the
+                input says.
+            values: other parameters for each record, (C, n_p).
         """
-        count, steps = len(records.first), int(records.lengths[0])
-        first = np.repeat(self.problem.initial[:1] if start is None else start[None], count, axis=0)
-        problem = replace(self.problem, records=records, initial=first)
-        driven = problem.driving_records
-        if start is None:
-            first = problem.model.begun(first, driven, records.first, problem.values)
+        steps = int(records.lengths[0])
+        driven, problem, first = self._begun(records, start, values)
         run = self.simulator.run(driven, _pass(problem, records, first, tangents))
         assert run.states is not None
         slopes = None if run.dy is None else run.dy[:, :steps]
         return Prediction(run.y[:, :steps], run.states[:, :steps], slopes, first)
+
+    def normals(
+        self, records: Records, level: np.ndarray, *, start: np.ndarray | None = None, values: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Of each of C records the matrix [J e]ᵀ[J e], (C, n_d + 1, n_d + 1), and the states (C, n_x) that its run begins with.
+
+        J are the slopes of the outputs, e the recorded outputs less those of the run, both in units of ``level`` (n_y,); the rest is as for
+        :meth:`predicted`.
+        """
+        driven, problem, first = self._begun(records, start, values)
+        asked = replace(_pass(problem, records, first, True), keep_states=False, weights=1.0 / level)
+        run = self.simulator.run(replace(driven, y=records.y), asked)  # a delay hides no outputs here
+        assert run.normal is not None
+        return run.normal, first
+
+    def _begun(
+        self, records: Records, start: np.ndarray | None, values: np.ndarray | None
+    ) -> tuple[Records, Problem, np.ndarray]:
+        """The records that drive the model, the problem with the parameters of each, and the states (C, n_x) that they begin with."""
+        count, model = len(records.first), self.problem.model
+        rows = np.atleast_2d(self.problem.values if values is None else values)
+        rows = np.broadcast_to(rows, (count, rows.shape[1]))
+        driven = prepared_each(model, records, rows)
+        first = np.broadcast_to(self.problem.initial[0] if start is None else start, (count, len(model.states)))
+        if start is None:
+            first = begun_each(model, first, driven, records.first, rows)
+        problem = self.problem if values is None else replace(self.problem, values=rows)
+        return driven, problem, np.array(first)
 
     def driven(self, commands: Sequence[np.ndarray], step: float) -> list[np.ndarray]:
         """The inputs (n_u, N) that reach the machine on what is commanded (n_u, N): inputs, and set points of those that a loop drives.

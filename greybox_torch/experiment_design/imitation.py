@@ -7,11 +7,12 @@ Source: K. Levenberg, Quarterly of Applied Mathematics 2, 1944; D. W. Marquardt,
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from greybox_torch.experiment_design.contender import Contender, Prediction
+from greybox_torch.experiment_design.contender import Contender
 from greybox_torch.experiment_design.separation import scaled_inverse
 from greybox_torch.simulation.records import Records
 
@@ -43,45 +44,79 @@ class _Point:
 
 
 def not_imitated(
-    right: np.ndarray,
-    rival: Contender,
-    first: Prediction,
-    records: Records,
-    level: np.ndarray,
-    effort: Effort = THOROUGH,
+    right: np.ndarray, rival: Contender, records: Records, level: np.ndarray, effort: Effort = THOROUGH
 ) -> float:
     """The least over the rival's unknowns of ½ ‖(y − y_rival) / level‖² + ½ δᵀ I δ, in nats, with δ from its estimates.
 
     Args:
         right: the outputs to be imitated, y (N, n_y).
-        first: the rival's prediction of the one record at its estimates, with slopes.
-        records: that record.
+        records: the one record with the inputs that gave them.
         level: errors (n_y,), in units of which outputs differ.
     """
-    point = _point(right, rival, first, level, rival.problem.values, first.start[0])
-    damping = DAMPED
-    if not np.isfinite(point.curvature).all():
-        return 0.0  # where it cannot be judged, nothing is promised
+    return not_imitated_each([right], rival, records, level, effort)[0]
+
+
+def not_imitated_each(
+    rights: Sequence[np.ndarray], rival: Contender, records: Records, level: np.ndarray, effort: Effort = THOROUGH
+) -> list[float]:
+    """:func:`not_imitated` of several outputs (N, n_y), each on a record of its own, side by side: lanes of the same passes."""
+    records = replace(records, y=np.concatenate(rights).T.copy())
+    values = np.repeat(rival.problem.values[None], len(rights), axis=0)
+    normals, starts = rival.normals(records, level)
+    points = [_point(rival, *own) for own in zip(normals, values, starts, strict=True)]
+    damping = [DAMPED] * len(points)
+    sound = [
+        bool(np.isfinite(point.curvature).all()) for point in points
+    ]  # where it cannot be judged, nothing is promised
+    going = [k for k, fine in enumerate(sound) if fine]
     for _ in range(effort.steps):
-        if point.nats < NOTHING:
+        going = [k for k in going if points[k].nats >= NOTHING]
+        if not going:
             break
-        moved = _moved(right, rival, records, level, point, damping)
-        if moved is None or not moved.nats < point.nats:
-            damping *= MORE
-            if damping > HEAVIEST:
-                break
-            continue
-        settled = point.nats - moved.nats < effort.enough * point.nats
-        point, damping = moved, damping * LESS
-        if settled:
-            break
-    return point.nats
+        found = _moved(rival, records, going, level, [points[k] for k in going], damping)
+        for k, moved in zip(list(going), found, strict=True):
+            before = points[k].nats
+            if moved is None or not moved.nats < before:
+                damping[k] *= MORE
+                if damping[k] > HEAVIEST:
+                    going.remove(k)
+                continue
+            points[k], damping[k] = moved, damping[k] * LESS
+            if before - moved.nats < effort.enough * before:
+                going.remove(k)
+    return [point.nats if fine else 0.0 for point, fine in zip(points, sound, strict=True)]
 
 
 def _moved(
-    right: np.ndarray, rival: Contender, records: Records, level: np.ndarray, at: _Point, damping: float
-) -> _Point | None:
-    """The point one damped step on, None where the rival cannot be simulated there."""
+    rival: Contender,
+    records: Records,
+    which: Sequence[int],
+    level: np.ndarray,
+    at: Sequence[_Point],
+    damping: Sequence[float],
+) -> list[_Point | None]:
+    """The points one damped step on, None where the rival cannot be simulated there.
+
+    Args:
+        records: with the outputs that are to be imitated.
+        which: those that ``at`` is of; ``damping`` is by record.
+    """
+    proposed = [_proposed(rival, point, damping[k]) for k, point in zip(which, at, strict=True)]
+    tried = [n for n, point in enumerate(proposed) if point is not None]
+    found: list[_Point | None] = [None] * len(which)
+    if not tried:
+        return found
+    values, start = (np.array([own[n] for own in proposed if own is not None]) for n in range(2))
+    part = records.part([records.span(which[n]) for n in tried], [str(which[n]) for n in tried])
+    normals, _ = rival.normals(part, level, start=start, values=values)
+    for lane, n in enumerate(tried):
+        if np.isfinite(normals[lane]).all():
+            found[n] = _point(rival, normals[lane], values[lane], start[lane])
+    return found
+
+
+def _proposed(rival: Contender, at: _Point, damping: float) -> tuple[np.ndarray, np.ndarray] | None:
+    """Values (n_p,) and start states (n_x,) one damped step on, None where they are no numbers or break a constraint."""
     problem, count = rival.problem, len(rival.free)
     moving = np.concatenate([~_held(rival, at), np.ones(len(at.gradient) - count, dtype=bool)])
     heavier = (at.curvature + damping * np.diag(np.diag(at.curvature))) * np.outer(moving, moving)
@@ -92,11 +127,7 @@ def _moved(
     start[problem.free_states] += step[count:]
     if not (np.isfinite(values).all() and np.isfinite(start).all() and problem.admissible(values)):
         return None
-    prediction = rival.at(values).predicted(records, start=start)
-    if prediction.slopes is None or not (np.isfinite(prediction.y).all() and np.isfinite(prediction.slopes).all()):
-        return None
-    point = _point(right, rival, prediction, level, values, start)
-    return point if np.isfinite(point.curvature).all() else None
+    return values, start
 
 
 def _held(rival: Contender, at: _Point) -> np.ndarray:
@@ -106,23 +137,11 @@ def _held(rival: Contender, at: _Point) -> np.ndarray:
     return np.where(down, values <= rival.problem.lower[free], values >= rival.problem.upper[free])
 
 
-def _point(
-    right: np.ndarray,
-    rival: Contender,
-    prediction: Prediction,
-    level: np.ndarray,
-    values: np.ndarray,
-    start: np.ndarray,
-) -> _Point:
-    assert prediction.slopes is not None
-    slopes = prediction.slopes[0] / level[:, None]
-    slopes = slopes.reshape(-1, slopes.shape[-1])
-    left = ((right - prediction.y[0]) / level).ravel()
+def _point(rival: Contender, normal: np.ndarray, values: np.ndarray, start: np.ndarray) -> _Point:
+    """The point of a run whose slopes J and errors e have given [J e]ᵀ[J e], (n_d + 1, n_d + 1)."""
     away = (values - rival.problem.values)[rival.free]
     pull, count = rival.information @ away, len(rival.free)
-    with np.errstate(over="ignore", invalid="ignore"):
-        gradient, curvature = -slopes.T @ left, slopes.T @ slopes
-        nats = 0.5 * float(left @ left + away @ pull)
+    gradient, curvature = -normal[:-1, -1], normal[:-1, :-1].copy()
     gradient[:count] += pull
     curvature[:count, :count] += rival.information
-    return _Point(values, start, nats, gradient, curvature)
+    return _Point(values, start, 0.5 * float(normal[-1, -1] + away @ pull), gradient, curvature)

@@ -1,11 +1,13 @@
-"""Records of inputs that are simulated side by side."""
+"""Records of inputs that are simulated side by side, each with parameters of its own."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.records import Records
 
 
@@ -23,3 +25,24 @@ def records_of(inputs: Sequence[np.ndarray], like: Records, sample_time: float) 
         names=tuple(str(k) for k in range(count)),
         hold=like.hold,
     )
+
+
+def prepared_each(model: GreyBoxModel, records: Records, values: np.ndarray) -> Records:
+    """The records that drive a model, see :meth:`GreyBoxModel.prepared`, where experiment c has the parameters ``values[c]``, (C, n_p)."""
+    whole = model.prepared(records, values[0])
+    if whole is records or (values == values[0]).all():
+        return whole
+    own = [model.prepared(records.part([records.span(c)], [""]), row).u for c, row in enumerate(values)]
+    return replace(records, u=np.concatenate(own, axis=1))
+
+
+def begun_each(
+    model: GreyBoxModel, states: np.ndarray, records: Records, samples: np.ndarray, values: np.ndarray
+) -> np.ndarray:
+    """Start states (C, n_x) at ``samples`` (C,), see :meth:`GreyBoxModel.begun`, with the parameters ``values`` (C, n_p)."""
+    found = states.copy()
+    rows, which = np.unique(values, axis=0, return_inverse=True)
+    for k, row in enumerate(rows):
+        same = which.ravel() == k
+        found[same] = model.begun(states[same], records, samples[same], row)
+    return found

@@ -44,9 +44,15 @@ def predictions(
     return along
 
 
-def keeps(one: Contender, limits: Limits, inputs: Sequence[np.ndarray], time: np.ndarray) -> np.ndarray:
-    """Whether a hypothesis keeps the limits, (C,), on inputs (n_u, N) that reach the machine."""
-    found = one.predicted(input_records(one, inputs, time), tangents=False)
+def keeps(
+    one: Contender,
+    limits: Limits,
+    inputs: Sequence[np.ndarray],
+    time: np.ndarray,
+    values: np.ndarray | None = None,
+) -> np.ndarray:
+    """Whether a hypothesis keeps the limits, (C,), on inputs (n_u, N) that reach the machine, with other parameters (C, n_p) on each."""
+    found = one.predicted(input_records(one, inputs, time), tangents=False, values=values)
     fine = _inside(found.y, [o.name for o in one.problem.model.outputs], limits.outputs)
     fine &= _inside(found.states, [s.name for s in one.problem.model.states], limits.states)
     names = [i.name for i in one.problem.model.inputs]

@@ -18,11 +18,17 @@ stub: Any = SimpleNamespace
 @pytest.mark.parametrize(("leaves", "cost"), [(None, 0.0), (1, OUTSIDE), (SAFE, OUTSIDE)])
 def test_an_input_keeps_the_limits_under_every_draw(monkeypatch, leaves: int | None, cost: float) -> None:
     """Also under the many draws that are simulated only for the limits; the evidence is taken from the first few."""
-    draws = [(k,) for k in range(SAFE + 1)]
+    model = stub(states=[])
+    draws = [(stub(problem=stub(values=np.array([k]), model=model), level=[1.0]),) for k in range(SAFE + 1)]
     taken: list[int] = []
+
+    def evidence(aim, own, *given):
+        taken.extend(int(one.problem.values[0]) for (one,) in own)
+        return [np.full((2, 2), 5.0)] * len(own)
+
     monkeypatch.setattr(module, "driven_under", lambda own, commands, step: commands)
-    monkeypatch.setattr(module, "keeps", lambda one, *given: [one != leaves])
-    monkeypatch.setattr(module, "_nats", lambda aim, own, *given: taken.append(own[0]) or np.full((2, 2), 5.0))
+    monkeypatch.setattr(module, "keeps", lambda one, limits, inputs, time, values: values[:, 0] != leaves)
+    monkeypatch.setattr(module, "_nats", evidence)
     found = judged(stub(decided=lambda nats: 0.6), draws, Trial((), np.zeros((1, 3)), 0.0), np.arange(3.0), stub())
     assert found.score == pytest.approx(0.6 - cost) and found.nats == pytest.approx(np.full((2, 2), 5.0))
     assert taken == list(range(DRAWS + 1))

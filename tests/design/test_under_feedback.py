@@ -25,7 +25,8 @@ from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.experiment_design import search
 from greybox_torch.experiment_design.aim import Trial
-from greybox_torch.experiment_design.judged import _all_keep, _inputs, draws_of
+from greybox_torch.experiment_design.judged import _inputs, draws_of
+from greybox_torch.experiment_design.simulated import keeps
 from greybox_torch.files import write_all
 from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombFriction
@@ -113,7 +114,9 @@ def left(designed: gt.DesignResult, found: DiagnosisResult, commands: np.ndarray
     loops = loops_for(entries, found.model.plain, designed.limits, STEP)
     draws = draws_of(_aim(hypotheses_of(found), None, loops), seed=0)
     inputs = _inputs(draws, Trial((), commands[None], 0.0), designed.time)
-    return sum(not _all_keep(own, designed.limits, u, designed.time) for own, u in zip(draws, inputs, strict=True))
+    values = [np.array([draw[h].problem.values for draw in draws]) for h in range(2)]
+    kept = [keeps(draws[0][h], designed.limits, [u[h] for u in inputs], designed.time, values[h]) for h in range(2)]
+    return int((~np.logical_and(*kept)).sum())
 
 
 @pytest.fixture
