@@ -7,7 +7,7 @@ Ctrl-C there ends the diagnosis.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -42,10 +42,9 @@ def judge(selection: Selection, clock: Stopwatch) -> Findings:
     clock.lap(JUDGING)
     ended = {FITTING: fitted, JUDGING: held and whole}
     cut = (*selection.cut, *(stage for stage, whole in ended.items() if not whole))
-    told = {"state": state, "gains": gains, "others": None if cut else others, "complete": not cut, "cut": cut}
-    told["more"] = (*selection.more, *said)
-    known: dict[str, Any] = {f.name: getattr(selection, f.name) for f in fields(Selection)}
-    return Findings(**{**known, **told}, judged=judged)
+    told: dict[str, Any] = {"state": state, "gains": gains, "complete": not cut, "cut": cut, "judged": judged}
+    told |= {"others": None if cut else others, "more": (*selection.more, *said)}
+    return Findings(**vars(selection) | told)
 
 
 def _finished(study: Study, state: SearchState, deadline: Deadline) -> tuple[tuple[Final, Final], bool]:

@@ -32,15 +32,16 @@ def find_with_more(
     """
     judged = partial(judge, clock=clock)
     search = partial(find, model=model, make_study=make_study, clock=clock, end=end)
-    known = {_chosen_with(first): judged(first) if end.limited else first}
+    begun = _chosen_with(first.dataset)
+    known = {begun: judged(first) if end.limited else first}
     while True:
-        best, whole, in_time = _selected(known, _chosen_with(first), search, judged if end.limited else None, end)
+        best, whole, in_time = _selected(known, begun, search, judged if end.limited else None, end)
         own = best if isinstance(best, Findings) else judged(best)
         if not whole:
             return replace(own, complete=False, others=own.others if in_time else None, cut=(*own.cut, AGAIN))
         if own.state is best.state:
             return own
-        known[_chosen_with(own)] = own
+        known[_chosen_with(own.dataset)] = own
 
 
 def _selected(
@@ -65,7 +66,7 @@ def _selected(
                 more = promote_validation(last.study, last.dataset, last.state, last.others)
                 if more is None:
                     break
-                names = _names(more.dataset)
+                names = _chosen_with(more.dataset)
                 if names not in known:
                     last.study.working_on(f"searching again, {more.taken} among the experiments to choose with")
                     found = search(more.dataset, found_before=last.searched)
@@ -81,11 +82,7 @@ def _selected(
     return best, last.complete or not best.complete, True
 
 
-def _chosen_with(selection: Selection) -> tuple[str, ...]:
-    return _names(selection.dataset)
-
-
-def _names(dataset: DataSet) -> tuple[str, ...]:
+def _chosen_with(dataset: DataSet) -> tuple[str, ...]:
     """The experiments that are chosen with."""
     return tuple(r.name for r in dataset.estimation())
 

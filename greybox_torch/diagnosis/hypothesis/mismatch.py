@@ -18,12 +18,7 @@ from greybox_torch.estimate.problem import Problem
 
 def mismatch_share(fitted: Hypothesis, settings: DiagnosisSettings) -> float:
     """Root mean square error beyond the noise, in units of the outputs' spread: the largest over the window lengths."""
-    known = floor_known(fitted.problem, settings)  # else what looks like noise may be motion, and hide what is missing
-    shares = []
-    for fit in fitted.fits:
-        beyond = max(fit.mean_square - known * noise_floor(fit.problem, settings), 0.0)
-        shares.append(np.sqrt(beyond / _mean_squared_spread(fit.problem)))
-    return float(max(shares))
+    return max(_share(fit.mean_square, fit.problem, settings) for fit in fitted.fits)
 
 
 def least_mismatch(study: Study) -> float:
@@ -56,8 +51,14 @@ def _share_of_whole_records(fitted: Hypothesis, settings: DiagnosisSettings, bud
     runs = simulate(problem, fitted.simulator)
     measured = (problem.records.y[:, problem.records.span(e)].T for e in range(len(runs)))
     errors = np.concatenate([y - run for y, run in zip(measured, runs, strict=True)]) * problem.weights
-    beyond = float(np.nanmean(errors**2)) - floor_known(problem, settings) * noise_floor(problem, settings)
-    return float(np.sqrt(max(beyond, 0.0) / _mean_squared_spread(problem))) if np.isfinite(errors).any() else np.inf
+    return _share(float(np.nanmean(errors**2)), problem, settings) if np.isfinite(errors).any() else np.inf
+
+
+def _share(mean_square: float, problem: Problem, settings: DiagnosisSettings) -> float:
+    """The root of a mean squared error beyond the noise, in units of the outputs' spread."""
+    known = floor_known(problem, settings)  # else what looks like noise may be motion, and hide what is missing
+    beyond = max(mean_square - known * noise_floor(problem, settings), 0.0)
+    return float(np.sqrt(beyond / _mean_squared_spread(problem)))
 
 
 def _mean_squared_spread(problem: Problem) -> float:
