@@ -44,22 +44,16 @@ class _Point:
 
 
 def not_imitated(
-    right: np.ndarray, rival: Contender, records: Records, level: np.ndarray, effort: Effort = THOROUGH
-) -> float:
-    """The least over the rival's unknowns of ½ ‖(y − y_rival) / level‖² + ½ δᵀ I δ, in nats, with δ from its estimates.
-
-    Args:
-        right: the outputs to be imitated, y (N, n_y).
-        records: the one record with the inputs that gave them.
-        level: errors (n_y,), in units of which outputs differ.
-    """
-    return not_imitated_each([right], rival, records, level, effort)[0]
-
-
-def not_imitated_each(
     rights: Sequence[np.ndarray], rival: Contender, records: Records, level: np.ndarray, effort: Effort = THOROUGH
 ) -> list[float]:
-    """:func:`not_imitated` of several outputs (N, n_y), each on a record of its own, side by side: lanes of the same passes."""
+    """For each of some outputs the least over the rival's unknowns of ½ ‖(y − y_rival) / level‖² + ½ δᵀ I δ, in nats, with δ from its
+    estimates. Each is on a record of its own, side by side: lanes of the same passes.
+
+    Args:
+        rights: the outputs to be imitated, y (N, n_y) each.
+        records: those with the inputs that gave them.
+        level: errors (n_y,), in units of which outputs differ.
+    """
     records = replace(records, y=np.concatenate(rights).T.copy())
     values = np.repeat(rival.problem.values[None], len(rights), axis=0)
     normals, starts = rival.normals(records, level)

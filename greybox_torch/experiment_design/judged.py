@@ -10,7 +10,7 @@ import numpy as np
 
 from greybox_torch.experiment_design.aim import Aim, Trial
 from greybox_torch.experiment_design.contender import Contender, driven_under
-from greybox_torch.experiment_design.imitation import QUICK, Effort, not_imitated_each
+from greybox_torch.experiment_design.imitation import QUICK, Effort, not_imitated
 from greybox_torch.experiment_design.limits import Limits
 from greybox_torch.experiment_design.simulated import chunks, input_records, keeps
 from greybox_torch.simulation.side_by_side import side_by_side
@@ -86,7 +86,7 @@ def _nats(
         if not lanes:
             return
         records = input_records(rival, [inputs[d][a] for d, a in lanes], time)
-        nats = not_imitated_each([outputs[a][d] for d, a in lanes], rival, records, aim.level, effort)
+        nats = not_imitated([outputs[a][d] for d, a in lanes], rival, records, aim.level, effort)
         for (d, a), value in zip(lanes, nats, strict=True):
             found[d][a, b] = value
 

@@ -10,7 +10,7 @@ import pytest
 from greybox_torch.api.design import _contender
 from greybox_torch.api.hypotheses import hypotheses_of
 from greybox_torch.experiment_design.contender import Contender
-from greybox_torch.experiment_design.imitation import not_imitated, not_imitated_each
+from greybox_torch.experiment_design.imitation import not_imitated
 from greybox_torch.experiment_design.separation import evidence
 from greybox_torch.experiment_design.side_by_side import records_of
 
@@ -34,7 +34,7 @@ def left(right: Contender, rival: Contender) -> tuple[float, float]:
     known = np.zeros((slopes.shape[1],) * 2)
     known[: len(rival.information), : len(rival.information)] = rival.information
     linear = evidence(((outputs - first.y[0]) / rival.level).ravel(), slopes, known)
-    return linear, not_imitated(outputs, rival, records, rival.level)
+    return linear, not_imitated([outputs], rival, records, rival.level)[0]
 
 
 def test_what_other_values_do_is_imitated_where_nothing_is_known_of_them(both) -> None:
@@ -63,7 +63,7 @@ def test_a_start_state_of_its_own_is_no_evidence(both) -> None:
     first = torque.predicted(records)
     elsewhere = torque.predicted(records, start=first.start[0] + 1.5)
     assert np.abs(elsewhere.y - first.y).max() == pytest.approx(1.5)
-    assert not_imitated(elsewhere.y[0], torque, records, torque.level) < 0.05
+    assert not_imitated([elsewhere.y[0]], torque, records, torque.level)[0] < 0.05
 
 
 def test_side_by_side_is_one_by_one(both) -> None:
@@ -73,8 +73,8 @@ def test_side_by_side_is_one_by_one(both) -> None:
     values = np.array([friction.problem.values * f for f in (1.0, 1.1, 0.9)])
     records = records_of(inputs, torque.problem.records, 0.01)
     rights = friction.predicted(records, tangents=False, values=values).y
-    found = not_imitated_each(list(rights), torque, records, torque.level)
+    found = not_imitated(list(rights), torque, records, torque.level)
     for k, u in enumerate(inputs):
         alone = records_of([u], torque.problem.records, 0.01)
         np.testing.assert_array_equal(friction.at(values[k]).predicted(alone, tangents=False).y[0], rights[k])
-        assert found[k] == not_imitated(rights[k], torque, alone, torque.level) > 1.0
+        assert found[k] == not_imitated([rights[k]], torque, alone, torque.level)[0] > 1.0
