@@ -1,8 +1,8 @@
 """C++ source for a model's stepper: Runge-Kutta 4 with forward sensitivities, many windows side by side in vector lanes.
 
-Every scalar of the model becomes a vector of lanes (8 double or 16 single precision numbers), one lane a window. Terms that depend on
-parameters alone are computed once. Within a step the four stages of the states come first, with their sparse Jacobians; then each
-tangent direction runs through all four stages in registers.
+Every scalar of the model becomes a vector of lanes, one lane a window: with AVX-512 these are 8 double precision numbers, else 4, and in
+single precision twice as many. Terms that depend on parameters alone are computed once. Within a step the four stages of the states come
+first, with their sparse Jacobians; then each tangent direction runs through all four stages in registers.
 """
 
 from __future__ import annotations

@@ -1,8 +1,14 @@
 """The fixed part of the emitted C++ program."""
 
 PROGRAM = r"""
-#define LANES (64 / (long)sizeof(real))
-typedef real vec __attribute__((vector_size(64)));
+// As wide as the machine's registers: wider vectors are taken apart again, which takes the compiler three times as long.
+#ifdef __AVX512F__
+#define VECTOR_BYTES 64
+#else
+#define VECTOR_BYTES 32
+#endif
+#define LANES (VECTOR_BYTES / (long)sizeof(real))
+typedef real vec __attribute__((vector_size(VECTOR_BYTES)));
 typedef decltype(vec() < vec()) mask;
 // Loops over states, outputs and tiles must be written out for their arrays to live in registers; not beyond 16 turns, for long programs.
 #define UNROLL _Pragma("GCC unroll 16")
@@ -197,6 +203,7 @@ template <bool TANGENTS> static void run_group(const Job &job, long g) {
   free(rows);
 }
 
+extern "C" const long lanes = LANES;
 extern "C" void run(const Job *job) {
 #pragma omp parallel for schedule(dynamic) num_threads(job->threads)
   for (long g = 0; g < job->groups; g++)

@@ -76,10 +76,15 @@ class NativeStepper:
     def compiled(self) -> bool:
         return True
 
+    @property
+    def lanes(self) -> int:
+        """Windows side by side in a vector of the machine."""
+        return _LONG.in_dll(self.loaded, "lanes").value
+
     def run(self, records: Records, asked: Pass, substeps: int = 1) -> Run:
         windows, weights = asked.windows, asked.weights
         real = np.float64 if self.precision == "double" else np.float32
-        lanes = 64 // np.dtype(real).itemsize
+        lanes = self.lanes
         count, n_x, n_y = len(windows.start), self.equations.n_states, self.equations.n_outputs
         groups = -(-count // lanes)
         n_p = len(self.sensitive) if asked.tangents else 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import platform
 import sys
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.simulator import make_stepper
 from greybox_torch.simulation.stepper import Stepper
-from greybox_torch.simulation.windows import whole_records
+from greybox_torch.simulation.windows import Windows, whole_records
 from greybox_torch.systems import RobotArm
 
 
@@ -202,6 +203,28 @@ def test_what_needs_a_compiler_says_so(monkeypatch: pytest.MonkeyPatch, tmp_path
     monkeypatch.setenv("GREYBOX_COMPILER", "off")
     with pytest.raises(UserError, match="GREYBOX_COMPILER is off"):
         build.check_compiler("a diagnosis")
+
+
+@pytest.mark.skipif(platform.machine() != "x86_64", reason="no processor with AVX")
+@pytest.mark.parametrize("windows", [1, 4, 5, 8, 11])
+def test_narrow_vectors_give_the_same_numbers(
+    windows: int, records: Records, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Four windows in a vector, as on processors without AVX-512; groups that are full and groups that are not."""
+    usual = make_stepper(lag(plain), ("k",))
+    monkeypatch.setenv("GREYBOX_CACHE", str(tmp_path))
+    monkeypatch.setattr(build, "FLAGS", (*build.FLAGS, "-mno-avx512f"))
+    build.library.cache_clear()
+    narrow = make_stepper(lag(plain), ("k",))
+    build.library.cache_clear()
+    assert isinstance(narrow, NativeStepper) and narrow.lanes == 4
+    starts = np.linspace(0.5, 2.0, windows)[:, None]
+    cut = Windows(np.arange(windows), np.full(windows, 49), 30)
+    asked = Pass(cut, np.array([0.7]), starts, tangents=True, weights=np.ones(1))
+    runs = [stepper.run(records, asked) for stepper in (usual, narrow)]
+    for name in ("y", "x_end", "dx_end", "normal"):
+        one, other = (getattr(run, name) for run in runs)
+        np.testing.assert_allclose(one, other, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.skipif(importlib.util.find_spec("ziglang") is None, reason="the package ziglang is not installed")

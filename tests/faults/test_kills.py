@@ -21,10 +21,12 @@ from greybox_torch.errors import UserError
 from greybox_torch.files import json_text, write_all, write_text
 
 WRITES = """
+import signal
 import sys
 from pathlib import Path
 from greybox_torch.files import json_text, write_all
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where the tests run in the background of a shell
 folder, size = Path(sys.argv[1]), int(sys.argv[2])
 print("begun", flush=True)
 for k in range(10**9):
@@ -48,7 +50,10 @@ def test_what_is_written_is_whole(tmp_path: Path, sent: signal.Signals) -> None:
         assert process.stdout is not None and process.stdout.readline() == b"begun\n"
         time.sleep(float(rng.uniform(0.0, 0.1)))
         process.send_signal(sent)
-        process.communicate(timeout=30)
+        try:
+            process.communicate(timeout=30)
+        finally:
+            process.kill()
         for file in (tmp_path / "out").glob("[!.]*"):
             assert len(json.loads(file.read_text())["text"]) == 300000, k
 
