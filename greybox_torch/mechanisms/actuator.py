@@ -14,6 +14,9 @@ from greybox_torch.mechanisms.short_lag import lag_change, lag_rate
 from greybox_torch.mechanisms.transmission import dead_zone
 from greybox_torch.model import Parameter, Signals, State
 
+TINY = 1e-12
+"""Keeps a logarithm and a quotient finite at zero."""
+
 
 class InputLag(Mechanism):
     """The input acts through a first-order lag: T dv/dt = u − v."""
@@ -121,29 +124,43 @@ class InputGain(LinearLaw):
 
 
 class TorqueSaturation(Mechanism):
-    """The input that acts is limited to ±limit."""
+    """The input that acts is limited: u / (1 + |u / limit|^n)^(1/n), with n = 1 / ``softness``.
+
+    As soft as iron that saturates (a softness of 0.3 to 1), or a clamp (a softness of zero).
+    """
 
     name = "torque_saturation"
     kinds = ("actuator",)
     needs = ("input",)
+    essential = ("limit",)
     nature = "an input that acts in part only"
-    explanation = "The input that acts is limited (current limit, valve fully open)."
+    explanation = "The input that acts is limited (current limit, valve fully open, iron that saturates)."
     source = "H. K. Khalil, Nonlinear Systems, 3rd ed., 2002"
     experiment = "large inputs of both signs"
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         reach = around.ranges["input"].reach
         return [
-            Parameter("limit", 0.8 * reach, around.force_unit, lower=0.02 * reach, upper=reach, description="limit")
+            Parameter("limit", 0.8 * reach, around.force_unit, lower=0.02 * reach, upper=reach, description="limit"),
+            Parameter("softness", 0.0, "", lower=0.0, upper=1.0, description="0: a clamp, 0.5: a gradual limit"),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return torch.clamp(s.input, -p.limit, p.limit) - s.input
+        # ln(1 + x^n) / n as a maximum and a rest: no power overflows, and without softness it is the clamp itself.
+        ln_x = 0.5 * torch.log((s.input / p.limit) ** 2 + TINY)
+        rest = torch.log1p(torch.exp(-torch.abs(ln_x) / (p.softness + TINY)))
+        return s.input * torch.expm1(-torch.clamp(ln_x, min=0.0) - p.softness * rest)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         spread = around.ranges["input"]
-        limits = (1.0 * spread.rms, 1.5 * spread.rms, 2.0 * spread.rms, 2.7 * spread.rms)
-        return [Probe((SHARE,), {"limit": limit}) for limit in limits if limit < spread.reach]
+        hard = [factor * spread.rms for factor in (1.0, 1.5, 2.0, 2.7)]
+        soft = [factor * spread.rms for factor in (1.5, 3.0)]
+        return [
+            Probe((SHARE,), {"limit": limit, "softness": softness})
+            for softness, limits in ((0.05, hard), (0.4, soft))
+            for limit in limits
+            if limit < spread.reach
+        ]
 
 
 class ActuatorDeadzone(Mechanism):

@@ -230,8 +230,9 @@ class AugmentedModel(GreyBoxModel):
 
 
 def _kinematic_forces(a: Attachment, local: Signals, own: Signals) -> list[tuple[str, Any]]:
-    """What a kinematic law that follows a body does beyond the change of deflection: forces by port."""
-    if not (a.mechanism.kinematic and a.position):
+    """What a kinematic law does beyond the change of deflection: forces by port."""
+    if not a.mechanism.kinematic:
         return []
-    found = [(a.position, a.mechanism.reaction(local, own)), (a.port, a.mechanism.damped(local, own))]
+    followed = [(a.position, a.mechanism.reaction(local, own))] if a.position else []
+    found = [*followed, (a.port, a.mechanism.damped(local, own))]
     return [(place, force) for place, force in found if force is not None]

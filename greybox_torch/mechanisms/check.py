@@ -131,7 +131,7 @@ def _change(
     rates = _tried(law, "rates(s, p, z)", lambda: mechanism.rates(s, p, z))
     if set(rates) != set(z):
         raise _wrong(law, f"rates(s, p, z) has {sorted(rates)}; expected one for every state, {sorted(z)}")
-    if law.kinematic:
+    if mechanism.kinematic:
         change = _tried(law, "deflection(s, p)", lambda: mechanism.deflection(s, p)) - s.deflection
     else:
         change = _tried(law, "force(s, p, z)", lambda: mechanism.force(s, p, z))

@@ -57,7 +57,7 @@ class StribeckFriction(Mechanism):
     generalises = ("coulomb_friction", "viscous_friction")
     includes = generalises
     essential = ("F_s",)
-    natural = ("v_0.lower",)
+    natural = ("v_0",)
     rubs = True
     nature = "dry friction"
     explanation = (

@@ -45,7 +45,7 @@ class Mechanism:
     """Bodies of a chain whose positions the law uses, as signals ``position@BODY``."""
     drives: tuple[str, ...] = ()
     """Further inputs of the model that a law at an actuator changes as well, as signals ``input@NAME``."""
-    kinematic: ClassVar[bool] = False
+    kinematic: bool = False
     """Whether the law changes a coupling's deflection (:meth:`deflection`) instead of adding a force."""
     fades: ClassVar[bool] = False
     """Whether the memory is gone after a few samples, so that a window may begin with any."""
@@ -109,7 +109,11 @@ class Mechanism:
         return None
 
     def damped(self, s: Signals, p: Signals) -> Any | None:
-        """For a kinematic law that moves with a body, the force on the coupling by which its damper answers the rate of the change."""
+        """For a kinematic law, the force on the coupling by which its damper answers the rate of the change, if there is one."""
+        return None
+
+    def written_as_force(self) -> Mechanism | None:
+        """For a kinematic law, the same as a force on the coupling, for where no state carries the change of deflection; or None."""
         return None
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:

@@ -18,11 +18,11 @@ def smooth_sign(speed: Any, width: Any) -> Any:
 
 
 def width_parameter(around: Surroundings) -> Parameter:
-    """The speed v_0 over which a Coulomb force changes its sign."""
+    """The speed v_0 over which a Coulomb force changes its sign: no more than a tenth of the fastest, or it would grow with speed."""
     reach = around.ranges["speed"].reach
     unit = around.units.get("speed", "")
     return Parameter(
-        "v_0", 0.03 * reach, unit, lower=2e-3 * reach, upper=0.3 * reach, description="width of the sign change"
+        "v_0", 0.03 * reach, unit, lower=2e-3 * reach, upper=0.1 * reach, description="width of the sign change"
     )
 
 
@@ -38,7 +38,7 @@ class DryLaw(LinearLaw):
     A subclass writes :meth:`law`, the force while the speed is positive and large, and the class attributes of :class:`LinearLaw`.
     """
 
-    natural = ("v_0.lower",)
+    natural = ("v_0",)
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         return [self.size(around), width_parameter(around)]
@@ -48,8 +48,3 @@ class DryLaw(LinearLaw):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((self.parameter,), {"v_0": width}) for width in widths(around)]
-
-    def natural_ends(self, around: Surroundings) -> tuple[str, ...]:
-        """Where the speed never changes its sign, nothing says over which width the force would."""
-        speed = around.ranges["speed"]
-        return (*self.natural, "v_0.upper") if speed.low * speed.high > 0.0 else self.natural

@@ -11,6 +11,9 @@ from greybox_torch.mechanisms.degenerate import longer_than_the_travel
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals, State
 
+ROUNDING = 1e-9
+"""Share of a gap that is nothing."""
+
 
 def dead_zone(value: Any, half_gap: Any) -> Any:
     """Zero within ±half_gap, shifted towards zero by it outside."""
@@ -18,32 +21,67 @@ def dead_zone(value: Any, half_gap: Any) -> Any:
 
 
 class Backlash(Mechanism):
-    """The spring sees the deflection less a dead zone."""
+    """The spring sees the deflection less a dead zone.
+
+    Where the coupling's rate is known, its damper may lose ``damping`` within the gap, where the two sides do not touch: a part of its
+    coefficient, or all of it. ``as_force``: the same as a force, with the ``stiffness`` of the spring as a parameter of its own, for
+    a model in which no state reaches this spring alone.
+    """
 
     name = "backlash"
     kinds = ("coupling",)
     needs = ("deflection",)
-    kinematic = True
     nature = "a coupling that is no linear spring"
     explanation = "There is play: within a gap the coupling transmits nothing."
     source = "M. Nordin, P.-O. Gutman, Automatica 38(10), 2002"
     experiment = "reversals at low torque, so that the gap is crossed slowly"
 
+    def __init__(self, as_force: bool = False) -> None:
+        self.as_force = as_force
+        self.kinematic = not as_force
+
     def parameters(self, around: Surroundings) -> list[Parameter]:
-        reach = around.ranges["deflection"].reach
-        unit = around.units.get("deflection", "")
-        return [Parameter("half_gap", 0.0, unit, lower=0.0, upper=reach, description="half the gap")]
+        reach, unit = around.ranges["deflection"].reach, around.units.get("deflection", "")
+        wide = 0.1 * reach if self.as_force else 0.0
+        found = [Parameter("half_gap", wide, unit, lower=0.0, upper=reach, description="half the gap")]
+        if self.as_force:
+            stiffness = "stiffness of the coupling's spring"
+            found.append(Parameter("stiffness", 0.0, around.per("deflection"), lower=0.0, description=stiffness))
+        if "rate" in around.ranges:
+            lost = "what the coupling's damper loses within the gap"
+            found.append(Parameter("damping", 0.0, around.per("rate"), lower=0.0, description=lost))
+        return found
+
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        lost, damped = -p.stiffness * torch.clamp(s.deflection, -p.half_gap, p.half_gap), self.damped(s, p)
+        return lost if damped is None else lost + damped
 
     def deflection(self, s: Signals, p: Signals) -> Any:
         return dead_zone(s.deflection, p.half_gap)
 
+    def damped(self, s: Signals, p: Signals) -> Any:
+        if "damping" not in p:
+            return None
+        # A kinematic law sees the deflection less its dead zone: within the gap that is zero, but for rounding.
+        within = p.half_gap if self.as_force else ROUNDING * p.half_gap
+        return torch.where(torch.abs(s.deflection) < within, -p.damping * s.rate, 0.0)
+
+    def written_as_force(self) -> Mechanism:
+        return Backlash(as_force=True)
+
     def probes(self, around: Surroundings) -> Sequence[Probe]:
-        reach = around.ranges["deflection"].reach
-        return [Probe(("half_gap",)), *(Probe((SHARE,), {"half_gap": f * reach}) for f in (0.03, 0.1, 0.3, 0.7))]
+        gaps = [f * around.ranges["deflection"].reach for f in (0.03, 0.1, 0.3, 0.7)]
+        if self.as_force:
+            amplitudes = tuple(p.name for p in self.parameters(around) if p.name != "half_gap")
+            return [Probe(amplitudes, {"half_gap": gap}) for gap in gaps]
+        return [Probe(("half_gap",)), *(Probe((SHARE,), {"half_gap": gap}) for gap in gaps)]
 
 
 class NonlinearStiffness(Mechanism):
-    """k_2 δ |δ| + k_3 δ³ + F_0 tanh(δ / δ_0): stiffening or softening polynomials, and a spring that is stiff at first."""
+    """k_2 δ |δ| + k_3 δ³ + k_a δ² + F_0 tanh(δ / δ_0): stiffening or softening polynomials, and a spring that is stiff at first.
+
+    With ``k_a`` the spring is stiffer in one direction than in the other (a cone, a preloaded joint, a membrane).
+    """
 
     name = "nonlinear_stiffness"
     kinds = ("coupling",)
@@ -59,6 +97,7 @@ class NonlinearStiffness(Mechanism):
         return [
             Parameter("k_2", 0.0, around.per("deflection", 2), description="coefficient of δ|δ|"),
             Parameter("k_3", 0.0, around.per("deflection", 3), description="coefficient of δ³"),
+            Parameter("k_a", 0.0, around.per("deflection", 2), description="coefficient of δ², between the directions"),
             Parameter("F_0", 0.0, around.force_unit, lower=0.0, description="level of the part that is stiff at first"),
             Parameter(
                 "d_0", 0.2 * reach, unit, lower=0.01 * reach, upper=reach, description="deflection where it gives way"
@@ -66,13 +105,16 @@ class NonlinearStiffness(Mechanism):
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        polynomial = p.k_2 * s.deflection * torch.abs(s.deflection) + p.k_3 * s.deflection**3
-        return polynomial + p.F_0 * torch.tanh(s.deflection / p.d_0)
+        odd = p.k_2 * s.deflection * torch.abs(s.deflection) + p.k_3 * s.deflection**3
+        return odd + p.k_a * s.deflection**2 + p.F_0 * torch.tanh(s.deflection / p.d_0)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         reach = around.ranges["deflection"].reach
         softening = (Probe(("F_0",), {"d_0": f * reach}) for f in (0.03, 0.1, 0.3))
-        return [*(Probe(names, {"d_0": 0.2 * reach}) for names in (("k_3",), ("k_2", "k_3"))), *softening]
+        return [
+            *(Probe(names, {"d_0": 0.2 * reach}) for names in (("k_3",), ("k_2", "k_3"), ("k_3", "k_a"))),
+            *softening,
+        ]
 
 
 class HystereticSpring(Mechanism):

@@ -37,7 +37,7 @@ class PositionDependentFriction(Mechanism):
     kinds = ("body",)
     needs = ("speed", "position")
     generalises = ("coulomb_friction",)
-    natural = ("v_0.lower",)
+    natural = ("v_0",)
     nature = "dry friction"
     explanation = "The friction level varies periodically with position (bent shaft, eccentric bearing)."
     source = "M. R. Popović, A. A. Goldenberg, IEEE Trans. Robotics and Automation 14(1), 1998"
@@ -73,7 +73,7 @@ class FrictionWarmup(Mechanism):
     name = "friction_warmup"
     kinds = ("body",)
     needs = ("speed", "time")
-    natural = ("v_0.lower",)
+    natural = ("v_0",)
     nature = "dry friction"
     explanation = "The friction level drifts as the machine warms up."
     source = "A. C. Bittencourt, S. Gunnarsson, J. Dyn. Sys. Meas. Control 134, 2012"

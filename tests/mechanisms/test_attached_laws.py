@@ -22,13 +22,16 @@ from tests.mechanisms.attaching import ARM, ARM_START, STEP, Tank, at, attached,
 
 
 class ArmWithPlay(RobotArm):
-    """The arm once more, with a dead zone written into its gear spring."""
+    """The arm once more, with a dead zone written into its gear spring; where ``touching``, its damper acts outside of the gap alone."""
+
+    touching = False
 
     def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
         speed = x.motor_speed
         rub = p.F_v * speed + (p.F_c + p.F_cs / torch.cosh(p.alpha * speed)) * torch.tanh(p.beta * speed)
         beyond = torch.sign(x.gear_twist) * torch.clamp(torch.abs(x.gear_twist) - 0.005, min=0.0)
-        gear = p.k_g1 * beyond + p.k_g3 * beyond**3 + p.d_g * (speed - x.gearbox_speed)
+        acts = 1.0 * (beyond != 0.0) if self.touching else 1.0
+        gear = p.k_g1 * beyond + p.k_g3 * beyond**3 + acts * p.d_g * (speed - x.gearbox_speed)
         arm = p.k_a * x.arm_twist + p.d_a * (x.gearbox_speed - x.arm_speed)
         return {
             "gear_twist": speed - x.gearbox_speed,
@@ -50,6 +53,23 @@ def test_backlash_is_a_dead_zone_in_the_spring_and_nothing_else(around) -> None:
     without = free_run(ARM, records, values_of(ARM, k_g3=40.0), ARM_START)
     np.testing.assert_allclose(augmented, expected, rtol=0, atol=1e-12)
     assert np.abs(augmented - without).max() > 0.1
+
+
+@pytest.mark.parametrize("as_force", [False, True])
+def test_nothing_damps_within_a_gap(around, as_force) -> None:
+    """The spring's dead zone and a damper that acts where the sides touch, by a state of the model and as a force of its own."""
+    shifted = "" if as_force else "+gear_twist"
+    model = attached(ARM, around, at("gear_spring", Backlash(as_force), shifted_state=shifted))
+    own = ARM.values()
+    lost = {"damping": own["d_g"], **({"stiffness": own["k_g1"]} if as_force else {})}
+    records = records_of(300)
+    augmented = free_run(model, records, values_of(model, half_gap=0.005, **lost), ARM_START, make_stepper(model, ()))
+    written = ArmWithPlay()
+    with_damper = free_run(written, records, values_of(written), ARM_START, make_stepper(written, ()))
+    written.touching = True
+    expected = free_run(written, records, values_of(written), ARM_START, make_stepper(written, ()))
+    np.testing.assert_allclose(augmented, expected, rtol=0, atol=1e-9)
+    assert np.abs(with_damper - expected).max() > 0.01
 
 
 @pytest.mark.parametrize("hold", ["zoh", "foh"])

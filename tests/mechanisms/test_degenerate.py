@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from greybox_torch.mechanisms.library import LEARNED, LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism
-from greybox_torch.mechanisms.surroundings import Range, Surroundings
+from greybox_torch.mechanisms.surroundings import Surroundings
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
@@ -28,7 +26,7 @@ SOUND: dict[str, dict[str, float]] = {
     "transmission_error": {"a": 0.01, "b": 0.0, "order": 3.0, "damping": 0.0, "reaction": 1.0},
     "threshold_flow": {"c": 1.0, "threshold": 2.0},
     "input_lag": {"T": 0.01},
-    "torque_saturation": {"limit": 4.0},
+    "torque_saturation": {"limit": 4.0, "softness": 0.3},
     "coulomb_friction": {"F_c": 1.0, "v_0": 0.1},
     "viscous_friction": {"c": 0.2},
 }
@@ -78,7 +76,7 @@ def test_sound_parameters_are_not_objected_to(name: str, around: Surroundings) -
         ("additional_mode", {"zeta": 1.8}, "its damping ratio of 1.8 lets nothing resonate"),
         ("additional_mode", {"omega": 3500.0}, "omega = 3.5e+03 rad/s is above the Nyquist frequency, 3.14e+03 rad/s"),
         ("torque_saturation", {"limit": 6.0}, "limit = 6 is at its upper bound"),
-        ("coulomb_friction", {"v_0": 6.0}, "v_0 = 6 is at its upper bound"),
+        ("torque_saturation", {"softness": 1.0}, "softness = 1 is at its upper bound"),
     ],
 )
 def test_what_lies_outside_of_the_recordings_is_said(name: str, change: dict[str, float], said: str, around) -> None:
@@ -112,12 +110,17 @@ def test_zero_is_a_natural_bound_and_so_is_true_sticking(around: Surroundings) -
     assert law_of("end_stop").degenerate(around, values, small(values)) is None
 
 
-def test_a_width_is_not_asked_of_a_machine_that_turns_one_way(around: Surroundings) -> None:
-    """Seen: believed Coulomb friction of a motor that only ran forwards was taken back, as its width had drifted to a bound."""
-    values = {**SOUND["coulomb_friction"], "v_0": 6.0}
-    assert law_of("coulomb_friction").degenerate(around, values, small(values)) is not None
-    forwards = replace(around, ranges={**around.ranges, "speed": Range(2.0, 20.0, 12.0)})
-    assert law_of("coulomb_friction").degenerate(forwards, values, small(values)) is None
+@pytest.mark.parametrize("name", ["coulomb_friction", "stribeck_friction", "friction_warmup"])
+def test_a_width_may_be_at_either_end(name: str, around: Surroundings) -> None:
+    """Friction that truly sticks, and a width that nothing determines; no dry friction is as wide as a force that grows with speed.
+
+    Seen: an eddy current brake was told as Stribeck friction with v_0 at a seventh of the fastest speed.
+    """
+    (width,) = (p for p in law_of(name).parameters(around) if p.name == "v_0")
+    assert width.bounds[1] == 0.1 * around.ranges["speed"].reach
+    for end in width.bounds:
+        values = {**SOUND[name], "v_0": end}
+        assert law_of(name).degenerate(around, values, small(values)) is None
 
 
 def test_a_stop_may_stand_a_little_beyond_where_a_model_without_it_went(around: Surroundings) -> None:

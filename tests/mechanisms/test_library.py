@@ -21,7 +21,7 @@ NAMES = {
     "actuator": "input_delay input_lag input_bias input_gain torque_saturation actuator_deadzone unknown",
     "sensor": "output_delay sensor_lag sensor_bias sensor_gain unknown",
 }
-PURE_NUMBERS = {"gain_error", "order", "side", "zeta", "reaction", "sharpness", "load_dependent_friction.c"}
+PURE_NUMBERS = {"gain_error", "order", "side", "zeta", "reaction", "sharpness", "softness", "load_dependent_friction.c"}
 
 MECHANISMS = [pytest.param(m(), id=m.name) for m in LIBRARY.values()]
 ALL = [*MECHANISMS, pytest.param(Unknown("speed", knots=5), id="unknown")]
@@ -124,11 +124,12 @@ def test_absent_at_zero_amplitude(mechanism: Mechanism, around, anywhere, law) -
 
 
 def beside(hook: str, mechanism: Mechanism, values: dict[str, float], signals: dict[str, np.ndarray]) -> np.ndarray:
-    """A force of a kinematic law beside its change of deflection."""
-    as_tensors = (
-        {n: torch.as_tensor(np.asarray(v, dtype=float)) for n, v in each.items()} for each in (signals, values)
+    """A force of a kinematic law beside its change of deflection, which it sees changed."""
+    s, p = (
+        Signals("given", {n: torch.as_tensor(np.asarray(v, dtype=float)) for n, v in each.items()})
+        for each in (signals, values)
     )
-    force = getattr(mechanism, hook)(*(Signals("given", each) for each in as_tensors))
+    force = getattr(mechanism, hook)(s.replaced(deflection=mechanism.deflection(s, p)), p)
     assert force is not None
     return force.numpy()
 

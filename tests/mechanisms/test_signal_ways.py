@@ -23,6 +23,14 @@ def test_saturation_clips(law) -> None:
     np.testing.assert_allclose(acting, np.clip(INPUT, -2.0, 2.0), atol=1e-15)
 
 
+def test_a_soft_saturation_bends_over(law) -> None:
+    """The same limit and slope at zero, u / (1 + |u / L|^n)^(1/n) in between; a softness of next to nothing is a clamp."""
+    acting = INPUT + law(TorqueSaturation(), {"limit": 2.0, "softness": 0.5}, input=INPUT)
+    np.testing.assert_allclose(acting, INPUT / np.sqrt(1 + (INPUT / 2.0) ** 2), rtol=1e-9, atol=1e-12)
+    nearly = INPUT + law(TorqueSaturation(), {"limit": 2.0, "softness": 1e-4}, input=INPUT)
+    np.testing.assert_allclose(nearly, np.clip(INPUT, -2.0, 2.0), atol=2e-4)
+
+
 def test_dead_zone_of_the_actuator(law) -> None:
     acting = INPUT + law(ActuatorDeadzone(), {"half_width": 1.0}, input=INPUT)
     np.testing.assert_allclose(acting, np.sign(INPUT) * np.maximum(np.abs(INPUT) - 1.0, 0.0), atol=1e-14)

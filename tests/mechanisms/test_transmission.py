@@ -31,6 +31,12 @@ def test_stiffening(law) -> None:
     assert (np.diff(force)[121:] > np.diff(force)[120]).all()
 
 
+def test_stiffer_in_one_direction(law) -> None:
+    force = law(NonlinearStiffness(), {"k_3": 2000.0, "k_a": 50.0}, deflection=TWIST)
+    np.testing.assert_allclose(force, 2000.0 * TWIST**3 + 50.0 * TWIST**2, atol=1e-14)
+    assert force[-1] > -force[0]
+
+
 def test_softening_is_stiff_at_first_and_levels_off(law) -> None:
     force = law(NonlinearStiffness(), {"F_0": 3.0, "d_0": 0.005}, deflection=TWIST)
     np.testing.assert_allclose(force, -force[::-1], atol=1e-15)

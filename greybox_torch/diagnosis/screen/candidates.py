@@ -57,12 +57,9 @@ def candidates(
     for port in model.all_ports:
         shifted = shifts.get(port.name, "")
         for mechanism in _curves(model, port, knots) if flexible else (m() for m in LIBRARY.values()):
-            if (
-                port.kind in mechanism.kinds
-                and _available(mechanism, surroundings[port.name])
-                and (shifted or not mechanism.kinematic)
-            ):
-                found.append(attach(model, port.name, mechanism, shifted))
+            if port.kind in mechanism.kinds and _available(mechanism, surroundings[port.name]):
+                law = mechanism if shifted or not mechanism.kinematic else mechanism.written_as_force()
+                found += [] if law is None else [attach(model, port.name, law, shifted)]
     return found if flexible else [*found, *chain_candidates(model, surroundings), *common_delays(model)]
 
 

@@ -17,6 +17,8 @@ FAR = 1e6
 """An end of a dead band that nothing reaches, in rad or m."""
 SHORTEST_STEP = 1e-4
 """Seconds of a simulation's time step that delays have samples enough for."""
+CLAMPS = 0.02
+"""Softness of a saturation up to which it is as good as a clamp."""
 NEWER = "needs MuJoCo 4"
 _UNITS = ("", "rad/s", "m/s")
 
@@ -116,8 +118,9 @@ def input_bias(at: Place) -> Said:
 
 
 def saturation(at: Place) -> Said:
-    limit = at.values["limit"]
-    return _actuator(at, {"ctrllimited": "true", "ctrlrange": (-limit, limit)})
+    limit, softness = at.values["limit"], at.values["softness"]
+    left = [f"the softness of the limit, {softness:.3g}: a ctrlrange is a clamp"] if softness > CLAMPS else []
+    return _actuator(at, {"ctrllimited": "true", "ctrlrange": (-limit, limit)}, *left)
 
 
 def lag(at: Place) -> Said:

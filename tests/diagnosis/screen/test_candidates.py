@@ -76,6 +76,15 @@ def test_periodic_at_the_orders_found(arm_search) -> None:
     }
 
 
+def test_play_is_a_force_where_no_state_reaches_the_spring_alone(arm_search) -> None:
+    """Seen: a rack between its pinion and the tyres, whose position stretches both; play in the pinion was an unknown curve."""
+    shifts = {**arm_search.shifts, "gear_spring": ""}
+    found = candidates(RobotArm(), shifts, arm_search.surroundings, flexible=False)
+    plays = {a.port: (a.shifted_state, a.mechanism.options()) for a in found if a.mechanism.name == "backlash"}
+    assert plays == {"gear_spring": ("", {"as_force": True}), "arm_spring": ("+arm_twist", {"as_force": False})}
+    assert "gear_spring" not in {a.port for a in found if a.mechanism.kinematic}
+
+
 def test_attach_finds_the_body_that_a_position_belongs_to() -> None:
     arm = RobotArm()
     assert attach(arm, "gearbox", TorqueRipple()).position == "gearbox"
