@@ -136,13 +136,17 @@ class Mechanism:
             values: by parameter name, in the parameters' units.
             deviations: standard deviations by parameter name, of those that were estimated.
         """
-        parameters = self.parameters(around)
-        directions = {name for probe in self.probes(around) for name in probe.directions} - {SHARE}
-        amplitudes = [p.name for p in parameters if p.name in directions or (not directions and not p.fixed)]
         return (
-            lost_in_its_deviation(self.essential or amplitudes, values, deviations)
+            lost_in_its_deviation(self.essential or self.amplitudes(around), values, deviations)
             or self.misplaced(around, values)
-            or at_a_bound(parameters, values, self.natural_ends(around))
+            or at_a_bound(self.parameters(around), values, self.natural_ends(around))
+        )
+
+    def amplitudes(self, around: Surroundings) -> tuple[str, ...]:
+        """The parameters that are zero where the law is absent; where no probe names any, all that are estimated."""
+        directions = {name for probe in self.probes(around) for name in probe.directions} - {SHARE}
+        return tuple(
+            p.name for p in self.parameters(around) if p.name in directions or (not directions and not p.fixed)
         )
 
     def natural_ends(self, around: Surroundings) -> tuple[str, ...]:

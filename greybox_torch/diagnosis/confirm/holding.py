@@ -16,6 +16,7 @@ from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.attachment import Attachment
 
 Judged = tuple[SearchState, Mapping[str, Gain], Judgement, tuple[str, ...], bool]
 """What is left of a state, its gains, its free runs, what a reader has to know of it, and whether there was time to judge it."""
@@ -65,14 +66,22 @@ def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[st
     """An effect whose parameters, fitted to whole records, say nothing about the machine.
 
     Deviations are asked only where held-out experiments do not show by themselves that zero is not as good: of two amplitudes that trade
-    for one another, as the stiffness and the damping of a hard stop, neither may be determined.
+    for one another, as the stiffness and the damping of a hard stop, neither may be determined. What they show is the effect as windows
+    have it; where whole records leave next to nothing of that, it proves nothing.
     """
-    values, deviations = augmented.values(), augmented.deviations()
+    values, deviations, over_windows = augmented.values(), augmented.deviations(), state.current.values()
     for e in state.effects:
-        proven = not e.mechanism.essential and _proven(gains.get(e.prefix), study.settings)
+        vanished = _share_kept(study, e, over_windows, values) < study.settings.least_share_kept
+        proven = not e.mechanism.essential and not vanished and _proven(gains.get(e.prefix), study.settings)
         if degenerate(e, study.surroundings, values, {} if proven else deviations) is not None:
             return e.prefix
     return None
+
+
+def _share_kept(study: Study, effect: Attachment, before: Mapping[str, float], after: Mapping[str, float]) -> float:
+    """What is left of an effect's amplitudes, of the one that keeps most, from one estimate to another."""
+    names = [f"{effect.prefix}.{n}" for n in effect.mechanism.amplitudes(study.surroundings[effect.port])]
+    return max((abs(after[n]) / abs(before[n]) if before[n] else 1.0 for n in names), default=1.0)
 
 
 def _proven(gain: Gain | None, settings: DiagnosisSettings) -> bool:

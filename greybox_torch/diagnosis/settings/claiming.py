@@ -67,6 +67,11 @@ class ConfirmationSettings:
         unit="share of the plain model's held-out mismatch",
         chosen_by="cases simulated elsewhere: what a law lacks to be the machine's stays below 0.005, effects begin at 0.05",
     )
+    least_share_kept: float = share(
+        0.1,
+        "What the fit of whole records has to leave of an effect's amplitudes for windows of held-out experiments to prove it.",
+        unit="share of the amplitude over windows",
+    )
     no_mismatch: float = share(
         0.01,
         "Squared error beyond the noise up to which windows of one length say nothing of an effect's size.",

@@ -15,15 +15,16 @@ from greybox_torch.mechanisms.friction import StribeckFriction
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 
 
-def a_stop(stub: Any, found: Gain | None, law: Any = EndStop) -> Any:
-    """What is known of a hard stop whose stiffness and damping trade for one another."""
+def a_stop(stub: Any, found: Gain | None, law: Any = EndStop, over_windows: float = 0.5) -> Any:
+    """What is known of a hard stop whose stiffness and damping trade for one another; both ``over_windows``, and 0.5 over whole records."""
     around = Surroundings({"position": Range(-1.0, 1.0, 0.5), "speed": Range(-2.0, 2.0, 1.0)}, {}, "N m", 1e-3)
     effect = stub(prefix="link.law", port="link", mechanism=law())
     values = {p.name: p.value if p.fixed else 0.5 for p in law().parameters(around)}
     named = {f"link.law.{n}": v for n, v in values.items()}
     final = stub(values=lambda: named, deviations=lambda: dict.fromkeys(named, 50.0))
+    current = stub(values=lambda: dict.fromkeys(named, over_windows))
     study = stub(surroundings={"link": around}, settings=DiagnosisSettings())
-    return _empty(study, stub(effects=(effect,)), final, {} if found is None else {"link.law": found})
+    return _empty(study, stub(effects=(effect,), current=current), final, {} if found is None else {"link.law": found})
 
 
 def test_what_held_out_experiments_prove_is_not_empty_whatever_trades_for_what(stub) -> None:
@@ -31,6 +32,12 @@ def test_what_held_out_experiments_prove_is_not_empty_whatever_trades_for_what(s
     assert a_stop(stub, Gain(0.999, 0.0005, size=0.999)) is None
     assert a_stop(stub, None) == "link.law"
     assert a_stop(stub, Gain(0.01, 0.02, size=0.01)) == "link.law"
+
+
+@pytest.mark.parametrize("over_windows", [5.5, -50.0])
+def test_what_whole_records_leave_nothing_of_is_not_proven_by_windows(stub, over_windows: float) -> None:
+    """Seen: a lag of 0.0013 ± 4 s, sampled every second, that had removed 6 % of the error over windows and changed no free run."""
+    assert a_stop(stub, Gain(0.999, 0.0005, size=0.999), over_windows=over_windows) == "link.law"
 
 
 @pytest.mark.parametrize("law", [StribeckFriction, AdditionalMode])
