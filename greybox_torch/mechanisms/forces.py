@@ -14,6 +14,9 @@ from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.order_of_curve import order_of_curve
 from greybox_torch.model import Parameter, Signals, State
 
+HARMONICS = 3
+"""Of a ripple whose order is known, the order itself included."""
+
 KNOWN_PLACE = 0.01
 """Share of the travel within which a stop has to be known to stand."""
 
@@ -37,7 +40,7 @@ class ConstantBias(LinearLaw):
 
 
 class TorqueRipple(Mechanism):
-    """a cos nθ + b sin nθ with an order n above one."""
+    """a cos nθ + b sin nθ with an order n above one, and ``harmonics`` of it: a_k cos knθ + b_k sin knθ."""
 
     name = "torque_ripple"
     kinds = ("body",)
@@ -47,24 +50,38 @@ class TorqueRipple(Mechanism):
     source = "T. M. Jahns, W. L. Soong, IEEE Trans. Industrial Electronics 43(2), 1996"
     experiment = "slow constant speed over several turns, in both directions"
 
-    def __init__(self, order: float = 2.0) -> None:
-        self.order = order
+    def __init__(self, order: float = 2.0, harmonics: int = 1) -> None:
+        self.order, self.harmonics = order, harmonics
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
+        waves = [(n, k) for k in range(1, self.harmonics + 1) for n in _amplitudes(k)]
+        told = {"a": "cosine amplitude", "b": "sine amplitude"}
+        low, high = 0.8 * self.order, 1.25 * self.order
         return [
-            Parameter("a", 0.0, around.force_unit, description="cosine amplitude"),
-            Parameter("b", 0.0, around.force_unit, description="sine amplitude"),
-            Parameter(
-                "order", self.order, "", lower=0.8 * self.order, upper=1.25 * self.order, description="periods per turn"
+            *(
+                Parameter(n, 0.0, around.force_unit, description=f"{told[n[0]]}{f' at {k} orders' if k > 1 else ''}")
+                for n, k in waves
             ),
+            Parameter("order", self.order, "", lower=low, upper=high, description="periods per turn"),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        angle = p.order * s.position
-        return p.a * torch.cos(angle) + p.b * torch.sin(angle)
+        total = 0.0
+        for k in range(1, self.harmonics + 1):
+            angle, (cosine, sine) = k * p.order * s.position, _amplitudes(k)
+            total = total + p[cosine] * torch.cos(angle) + p[sine] * torch.sin(angle)
+        return total
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(("a", "b"), {"order": self.order})]
+        return [Probe(tuple(n for k in range(1, self.harmonics + 1) for n in _amplitudes(k)), {"order": self.order})]
+
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """With harmonics of the order found, and as the second harmonic of half of it."""
+        if self.harmonics > 1:
+            return ()
+        half = values["order"] / 2
+        as_second = {"order": half, **dict(zip(_amplitudes(2), (values["a"], values["b"]), strict=True))}
+        return (TorqueRipple(values["order"], HARMONICS), dict(values)), (TorqueRipple(half, 2 * HARMONICS), as_second)
 
     def nearest(
         self, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
@@ -74,6 +91,11 @@ class TorqueRipple(Mechanism):
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return not_seen_to_repeat(values["order"], around)
+
+
+def _amplitudes(k: int) -> tuple[str, str]:
+    """The names of the amplitudes of the k-th harmonic."""
+    return ("a", "b") if k == 1 else (f"a_{k}", f"b_{k}")
 
 
 class EndStop(Mechanism):

@@ -159,6 +159,10 @@ class Mechanism:
         """The form of the law to begin with where a force (N,) was learned over local signals (N,), points counting by weight (N,)."""
         return self
 
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """Forms of the law with more parameters, and where to begin, for where it was found at ``values`` and more than noise is left."""
+        return ()
+
     def options(self) -> dict[str, Any]:
         """What the constructor was told, by argument, so that the same mechanism can be made again."""
         return {name: vars(self)[name] for name in inspect.signature(type(self)).parameters if name in vars(self)}

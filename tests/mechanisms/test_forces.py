@@ -36,6 +36,23 @@ def test_ripple_is_periodic_with_its_order_and_no_other(law, order) -> None:
     assert np.abs(here).max() == pytest.approx(0.5, rel=0.01)
 
 
+def test_richer_forms_of_a_ripple_begin_as_the_ripple_found(law) -> None:
+    values = {"a": 0.3, "b": -0.7, "order": 6.0}
+    plain = law(TorqueRipple(6.0), values, position=ANGLES)
+    forms = TorqueRipple(6.0).richer(values)
+    assert [(form.order, form.harmonics) for form, _ in forms] == [(6.0, 3), (3.0, 6)]
+    for form, begun in forms:
+        np.testing.assert_allclose(law(form, begun, position=ANGLES), plain, atol=1e-14)
+        assert form.richer(begun) == ()
+
+
+def test_harmonics_of_a_ripple(law) -> None:
+    force = law(TorqueRipple(2.0, 3), {"a": 0.1, "b_2": 0.2, "a_3": 0.3, "order": 2.0}, position=ANGLES)
+    np.testing.assert_allclose(
+        force, 0.1 * np.cos(2 * ANGLES) + 0.2 * np.sin(4 * ANGLES) + 0.3 * np.cos(6 * ANGLES), atol=1e-14
+    )
+
+
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_end_stop_pushes_back_beyond_and_is_absent_before(law, side) -> None:
     force = law(EndStop(), {"k": 10.0, "where": 1.0, "side": side}, position=ANGLES, speed=np.zeros_like(ANGLES))

@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.select.flexed import flexed
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
 from greybox_torch.diagnosis.select.memory import completed_by_memory
 from greybox_torch.diagnosis.select.remaining import completes
+from greybox_torch.diagnosis.select.richer import with_richer_form
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage, only_if
 from greybox_torch.diagnosis.study import Study
@@ -39,6 +40,7 @@ def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> St
             state = wider
             yield state
             continue
+        state = yield from with_richer_form(study, state)
         taken = state.steps[-1]
         if taken.taken is not None and taken.taken.unknown:
             state = yield from _named_instead(study, before, state)

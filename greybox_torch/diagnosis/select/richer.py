@@ -1,0 +1,63 @@
+"""A law that was found, in a form with more parameters: a ripple with harmonics.
+
+What a plain form leaves of its own law stands far above the noise of a good sensor, and some other law takes up a part of it. So before
+the next step the form that has it is asked, which as one law is a simpler answer than two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from greybox_torch.diagnosis.hypothesis.above_noise import only_noise
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged, sound
+from greybox_torch.diagnosis.refit.refitted import fit
+from greybox_torch.diagnosis.select.choice import least_gain
+from greybox_torch.diagnosis.select.flexed import widened
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.stopping import Stage
+from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.attachment import Attachment
+
+
+def with_richer_form(study: Study, state: SearchState) -> Stage[SearchState]:
+    """The state with the law of its last step in the richer form that goes farthest, where that pays as another effect would."""
+    done = state.steps[-1]
+    if done.taken is None or only_noise(study.problem, state.current, study.settings):
+        return state
+    taken = done.taken
+    tried = (_in_form(study, state, taken, law, start) for law, start in _forms(taken.candidate.attachment, state))
+    paying = [r for r in tried if r is not None and _pays(study, r)]
+    best = min(paying, key=lambda r: r.fitted.score, default=None)
+    if best is None:
+        return state
+    state = widened(state, done, best, best.fitted)
+    yield state
+    return state
+
+
+def _forms(effect: Attachment, state: SearchState) -> Iterator[tuple[Attachment, dict[str, float]]]:
+    """The richer forms of an effect, and all parameters to begin with."""
+    start, values = f"{effect.prefix}.", state.current.values()
+    own = {n.removeprefix(start): v for n, v in values.items() if n.startswith(start)}
+    others = {n: v for n, v in values.items() if not n.startswith(start)}
+    for law, begun in effect.mechanism.richer(own):
+        yield replace(effect, mechanism=law), {**others, **{f"{start}{n}": v for n, v in begun.items()}}
+
+
+def _in_form(
+    study: Study, state: SearchState, taken: RankedCandidate, law: Attachment, start: Mapping[str, float]
+) -> RankedCandidate | None:
+    """The hypothesis of ``state`` with a form of the effect that was taken, compared with it."""
+    study.working_on(f"refitting {law.prefix} in a richer form")
+    effects = tuple(law if e.prefix == law.prefix else e for e in state.effects)
+    fitted: Hypothesis | None = fit(study, effects, [dict(start)], state.current.fits[0])
+    candidate = replace(taken.candidate, attachment=law)
+    return None if fitted is None else judged(candidate, state.current, fitted, study.settings)
+
+
+def _pays(study: Study, ranked: RankedCandidate) -> bool:
+    settings = study.settings
+    surely = ranked.significance > settings.least_significance
+    return surely and ranked.gain > least_gain(ranked.fitted, settings) and sound(study, ranked)

@@ -1,0 +1,53 @@
+"""A ripple that was found is tried with harmonics before another effect is named beside it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.refit.rank import judged
+from greybox_torch.diagnosis.screen.shortlist import Candidate
+from greybox_torch.diagnosis.select.richer import with_richer_form
+from greybox_torch.diagnosis.select.state import SelectionStep
+from greybox_torch.diagnosis.stopping import result_of
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.forces import TorqueRipple
+from greybox_torch.mechanisms.friction import CoulombFriction
+
+
+def found(search: Any, effect: Any, start: dict[str, float]) -> Any:
+    """The state of ``search`` after a step that took an effect."""
+    fitted = search.refitted((effect,), search.plain, [search.plain.values() | start])
+    taken = judged(Candidate(effect, (), 0.5), search.plain, fitted, search.study.settings)
+    return replace(search.state.at(fitted), steps=(SelectionStep((), search.plain, (taken,), taken),))
+
+
+@pytest.mark.parametrize(("strong", "weak"), [(1, 2), (2, 1), (2, 3)])
+def test_harmonics_join_the_ripple_whichever_is_the_strongest(motor_data, motor, begun, strong, weak) -> None:
+    """Seen: cogging of a wrist at 2, 4 and 6 periods a turn, told as something missing without a name."""
+    size = {strong: 0.06, weak: 0.03}
+    search = begun(motor_data(torque=lambda q, v: sum(f * np.sin(2.5 * k * q) for k, f in size.items())), motor)
+    ripple = attach(motor, "rotor", TorqueRipple(2.5 * strong))
+    before = found(search, ripple, {f"{ripple.prefix}.b": 0.06})
+    state = result_of(with_richer_form(search.study, before))
+    (effect,) = state.effects
+    assert isinstance(effect.mechanism, TorqueRipple) and effect.mechanism.harmonics > 1
+    values = {n.removeprefix(f"{ripple.prefix}."): v for n, v in state.current.values().items()}
+    base = round(values["order"] / 2.5, 1)
+    assert base in (1.0, strong / 2, strong) and weak / base == int(weak / base)
+    for k, f in size.items():
+        which = "" if k == base else f"_{int(k / base)}"
+        assert np.hypot(values[f"a{which}"], values[f"b{which}"]) == pytest.approx(f, rel=0.1)
+    (step,) = state.steps
+    assert step.taken is not None and step.taken.candidate.attachment == effect and step.taken.fitted is state.current
+
+
+def test_what_has_no_richer_form_or_leaves_noise_alone_stays_as_it_is(motor_data, motor, begun) -> None:
+    search = begun(motor_data(torque=lambda q, v: 0.06 * np.sin(2.5 * q)), motor)
+    ripple, dry = attach(motor, "rotor", TorqueRipple(2.5)), attach(motor, "rotor", CoulombFriction())
+    for effect, start in ((ripple, {f"{ripple.prefix}.b": 0.06}), (dry, {f"{dry.prefix}.F_c": 0.01})):
+        before = found(search, effect, start)
+        assert result_of(with_richer_form(search.study, before)) is before
