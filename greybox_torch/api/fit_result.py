@@ -13,6 +13,7 @@ from rich.text import Text
 
 from greybox_torch.api.estimated import EstimatedParameter, EstimatedStart, estimated_parameters, estimated_starts
 from greybox_torch.api.estimated_model import EstimatedModel
+from greybox_torch.api.fit_advice import fit_advice
 from greybox_torch.api.fit_json import estimation_json, identifiability_json, profile_json, status
 from greybox_torch.api.fit_summary import parameter_table, print_estimate, warnings
 from greybox_torch.api.free_runs import plot_simulated
@@ -99,6 +100,8 @@ class FitResult(EstimatedModel):
         print_estimate(console, self.estimation, self.profiles)
         console.print()
         print_scores(console, self.data, self._scores)
+        for line in self._advice:
+            console.print(Text(line, style="yellow"), soft_wrap=True)
 
     def files(self, folder: Path) -> dict[Path, str | bytes]:
         """The result as JSON, the model as a checkpoint, and a figure of every profile."""
@@ -120,8 +123,15 @@ class FitResult(EstimatedModel):
             *(notebook.sentence(line) for line in warnings(self.estimation)),
             notebook.table(*parameter_table(self.estimation)),
             notebook.table(*score_table(self.data, self._scores)),
+            *(notebook.sentence(line) for line in self._advice),
             notebook.picture(self.plot(), "outputs over time, measured, and simulated before and after"),
         )
+
+    @property
+    def _advice(self) -> list[str]:
+        """What the free runs say about the model itself: a sentence, or none."""
+        said = fit_advice(self._scores)
+        return [] if said is None else [said]
 
     @property
     def _title(self) -> str:

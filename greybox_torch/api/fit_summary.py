@@ -100,7 +100,10 @@ def warnings(found: Estimation) -> list[str]:
     lines += [f"{told}." for told in brief_sentences(found.identifiability)]
     for note in found.notes:
         if note.kind is Termination.at_bound:
-            lines.append(f"At a bound: {note.detail}; the standard deviations there mean little.")
+            lines.append(
+                f"At a bound: {note.detail}; the standard deviations there mean little. Where physics does not end there, the model lacks "
+                "something that drives the parameter there."
+            )
     return lines
 
 

@@ -1,0 +1,51 @@
+"""What the free runs of an estimate say about the model."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from greybox_torch.api.fit_advice import fit_advice
+from greybox_torch.estimate.comparison import Score
+
+
+def scores(role: str, *fits: float) -> list[Score]:
+    return [Score("one", role, "y", fit, np.inf if np.isinf(fit) else 1.0) for fit in fits]
+
+
+def said(before: tuple[float, ...], after: tuple[float, ...], role: str = "validation") -> str | None:
+    """With an estimation experiment beside that is always simulated well."""
+    well = scores("estimation", 99.0)
+    return fit_advice({"start": [*well, *scores(role, *before)], "refit": [*well, *scores(role, *after)]})
+
+
+@pytest.mark.parametrize(
+    ("before", "after"), [((50.0,), (90.0,)), ((80.0, 60.0), (79.5, 60.0)), ((-300.0,), (20.0,)), ((-np.inf,), (3.0,))]
+)
+def test_nothing_is_said_of_an_estimate_that_predicts_no_worse(before, after) -> None:
+    assert said(before, after) is None
+
+
+def test_an_estimate_that_predicts_worse_than_its_start_is_said_to() -> None:
+    """Seen: a conveyor with dry friction left out, fitted; nothing but the table showed that validation had become worse."""
+    told = said((90.0, 80.0), (40.0, 20.0))
+    assert told is not None and "(mean fit 30 % for 85 %)" in told and "greybox diagnose" in told
+
+
+def test_a_model_that_cannot_follow_the_machine_is_said_to() -> None:
+    told = said((-900.0,), (-186.0,))
+    assert told is not None and "no better than a constant would (mean fit -186 %)" in told
+
+
+def test_of_a_machine_whose_free_runs_overflow_nothing_is_said() -> None:
+    assert said((50.0,), (-np.inf,)) is None
+
+
+def test_without_validation_the_estimation_experiments_count() -> None:
+    told = said((-900.0,), (-500.0,), role="estimation")
+    assert told is not None and "the estimation experiments" in told
+
+
+def test_an_output_that_never_moves_has_no_fit() -> None:
+    still = [Score("one", "validation", "y", -np.inf, 1.0)]
+    assert fit_advice({"start": still, "refit": still}) is not None
