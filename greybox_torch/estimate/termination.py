@@ -14,7 +14,10 @@ class Termination(Enum):
     stalled = (
         "stalled: no step lowers the cost; try other start values, or fix parameters that the data do not determine"
     )
-    iteration_limit = "stopped at the iteration limit before converging; begin again from these values, or fix parameters that the data hardly determine"
+    iteration_limit = (
+        "stopped at the iteration limit before converging; begin again from these values, or fix parameters that the data "
+        "hardly determine"
+    )
     overflow = (
         "failed: the simulation overflows at the start values; try start values nearer to the truth, tighter bounds, "
         "or a smaller sample time"

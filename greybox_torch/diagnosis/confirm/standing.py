@@ -35,11 +35,17 @@ def sizes(study: Study, state: SearchState, gains: Mapping[str, Gain]) -> dict[s
 
 def least_size(study: Study, state: SearchState, others: HeldOut | None) -> float:
     """The size from which an effect is a finding: much less where with all of them hardly more than noise is left."""
+    settings = study.settings
+    return settings.least_size_at_noise if _completed(study, state, others) else settings.least_size
+
+
+def _completed(study: Study, state: SearchState, others: HeldOut | None) -> bool:
+    """Whether with all effects hardly more than noise is left."""
     if others is not None:
         left = float(np.max(others.times_noise(state.current)))
     else:
         left = times_noise(study.problem, state.current, study.settings)
-    return study.settings.least_size_at_noise if left < study.settings.above_noise else study.settings.least_size
+    return left < study.settings.above_noise
 
 
 def refinements(
@@ -47,13 +53,14 @@ def refinements(
 ) -> set[str]:
     """The effects that are too small to be findings, or that small and not confirmed by held-out experiments beyond chance.
 
-    Of two laws of friction at one body the smaller one has to be larger than other effects: it may be what the other lacks.
+    Of two laws of friction at one body the smaller one has to be larger than other effects: it may be what the other lacks. So has any law
+    at the port of a larger one, where more than noise is left in spite of both.
 
     Args:
         sizes: of every effect, from :func:`sizes`.
     """
     settings, least = study.settings, max(least_size(study, state, others), np.finfo(float).tiny)
-    rubbing = {e.prefix: e.port for e in state.effects if e.mechanism.rubs}
+    completed, effects = _completed(study, state, others), {e.prefix: e for e in state.effects}
 
     def doubtful(prefix: str) -> bool:
         gain = gains.get(prefix)
@@ -61,8 +68,9 @@ def refinements(
         return sizes[prefix] < settings.least_size and not confirmed
 
     def part_of_another(prefix: str) -> bool:
-        beside = [p for p, port in rubbing.items() if p != prefix and port == rubbing.get(prefix)]
-        larger = any(sizes[p] > sizes[prefix] for p in beside)
-        return larger and sizes[prefix] < settings.least_size_of_friction_beside
+        own = effects[prefix]
+        larger = (e for p, e in effects.items() if e.port == own.port and sizes[p] > sizes[prefix])
+        lacks = any(not completed or (e.mechanism.rubs and own.mechanism.rubs) for e in larger)
+        return lacks and sizes[prefix] < settings.least_size_beside_larger
 
     return {p for p in state.prefixes if not sizes[p] >= least or doubtful(p) or part_of_another(p)}

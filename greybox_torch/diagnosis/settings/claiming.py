@@ -84,9 +84,10 @@ class ConfirmationSettings:
         unit="share of the plain model's held-out mismatch",
         chosen_by="pairs of effects of which one is 25 times as large as the other",
     )
-    least_size_of_friction_beside: float = share(
+    least_size_beside_larger: float = share(
         0.1,
-        "The same for friction by speed alone beside larger friction of that kind at the same body: the two are one friction there.",
+        "The same for a law at the port of a larger one, where the two are friction by speed alone or leave more than noise: it may be "
+        "what the larger one lacks.",
         unit="share of the plain model's held-out mismatch",
         chosen_by="bristles that also damp and slide by speed: what one law of friction lacks of them is 0.02 to 0.06",
     )

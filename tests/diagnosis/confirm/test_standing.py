@@ -67,27 +67,31 @@ def test_a_length_over_which_an_effect_does_harm_does_not_outweigh_the_others(fi
 def test_a_small_effect_is_a_finding_only_where_others_confirm_it_beyond_chance(dead_zone_search, stub) -> None:
     """Seen: a bias of a thousandth of the mismatch beside an end stop, 0.1 ± 0.05 % of the held-out error."""
     found = dead_zone_search
-    state = stub(effects=(), prefixes={"a"}, current=found.plain)
+    effect = Attachment("rotor", ConstantBias())
+    state, name = stub(effects=(effect,), prefixes={effect.prefix}, current=found.plain), effect.prefix
     others = stub(times_noise=lambda hypothesis: np.array([1.0]))  # nothing but noise is left
 
     def told(share: float, error: float, of: float) -> bool:
-        return not refinements(found.study, state, others, {"a": Gain(share, error, size=of)}, {"a": of})
+        return not refinements(found.study, state, others, {name: Gain(share, error, size=of)}, {name: of})
 
     assert told(0.010, 0.001, 0.002) and not told(0.001, 0.0005, 0.0012)
     assert told(0.5, 0.4, 0.3), "what is large needs no more than any effect does"
     assert not told(0.010, 0.001, 0.0005) and not told(0.5, 0.1, float("nan"))
-    assert not refinements(found.study, state, others, {}, {"a": 0.002}), "nobody was asked"
+    assert not refinements(found.study, state, others, {}, {name: 0.002}), "nobody was asked"
 
 
 def test_of_two_laws_of_friction_at_one_body_the_small_one_is_part_of_the_other(dead_zone_search, stub) -> None:
-    """Seen: friction with bristles and damping, told as bristles and, 6 % of the mismatch, viscous friction."""
+    """Seen: friction with bristles and damping, told as bristles and, 6 % of the mismatch, viscous friction.
+
+    And bristles that fall with speed, told as Stribeck friction, 75 times the noise left, and a ripple of 5 % of the mismatch.
+    """
     study = dead_zone_search.study
 
-    def told(*attached: tuple[str, Mechanism], small: float) -> list[str]:
+    def told(*attached: tuple[str, Mechanism], small: float, left: float = 1.0) -> list[str]:
         effects = tuple(Attachment(port, law) for port, law in attached)
         prefixes = [e.prefix for e in effects]
         state = stub(effects=effects, prefixes=set(prefixes), current=dead_zone_search.plain)
-        others = stub(times_noise=lambda hypothesis: np.array([1.0]))
+        others = stub(times_noise=lambda hypothesis: np.array([left]))
         some = refinements(study, state, others, {}, dict(zip(prefixes, [0.7, small], strict=True)))
         return [p for p in prefixes if p not in some]
 
@@ -96,6 +100,9 @@ def test_of_two_laws_of_friction_at_one_body_the_small_one_is_part_of_the_other(
     assert len(told(bristles, viscous, small=0.2)) == 2, "too much for what a law lacks"
     assert len(told(bristles, ("motor", ViscousFriction()), small=0.06)) == 2, "of another body"
     assert len(told(bristles, bias, small=0.06)) == 2, "no friction"
+    assert told(bristles, bias, small=0.06, left=75.0) == ["arm.presliding_hysteresis"], "of a law that lacks something"
+    assert len(told(bristles, bias, small=0.2, left=75.0)) == 2
+    assert len(told(bristles, ("motor", ConstantBias()), small=0.06, left=75.0)) == 2
 
 
 def test_what_held_out_experiments_do_not_exercise_is_measured_where_it_was_found(dead_zone_search, fits) -> None:
