@@ -72,10 +72,10 @@ def passed_over(study: Study, before: SearchState, done: SelectionStep) -> Candi
 
 
 def _from_given(study: Study, start: SearchState, first: SearchState, given: Candidate) -> tuple[SearchState, bool]:
-    """The search from ``start`` with an effect given, which is then chosen once more beside the others; whether it was.
+    """The search from ``start`` with an effect given, which is then chosen once more beside the others; whether it was, or is not needed.
 
     What it knows of the plain model it has from ``first``, the other way. Until the given effect is chosen no state of this way is
-    complete: nothing would say how probable it is.
+    complete: nothing would say how probable it is. What it led to may do without it.
     """
     with_given = refitted(study, (*start.effects, given.attachment), start.current, given.starts)
     if with_given is None:
@@ -86,7 +86,7 @@ def _from_given(study: Study, start: SearchState, first: SearchState, given: Can
     if without is None:
         return reached, False
     again = result_of(forward_step(study, replace(reached.at(without), steps=start.steps)))
-    chosen_again = again.took_one and not again.steps[-1].ranked[0].unknown
+    chosen_again = not again.steps[-1].ranked[0].unknown if again.took_one else bool(rest)
     later = reached.steps[len(start.steps) :]
     again = replace(again, steps=(*again.steps, *(s for s in later if s.taken is not None or s is later[-1])))
     if chosen_again and reached.current.score < again.current.score and reached.prefixes == again.prefixes:
