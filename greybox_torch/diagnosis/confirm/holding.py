@@ -8,6 +8,7 @@ from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
 from greybox_torch.diagnosis.confirm.free_runs import NOWHERE, Places
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.confirm.simpler_laws import simplified
 from greybox_torch.diagnosis.confirm.take_back import held_out_gains, take_back_weakest
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.final import Final, as_windows_have_it, finish
@@ -50,7 +51,7 @@ def holding(
         if not state.compared_without:
             state = result_of(drop_superfluous(study, state))
         if empty is not None and empty in state.prefixes:
-            state = result_of(drop(study, state, empty))
+            state = _without(study, state, empty)
         else:
             before, state = state, take_back_weakest(study, state, gains)
             told += said_of_windows(before, state, gains, judged, study.settings)
@@ -60,6 +61,12 @@ def holding(
         gains = held_out_gains(state, others) if others is not None else {}
         judged = judged.having(finish(state.current, study.settings, study.budget, study.recorded), places())
     return state, gains, judged, told, True
+
+
+def _without(study: Study, state: SearchState, prefix: str) -> SearchState:
+    """The state without an effect that says nothing, or with a law that it contains: without its peak, Stribeck friction is Coulomb's."""
+    simpler = simplified(study, state, next(e for e in state.effects if e.prefix == prefix))
+    return result_of(drop(study, state, prefix) if simpler is None else drop_superfluous(study, simpler))
 
 
 def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[str, Gain]) -> str | None:

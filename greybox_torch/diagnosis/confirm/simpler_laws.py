@@ -8,13 +8,14 @@ from functools import partial
 from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import likelihood_significance
-from greybox_torch.diagnosis.refit.rank import RankedCandidate
+from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
-from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.attachment import Attachment, attach
+from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.simulation.side_by_side import side_by_side
 
 
@@ -35,6 +36,27 @@ def with_simpler_laws(study: Study, state: SearchState, others: HeldOut) -> Stag
                 state = yield from drop_superfluous(study, state)
                 break
     return state
+
+
+def simplified(study: Study, state: SearchState, effect: Attachment) -> SearchState | None:
+    """The state with the best of the laws that the law of ``effect`` contains in its place, refitted from what the two have in common.
+
+    None where it contains none, or none that is not there already can be simulated.
+    """
+    done = state.step_of(effect.prefix)
+    if done is None or done.taken is None:
+        return None
+    found = []
+    for name in (n for n in effect.mechanism.generalises if n in LIBRARY):
+        law = attach(study.problem.model, effect.port, LIBRARY[name](), effect.shifted_state)
+        effects = tuple(law if e is effect else e for e in state.effects)
+        start = {n.replace(f"{effect.prefix}.", f"{law.prefix}."): v for n, v in state.current.values().items()}
+        fitted = None if law.prefix in state.prefixes else refitted(study, effects, state.current, [start])
+        if fitted is not None:
+            candidate = replace(done.taken.candidate, attachment=law)
+            found.append(judged(candidate, done.parent, fitted, study.settings))
+    best = min(found, key=lambda r: r.fitted.score, default=None)
+    return None if best is None else _with_rival(state, best, best.fitted, effect)
 
 
 def _contained(study: Study, state: SearchState, effect: Attachment) -> list[tuple[RankedCandidate, Hypothesis]]:

@@ -9,11 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from greybox_torch.diagnosis.hypothesis.above_noise import only_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
-from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.flexed import widened
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage
@@ -22,7 +23,7 @@ from greybox_torch.mechanisms.attachment import Attachment
 
 
 def with_richer_form(study: Study, state: SearchState) -> Stage[SearchState]:
-    """The state with the law of its last step in the richer form that goes farthest, where that pays as another effect would."""
+    """The state with the law of its last step in the richer form that goes farthest, where that takes up most of what it leaves."""
     done = state.steps[-1]
     if done.taken is None or only_noise(study.problem, state.current, study.settings):
         return state
@@ -58,6 +59,7 @@ def _in_form(
 
 
 def _pays(study: Study, ranked: RankedCandidate) -> bool:
+    """Whether a form takes up most of what the plain one leaves, beyond chance: less may be another effect's."""
     settings = study.settings
-    surely = ranked.significance > settings.least_significance
-    return surely and ranked.gain > least_gain(ranked.fitted, settings) and sound(study, ranked)
+    most = -np.log1p(-settings.least_of_richer_form)
+    return ranked.significance > settings.least_significance and ranked.gain > most and sound(study, ranked)

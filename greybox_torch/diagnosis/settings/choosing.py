@@ -163,6 +163,11 @@ class SelectionSettings:
         "The same where much more than noise is left, or nobody knows how much is noise: some law always bends a little to a real machine.",
         unit=GAIN,
     )
+    least_of_richer_form: float = share(
+        0.67,
+        "What harmonics have to remove of the squared error that a ripple leaves to be told as one law with it.",
+        unit="share of the squared error over windows",
+    )
     least_significance: float = number(
         3.0, "By how much, over windows, an effect must improve the prediction.", unit=SIGMA, chosen_by="convention"
     )

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
-from greybox_torch.diagnosis.confirm.simpler_laws import with_simpler_laws
+from greybox_torch.diagnosis.confirm.simpler_laws import simplified, with_simpler_laws
 from greybox_torch.diagnosis.confirm.take_back import _idle
 from greybox_torch.diagnosis.confirm.wider_laws import with_wider_laws
 from greybox_torch.diagnosis.refit.rank import judged
@@ -66,6 +66,24 @@ def test_the_law_that_contains_it_is_meant_where_that_predicts_others_better(cho
     assert effect.mechanism.name == meant
     assert found.steps[0].taken.candidate.attachment.mechanism.name == meant
     assert (found.current is state.current) is (extra == 0.0)
+
+
+def test_what_is_left_of_a_law_without_what_makes_it_one_is_a_law_that_it_contains(chose_stribeck) -> None:
+    """Seen: Stribeck friction at an arm, all of the held-out error removed, dropped as its peak was less than its deviation."""
+    search, _ = chose_stribeck(0.0)
+    (effect,), (step,) = search.state.effects, search.state.steps
+    alone = search.at(
+        search.current, steps=(replace(step, ranked=step.ranked[:1]),)
+    ).state  # no rival was refitted beside it
+    found = simplified(search.study, alone, effect)
+    assert found is not None
+    (law,) = found.effects
+    assert law.named == ("rotor", "coulomb_friction")
+    values = found.current.values()
+    assert values[f"{law.prefix}.F_c"] == pytest.approx(0.05, rel=0.05)
+    assert values[f"{law.prefix}.v_0"] == pytest.approx(0.1, rel=0.2)
+    assert found.step_of(law.prefix) is found.steps[0] and found.steps[0].taken.gain > 0.0
+    assert simplified(search.study, found, law) is None, "it contains no other"
 
 
 @pytest.mark.parametrize("elsewhere_too", [True, False])
