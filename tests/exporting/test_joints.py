@@ -97,6 +97,10 @@ ROTORS = {
 SLIDES = {
     "play": ({("spring", "backlash"): {"half_gap": 0.1}}, 'damping="2"'),
     "stiffening spring": ({("spring", "nonlinear_stiffness"): {"k_3": 30.0}}, 'damping="2" stiffness="25"'),
+    "spring stiffer one way": (
+        {("spring", "nonlinear_stiffness"): {"k_3": 30.0, "k_a": 12.0}},
+        'damping="2" stiffness="25"',
+    ),
     "stop": ({("slide", "end_stop"): {"k": 200.0, "where": 0.2, "side": 1.0}}, 'damping="2" stiffness="25"'),
 }
 

@@ -77,17 +77,22 @@ def backlash(at: Place) -> Said:
     left = [
         f"the tendon takes the place of the joint's own spring ({own:.6g}): take that out; what it has beyond a linear spring is not in it"
     ]
+    if at.values.get("damping"):
+        left.append(
+            f"what the damper loses within the gap, {at.values['damping']:.6g}: a joint's damping acts everywhere"
+        )
     return [_tendon(at, {"stiffness": (own,), "springlength": (-gap, gap)})], left
 
 
 def spring(at: Place) -> Said:
     v = at.values
-    left = [f"stiffness with three coefficients {NEWER}"] if v["k_3"] else []
+    polynomial = (0.0, v["k_a"], v["k_3"])
+    left = [f"stiffness with three coefficients {NEWER}"] if any(polynomial) else []
     if v["k_2"]:
         left.append(f"the part k_2 d|d| with k_2 = {v['k_2']:.6g}: MJCF has d^2, which is not odd")
     if v["F_0"]:
         left.append(f"the part F_0 tanh(d / d_0) with F_0 = {v['F_0']:.6g}, d_0 = {v['d_0']:.6g}")
-    said = [_tendon(at, {"stiffness": (0.0, 0.0, v["k_3"]), "springlength": (0.0, 0.0)})] if v["k_3"] else []
+    said = [_tendon(at, {"stiffness": polynomial, "springlength": (0.0, 0.0)})] if any(polynomial) else []
     return said, left
 
 
