@@ -57,9 +57,11 @@ def solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
 def least_squares(columns: np.ndarray, target: np.ndarray, rcond: float | None = None) -> np.ndarray:
     """The x of smallest norm that minimises ‖A x − b‖, as the first result of :func:`numpy.linalg.lstsq`; zeros for what is not finite."""
     try:
-        found = np.linalg.lstsq(columns, target, rcond=rcond)[0]
-        if np.isfinite(found).all():
-            return found
+        # With what is not a number LAPACK may iterate for ever.
+        if np.isfinite(columns).all() and np.isfinite(target).all():
+            found = np.linalg.lstsq(columns, target, rcond=rcond)[0]
+            if np.isfinite(found).all():
+                return found
     except np.linalg.LinAlgError:
         pass
     sound, wanted = (np.nan_to_num(a, posinf=0.0, neginf=0.0) for a in (columns, target))

@@ -15,6 +15,7 @@ from greybox_torch.checkpoint import Checkpoint, check_same_parameters, check_sa
 from greybox_torch.data import DataSet
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import with_card
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.stored import restored_model
 from greybox_torch.model import GreyBoxModel, Parameter
 from greybox_torch.model.copies import copy_holding
@@ -105,11 +106,24 @@ def _plain_model(path: Path, checkpoint: Checkpoint, model: GreyBoxModel | str |
 
 
 def _saved(path: Path, checkpoint: Checkpoint, model: GreyBoxModel) -> SavedModel:
+    checkpoint = _with_later_parameters(checkpoint, model)
     check_same_parameters(path, checkpoint, model.title, [p.name for p in model.declared_parameters])
     check_same_units(path, checkpoint, model.title, {p.name: p.unit for p in model.plain.declared_parameters})
     held = copy_holding(model, checkpoint.values, starts_free=checkpoint.free_starts)
     _check_admissible(path, held)
     return SavedModel(checkpoint, held.plain, held)
+
+
+def _with_later_parameters(checkpoint: Checkpoint, model: GreyBoxModel) -> Checkpoint:
+    """The checkpoint with zero for what its laws did not have when it was written."""
+    if not isinstance(model, AugmentedModel):
+        return checkpoint
+    later = {f"{a.prefix}.{name}" for a in model.attachments for name in a.mechanism.later}
+    names = [p.name for p in model.declared_parameters]
+    if not later & (set(names) - set(checkpoint.values)):
+        return checkpoint
+    held = {n: checkpoint.values.get(n, 0.0) for n in names if n in checkpoint.values or n in later}
+    return replace(checkpoint, values={**held, **checkpoint.values})
 
 
 def _check_bounds(path: Path, checkpoint: Checkpoint, model: GreyBoxModel, carded: Sequence[Parameter]) -> None:

@@ -15,7 +15,7 @@ class Termination(Enum):
         "stalled: no step lowers the cost; try other start values, or fix parameters that the data do not determine"
     )
     iteration_limit = (
-        "stopped at the iteration limit before converging; begin again from these values, or fix parameters that the data "
+        "stopped at the iteration limit before converging; try to begin again from these values, or fix parameters that the data "
         "hardly determine"
     )
     overflow = (

@@ -133,6 +133,7 @@ class TorqueSaturation(Mechanism):
     kinds = ("actuator",)
     needs = ("input",)
     essential = ("limit",)
+    later = ("softness",)
     nature = "an input that acts in part only"
     explanation = "The input that acts is limited (current limit, valve fully open, iron that saturates)."
     source = "H. K. Khalil, Nonlinear Systems, 3rd ed., 2002"

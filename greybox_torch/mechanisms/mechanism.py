@@ -63,6 +63,8 @@ class Mechanism:
     """Amplitudes without which this would be another law; by default it is absent only where all are zero."""
     natural: ClassVar[tuple[str, ...]] = ()
     """Parameters whose bounds are ends that they may well have (``NAME``, ``NAME.lower`` or ``NAME.upper``); zero always is."""
+    later: ClassVar[tuple[str, ...]] = ()
+    """Parameters that the law did not have in models saved by an earlier version; they are zero there."""
     rubs: ClassVar[bool] = False
     """Whether it is friction by the speed of its body alone: a body has one such friction, of which two laws are two parts."""
     nature: ClassVar[str] = ""

@@ -31,6 +31,7 @@ class Backlash(Mechanism):
     name = "backlash"
     kinds = ("coupling",)
     needs = ("deflection",)
+    later = ("damping",)
     nature = "a coupling that is no linear spring"
     explanation = "There is play: within a gap the coupling transmits nothing."
     source = "M. Nordin, P.-O. Gutman, Automatica 38(10), 2002"
@@ -87,6 +88,7 @@ class NonlinearStiffness(Mechanism):
     kinds = ("coupling",)
     needs = ("deflection",)
     natural = ("d_0",)
+    later = ("k_a",)
     nature = "a coupling that is no linear spring"
     explanation = "The spring stiffens or softens with deflection."
     source = "T. Tuttle, W. Seering, IEEE Trans. Robotics and Automation 12(3), 1996 (harmonic drives)"
