@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from greybox_torch.api.scores import Scores
-from greybox_torch.estimate.comparison import Score
+from greybox_torch.estimate.comparison import held_out_scores, mean_fit, of_moving_outputs
 
 WORSE = 1.0
 """Points of the mean fit in % by which an estimate counts as worse than the values that it began with."""
@@ -21,10 +19,11 @@ def fit_advice(scores: Scores) -> str | None:
     Args:
         scores: of the models "start" and "refit"; without validation experiments, those of estimation count.
     """
-    before, after = (_mean_fit(scores[name]) for name in ("start", "refit"))
+    judging = {name: of_moving_outputs(held_out_scores(scores[name])) for name in ("start", "refit")}
+    before, after = mean_fit(judging["start"]), mean_fit(judging["refit"])
     on = "validation" if any(s.role == "validation" for s in scores["refit"]) else "estimation"
-    if not np.isfinite(after):
-        return None  # of a machine that is unstable by itself this says nothing
+    if not judging["refit"] or not np.isfinite(after):
+        return None  # of a machine at rest, or unstable by itself, this says nothing
     if after <= 0.0:
         return (
             f"The estimate simulates the {on} experiments no better than a constant would (mean fit {after:.3g} %): the model lacks "
@@ -36,10 +35,3 @@ def fit_advice(scores: Scores) -> str | None:
             f"its parameters make up for something that the model lacks. {DIAGNOSE}"
         )
     return None
-
-
-def _mean_fit(scores: Sequence[Score]) -> float:
-    """Mean fit in % over the validation experiments, or over all where there are none; minus infinity where a run overflows."""
-    judging = [s for s in scores if s.role == "validation"] or list(scores)
-    fits = [s.fit if np.isfinite(s.rmse) else -np.inf for s in judging if s.fit > -np.inf or not np.isfinite(s.rmse)]
-    return float(np.mean(fits)) if fits else 0.0

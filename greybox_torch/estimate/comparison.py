@@ -94,6 +94,22 @@ def compared(problem: Problem, recordings: Sequence[Recording], simulated: Seque
     return Comparison(tuple(scores), problem.records.names, tuple(simulated), tuple(problem.initial))
 
 
+def held_out_scores(scores: Sequence[Score]) -> list[Score]:
+    """Those on validation experiments, or all where there are none."""
+    return [s for s in scores if s.role == "validation"] or list(scores)
+
+
+def of_moving_outputs(scores: Sequence[Score]) -> list[Score]:
+    """Without those of outputs that stand still, of which a fit says nothing."""
+    return [s for s in scores if s.fit > -np.inf or not np.isfinite(s.rmse)]
+
+
+def mean_fit(scores: Sequence[Score]) -> float:
+    """Mean fit in %, of the outputs that move; minus infinity where a run overflows, zero where nothing moves."""
+    moving = of_moving_outputs(scores)
+    return float(np.mean([s.fit for s in moving])) if moving else 0.0
+
+
 def fit_rows(scores: Mapping[str, Sequence[Score]]) -> list[dict[str, Any]]:
     """The rows ``fit`` of `verdict.json` from scores by model name ("start", "refit", "augmented"), each in the same order."""
     rows = []

@@ -46,6 +46,8 @@ def test_without_validation_the_estimation_experiments_count() -> None:
     assert told is not None and "the estimation experiments" in told
 
 
-def test_an_output_that_never_moves_has_no_fit() -> None:
-    still = [Score("one", "validation", "y", -np.inf, 1.0)]
-    assert fit_advice({"start": still, "refit": still}) is not None
+def test_of_outputs_that_never_move_nothing_is_said() -> None:
+    still, bad = Score("one", "validation", "y", -np.inf, 1.0), Score("one", "validation", "z", -40.0, 1.0)
+    assert fit_advice({"start": [still], "refit": [still]}) is None
+    told = fit_advice({"start": [still, bad], "refit": [still, bad]})
+    assert told is not None and "(mean fit -40 %)" in told

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.hypothesis.noise import output_floors
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.verdict import Estimate, InputTrace, Trace
-from greybox_torch.estimate.comparison import Comparison, Score, fit_rows
+from greybox_torch.estimate.comparison import Comparison, fit_rows, mean_fit
 from greybox_torch.estimate.problem import Problem
 
 
@@ -76,7 +76,7 @@ class Judgement:
         """
         if worse_than_refit(fit_rows({m: c.scores for m, c in self.comparisons(True).items()})):
             return False
-        before, after = (_mean_fit(c.scores) for c in (self._judged(self.refit), self._judged(self.with_effects)))
+        before, after = (mean_fit(c.scores) for c in (self._judged(self.refit), self._judged(self.with_effects)))
         refit, with_effects = self.sums
         return (
             with_effects <= (1 + self.settings.unexercised) * refit
@@ -216,9 +216,3 @@ def _share_left(before: float, after: float) -> float:
     if not np.isfinite(before):
         return 0.0 if np.isfinite(after) else 1.0
     return after / before if before > 0 else 0.0
-
-
-def _mean_fit(scores: Sequence[Score]) -> float:
-    """Mean fit in %, of the outputs that move."""
-    moving = [s.fit for s in scores if s.fit > -np.inf or not np.isfinite(s.rmse)]
-    return float(np.mean(moving)) if moving else 0.0

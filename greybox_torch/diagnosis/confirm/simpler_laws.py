@@ -49,9 +49,12 @@ def simplified(study: Study, state: SearchState, effect: Attachment) -> SearchSt
     found = []
     for name in (n for n in effect.mechanism.generalises if n in LIBRARY):
         law = attach(study.problem.model, effect.port, LIBRARY[name](), effect.shifted_state)
-        effects = tuple(law if e is effect else e for e in state.effects)
         start = {n.replace(f"{effect.prefix}.", f"{law.prefix}."): v for n, v in state.current.values().items()}
-        fitted = None if law.prefix in state.prefixes else refitted(study, effects, state.current, [start])
+        fitted = (
+            None
+            if law.prefix in state.prefixes
+            else refitted(study, state.with_law(effect, law), state.current, [start])
+        )
         if fitted is not None:
             candidate = replace(done.taken.candidate, attachment=law)
             found.append(judged(candidate, done.parent, fitted, study.settings))
@@ -67,8 +70,7 @@ def _contained(study: Study, state: SearchState, effect: Attachment) -> list[tup
         inside = other.port == effect.port and other.mechanism.name in effect.mechanism.generalises
         if inside and other.prefix not in state.prefixes:
             study.working_on(f"refitting {other.prefix} in the place of {effect.prefix}")
-            effects = tuple(other if e is effect else e for e in state.effects)
-            fitted = refitted(study, effects, state.current, [rival.fitted.values()])
+            fitted = refitted(study, state.with_law(effect, other), state.current, [rival.fitted.values()])
             found += [] if fitted is None else [(rival, fitted)]
     return found
 

@@ -13,6 +13,7 @@ import numpy as np
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
 
 
@@ -35,8 +36,11 @@ def sizes(study: Study, state: SearchState, gains: Mapping[str, Gain]) -> dict[s
 
 def least_size(study: Study, state: SearchState, others: HeldOut | None) -> float:
     """The size from which an effect is a finding: much less where with all of them hardly more than noise is left."""
-    settings = study.settings
-    return settings.least_size_at_noise if _completed(study, state, others) else settings.least_size
+    return _least_size(study.settings, _completed(study, state, others))
+
+
+def _least_size(settings: DiagnosisSettings, completed: bool) -> float:
+    return settings.least_size_at_noise if completed else settings.least_size
 
 
 def _completed(study: Study, state: SearchState, others: HeldOut | None) -> bool:
@@ -59,8 +63,8 @@ def refinements(
     Args:
         sizes: of every effect, from :func:`sizes`.
     """
-    settings, least = study.settings, max(least_size(study, state, others), np.finfo(float).tiny)
-    completed, effects = _completed(study, state, others), {e.prefix: e for e in state.effects}
+    settings, completed = study.settings, _completed(study, state, others)
+    least, effects = max(_least_size(settings, completed), np.finfo(float).tiny), {e.prefix: e for e in state.effects}
 
     def doubtful(prefix: str) -> bool:
         gain = gains.get(prefix)

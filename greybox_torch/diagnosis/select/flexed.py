@@ -58,9 +58,8 @@ def in_its_place(
     if state.effects == (*done.parent.effects, effect):
         return wider.fitted
     study.working_on(f"trying {law.prefix} in the place of {effect.prefix}")
-    effects = tuple(law if e is effect else e for e in state.effects)
     start = state.current.values() | {n: v for n, v in wider.fitted.values().items() if n.startswith(f"{law.prefix}.")}
-    return fit(study, effects, [start], state.current.fits[0])
+    return fit(study, state.with_law(effect, law), [start], state.current.fits[0])
 
 
 def widened(state: SearchState, done: SelectionStep, wider: RankedCandidate, found: Hypothesis) -> SearchState:

@@ -52,8 +52,7 @@ def _in_form(
 ) -> RankedCandidate | None:
     """The hypothesis of ``state`` with a form of the effect that was taken, compared with it."""
     study.working_on(f"refitting {law.prefix} in a richer form")
-    effects = tuple(law if e.prefix == law.prefix else e for e in state.effects)
-    fitted: Hypothesis | None = fit(study, effects, [dict(start)], state.current.fits[0])
+    fitted: Hypothesis | None = fit(study, state.with_law(law, law), [dict(start)], state.current.fits[0])
     candidate = replace(taken.candidate, attachment=law)
     return None if fitted is None else judged(candidate, state.current, fitted, study.settings)
 

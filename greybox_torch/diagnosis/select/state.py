@@ -78,6 +78,10 @@ class SearchState:
             None,
         )
 
+    def with_law(self, effect: Attachment, law: Attachment) -> tuple[Attachment, ...]:
+        """The effects with ``law`` in the place of ``effect``."""
+        return tuple(law if e.prefix == effect.prefix else e for e in self.effects)
+
     def at(self, current: Hypothesis) -> SearchState:
         """With another hypothesis so far, of which it is not known what it is without its effects."""
         return replace(self, current=current, without={})

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.diagnosis.verdict import Verdict
-from greybox_torch.estimate.comparison import Score
+from greybox_torch.estimate.comparison import Score, held_out_scores
 from greybox_torch.report import text
 
 
@@ -47,8 +47,7 @@ class Headline:
 
 def held_out(verdict: Verdict, model: str, output: str | None = None) -> list[Score]:
     """The scores that a model reached on validation experiments, where there are any; on all otherwise."""
-    rows = [s for s in verdict.scores[model] if output is None or s.output == output]
-    return [s for s in rows if s.role == "validation"] or rows
+    return held_out_scores([s for s in verdict.scores[model] if output is None or s.output == output])
 
 
 def units(verdict: Verdict) -> dict[str, str]:
