@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import torch
 from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -58,3 +59,18 @@ def test_small_products_take_one_thread_and_leave_others_theirs() -> None:
     with threadpool_limits(limits=2, user_api="blas"):
         assert on_one_thread(threads)() == {1}
         assert threads() == {2}
+
+
+def test_torch_takes_one_thread_within_and_has_its_own_back_afterwards() -> None:
+    def failing() -> None:
+        assert torch.get_num_threads() == 1
+        raise ValueError("within")
+
+    before = torch.get_num_threads()
+    try:
+        torch.set_num_threads(2)
+        with pytest.raises(ValueError, match="within"):
+            on_one_thread(failing)()
+        assert torch.get_num_threads() == 2
+    finally:
+        torch.set_num_threads(before)

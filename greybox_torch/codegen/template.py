@@ -31,10 +31,11 @@ SIMD float atan2f(float, float);
 double sqrt(double); float sqrtf(float); double floor(double); float floorf(float);
 void *aligned_alloc(unsigned long, unsigned long); void free(void *);
 }
-#define LIFT(name) \
+#define LIFT_AS(name, lifted) \
   INLINE double s_##name(double a) { return name(a); } INLINE float s_##name(float a) { return name##f(a); } \
-  INLINE vec v_##name(vec a) { vec r; for (int l = 0; l < LANES; l++) r[l] = s_##name((real)a[l]); return r; }
-LIFT(exp) LIFT(log) LIFT(sin) LIFT(cos) LIFT(tan) LIFT(asin) LIFT(acos) LIFT(atan) LIFT(sinh) LIFT(cosh) LIFT(tanh) LIFT(erf)
+  INLINE vec lifted(vec a) { vec r; for (int l = 0; l < LANES; l++) r[l] = s_##name((real)a[l]); return r; }
+#define LIFT(name) LIFT_AS(name, v_##name)
+LIFT_AS(exp, normal_exp) LIFT(log) LIFT(sin) LIFT(cos) LIFT(tan) LIFT(asin) LIFT(acos) LIFT(atan) LIFT(sinh) LIFT(cosh) LIFT(tanh) LIFT(erf)
 LIFT(log1p) LIFT(expm1) LIFT(sqrt) LIFT(floor)
 #define LIFT2(name) \
   INLINE double s_##name(double a, double b) { return name(a, b); } INLINE float s_##name(float a, float b) { return name##f(a, b); } \
@@ -44,6 +45,11 @@ INLINE vec splat(double a) { return (real)a - vec{}; }
 INLINE vec choose(mask m, vec a, vec b) { return m ? a : b; }
 INLINE vec v_abs(vec a) { return a < 0 ? -a : a; }
 INLINE vec v_sign(vec a) { return (a > 0 ? splat(1) : splat(0)) - (a < 0 ? splat(1) : splat(0)); }
+// What would be no normal number is zero: vector mathematics compute it lane by lane, five times as slowly.
+INLINE vec v_exp(vec a) {
+  const vec least = splat(sizeof(real) == 8 ? -708 : -87);
+  return a < least ? vec{} : normal_exp(a < least ? least : a);
+}
 INLINE vec v_min(vec a, vec b) { return a < b ? a : b; }
 INLINE vec v_max(vec a, vec b) { return a > b ? a : b; }
 

@@ -88,3 +88,21 @@ def test_power_of_zero_has_a_slope_in_its_exponent(model: GreyBoxModel, stepper:
     assert run.dy is not None
     row = [output.name for output in model.outputs].index("power_parameter")
     assert run.dy[0, 0, row, 0] == 0.0
+
+
+def test_exponentials_of_very_negative_numbers_are_zero_as_anywhere(machines: Path) -> None:
+    """The compiled code does not ask the vector library about them, which takes its time for numbers that are not normal."""
+    exponents = np.array([-1e300, -800.0, -708.5, -707.9, -87.5, -1.0, 0.0, 700.0, 800.0, np.inf, -np.inf, np.nan])
+    stepper = make_stepper(load_model(f"{machines / 'operations.py'}:Exponential"), ("k",))
+    count = len(exponents)
+    records = Records(
+        exponents[None], np.zeros((1, count)), np.ones(count), np.array([0]), np.array([count - 1]), ("",), "zoh"
+    )
+    at = np.arange(count)
+    run = stepper.run(records, Pass(Windows(at, at, 1), np.array([1.0]), np.zeros((count, 1)), tangents=True))
+    assert isinstance(stepper, NativeStepper) and run.dy is not None
+    with np.errstate(over="ignore", invalid="ignore"):
+        values, slopes = np.exp(exponents), exponents * np.exp(exponents)
+    np.testing.assert_allclose(run.y[:, 0, 0], values, rtol=1e-14, atol=1e-300)
+    np.testing.assert_allclose(run.dy[3:8, 0, 0, 0], slopes[3:8], rtol=1e-14)
+    np.testing.assert_array_equal(run.dy[:3, 0, 0, 0], 0.0)

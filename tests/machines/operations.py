@@ -159,3 +159,18 @@ class Operations(GreyBoxModel):
 
     def output(self, x, u, p):
         return {name: operation(x, u, p) for name, operation in OPERATIONS.items()}
+
+
+class Exponential(GreyBoxModel):
+    """exp(k u)."""
+
+    states = [State("unused")]
+    inputs = [Input("u")]
+    outputs = [Output("y")]
+    parameters = [Parameter("k", 1.0)]
+
+    def derivative(self, x, u, p, port):
+        return {"unused": -x.unused}
+
+    def output(self, x, u, p):
+        return {"y": torch.exp(p.k * u.u)}

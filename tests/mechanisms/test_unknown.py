@@ -2,8 +2,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import torch
 
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.model import Signals
 
 
 def test_follows_any_smooth_curve_over_its_range(law, around) -> None:
@@ -55,3 +57,23 @@ def test_bumps_that_are_left_out_are_zero_and_have_no_parameters(law, around) ->
     assert sparse.bumps == [1, 2, 4, 5, 6] and sparse.probes(around)[0].directions == tuple(heights)
     assert {p.name for p in sparse.parameters(around)} == {*heights, "first", "spacing"}
     assert Unknown(**sparse.options()).bumps == sparse.bumps
+
+
+@pytest.mark.parametrize(
+    ("knots", "left_out"), [(5, ()), (14, ()), (41, (0, 4, 9, 10, 11, 12, 13, 14, 15, 16, 17, 40))]
+)
+@pytest.mark.parametrize("precision", [torch.float64, torch.float32])
+def test_bumps_are_the_same_whichever_exponentials_they_are_computed_from(knots, left_out, precision) -> None:
+    curve, rng = Unknown("speed", knots, left_out=left_out), np.random.default_rng(knots)
+    heights = {
+        f"w_{k}": torch.tensor(h, dtype=precision) for k, h in zip(curve.bumps, rng.normal(size=knots), strict=False)
+    }
+    speed = torch.linspace(-0.5 * knots, 1.5 * knots, 997, dtype=precision, requires_grad=True)
+    signals = Signals("signal", {"speed": speed})
+    values = curve.curve(signals, Signals("parameter", {**heights, "first": torch.tensor(0.0), "spacing": 1.0}))
+    place = torch.clamp(speed, 1.0, knots - 2.0)
+    plain = sum(heights[f"w_{k}"] * torch.exp(-((place - k) ** 2)) for k in curve.bumps)
+    tolerance = 1e-13 if precision is torch.float64 else 1e-4
+    slopes = [torch.autograd.grad(y.sum(), speed)[0] for y in (values, plain)]
+    torch.testing.assert_close(values, plain, rtol=tolerance, atol=tolerance)
+    torch.testing.assert_close(*slopes, rtol=tolerance, atol=tolerance)

@@ -27,26 +27,43 @@ def drop_superfluous(study: Study, state: SearchState) -> Stage[SearchState]:
             state = replace(state, without=without)
             yield state
             return state
-        state = state.at(superfluous)
+        gone = next(e for e in state.effects if e not in superfluous.effects)
+        state = replace(state.at(superfluous), made_up_for=(*state.made_up_for, (gone, state.current)))
         yield state
 
 
 def drop(study: Study, state: SearchState, prefix: str) -> Stage[SearchState]:
-    """Take one effect back, and what is superfluous without it."""
+    """Take one effect back, and what is superfluous without it; what it had made up for is asked again."""
     state = state.at(state.without[prefix])
     yield state
-    return (yield from drop_superfluous(study, state))
+    return (yield from drop_superfluous(study, _with_what_was_made_up_for(study, state)))
+
+
+def _with_what_was_made_up_for(study: Study, state: SearchState) -> SearchState:
+    """The state with the effects that others had made up for, which no longer do; the last that went is asked first."""
+    asked, state = state.made_up_for, replace(state, made_up_for=())
+    for effect, once in reversed(asked):
+        study.working_on(f"trying {effect.prefix} again")
+        found = refitted(study, (*state.effects, effect), state.current, [once.values()])
+        if found is not None and not _does_as_well(study, state.current, found):
+            state = state.at(found)
+        else:
+            state = replace(state, made_up_for=((effect, once), *state.made_up_for))
+    return state
 
 
 def _made_up_for(study: Study, state: SearchState, without: Hypothesis) -> bool:
     """Whether the other effects do as well alone."""
+    return len(state.effects) > 1 and _does_as_well(study, without, state.current)
+
+
+def _does_as_well(study: Study, without: Hypothesis, with_it: Hypothesis) -> bool:
+    """Whether a hypothesis without an effect is as good as the one with it."""
     settings = study.settings
-    gain = without.score - state.current.score
-    few = (
-        gain < least_gain(state.current, settings)
-        or window_significance(without, state.current, settings) < settings.least_significance
+    return (
+        without.score - with_it.score < least_gain(with_it, settings)
+        or window_significance(without, with_it, settings) < settings.least_significance
     )
-    return len(state.effects) > 1 and few
 
 
 def _without(study: Study, state: SearchState, effect: Attachment) -> Hypothesis:

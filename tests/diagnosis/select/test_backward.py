@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select import backward
-from greybox_torch.diagnosis.select.backward import drop_superfluous
+from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.attachment import Attachment
@@ -36,3 +38,27 @@ def test_what_the_newest_effect_was_compared_with_is_not_refitted(dead_zone_sear
     refits.clear()
     result_of(drop_superfluous(study, SearchState(plain, replace(both), (step,))))
     assert sorted(refits, key=str) == sorted([(old,), (new,)], key=str)
+
+
+@pytest.mark.parametrize("again", [True, False])
+def test_what_an_effect_had_made_up_for_is_asked_again_once_that_is_taken_back(
+    dead_zone_search, monkeypatch, again
+) -> None:
+    """Seen: dry friction of a robot's joint, made up for by a lag that other recordings took back; nothing was left."""
+    study, plain = dead_zone_search.study, dead_zone_search.plain
+    lag, friction = Attachment("rotor", CoulombFriction()), Attachment("load", StribeckFriction())
+
+    def having(effects, error):
+        fits = tuple(replace(f, mean_square=error * f.mean_square) for f in plain.fits)
+        return replace(plain, effects=effects, fits=fits)
+
+    errors = {(): 1.0, (lag,): 0.5, (friction,): 0.6 if again else 1.0, (lag, friction): 0.499}
+    both = having((lag, friction), errors[lag, friction])
+    monkeypatch.setattr(backward, "window_significance", lambda *_: 9.0)
+    monkeypatch.setattr(backward, "absorbed", lambda *_: None)
+    monkeypatch.setattr(backward, "refitted", lambda study, effects, *_: having(effects, errors[effects]))
+    state = result_of(drop_superfluous(study, SearchState(plain, both)))
+    assert state.effects == (lag,) and [e for e, _ in state.made_up_for] == [friction]
+    left = result_of(drop(study, state, lag.prefix))
+    assert left.effects == ((friction,) if again else ())
+    assert [e for e, _ in left.made_up_for] == ([] if again else [friction])
