@@ -124,16 +124,17 @@ class InputGain(LinearLaw):
 
 
 class TorqueSaturation(Mechanism):
-    """The input that acts is limited: u / (1 + |u / limit|^n)^(1/n), with n = 1 / ``softness``.
+    """The input that acts is limited: u / (1 + |u / l|^n)^(1/n), with n = 1 / ``softness``.
 
-    As soft as iron that saturates (a softness of 0.3 to 1), or a clamp (a softness of zero).
+    As soft as iron that saturates (a softness of 0.3 to 1), or a clamp (a softness of zero). With an ``asymmetry`` a the limit l is
+    (1 + a) ``limit`` for positive inputs and (1 − a) ``limit`` for negative ones.
     """
 
     name = "torque_saturation"
     kinds = ("actuator",)
     needs = ("input",)
     essential = ("limit",)
-    later = ("softness",)
+    later = ("softness", "asymmetry")
     nature = "an input that acts in part only"
     explanation = "The input that acts is limited (current limit, valve fully open, iron that saturates)."
     source = "H. K. Khalil, Nonlinear Systems, 3rd ed., 2002"
@@ -144,11 +145,13 @@ class TorqueSaturation(Mechanism):
         return [
             Parameter("limit", 0.8 * reach, around.force_unit, lower=0.02 * reach, upper=reach, description="limit"),
             Parameter("softness", 0.0, "", lower=0.0, upper=1.0, description="0: a clamp, 0.5: a gradual limit"),
+            _asymmetry("the limits"),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         # ln(1 + x^n) / n as a maximum and a rest: no power overflows, and without softness it is the clamp itself.
-        ln_x = 0.5 * torch.log((s.input / p.limit) ** 2 + TINY)
+        limit = p.limit * _to_either_side(s.input, p.asymmetry)
+        ln_x = 0.5 * torch.log((s.input / limit) ** 2 + TINY)
         rest = torch.log1p(torch.exp(-torch.abs(ln_x) / (p.softness + TINY)))
         return s.input * torch.expm1(-torch.clamp(ln_x, min=0.0) - p.softness * rest)
 
@@ -157,7 +160,7 @@ class TorqueSaturation(Mechanism):
         hard = [factor * spread.rms for factor in (1.0, 1.5, 2.0, 2.7)]
         soft = [factor * spread.rms for factor in (1.5, 3.0)]
         return [
-            Probe((SHARE,), {"limit": limit, "softness": softness})
+            Probe((SHARE,), {"limit": limit, "softness": softness, "asymmetry": 0.0})
             for softness, limits in ((0.05, hard), (0.4, soft))
             for limit in limits
             if limit < spread.reach
@@ -165,11 +168,12 @@ class TorqueSaturation(Mechanism):
 
 
 class ActuatorDeadzone(Mechanism):
-    """The input acts only beyond ±half_width."""
+    """The input acts only beyond ±``half_width``; with an ``asymmetry`` a, beyond (1 + a) and below −(1 − a) times that."""
 
     name = "actuator_deadzone"
     kinds = ("actuator",)
     needs = ("input",)
+    later = ("asymmetry",)
     nature = "an input that acts in part only"
     explanation = "Small inputs do nothing (valve overlap, amplifier dead band)."
     source = "G. Tao, P. V. Kokotović, Adaptive Control of Systems with Actuator and Sensor Nonlinearities, 1996"
@@ -180,12 +184,24 @@ class ActuatorDeadzone(Mechanism):
         return [
             Parameter(
                 "half_width", 0.0, around.force_unit, lower=0.0, upper=0.9 * reach, description="half the dead band"
-            )
+            ),
+            _asymmetry("the dead band's ends"),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return dead_zone(s.input, p.half_width) - s.input
+        return dead_zone(s.input, p.half_width * (1 - p.asymmetry), p.half_width * (1 + p.asymmetry)) - s.input
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         rms = around.ranges["input"].rms
         return [Probe(("half_width",)), *(Probe((SHARE,), {"half_width": f * rms}) for f in (0.2, 0.6))]
+
+
+def _asymmetry(of: str) -> Parameter:
+    return Parameter(
+        "asymmetry", 0.0, "", lower=-0.9, upper=0.9, description=f"of {of}: 0.1 is a tenth more above, less below"
+    )
+
+
+def _to_either_side(signal: Any, asymmetry: Any) -> Any:
+    """1 + asymmetry where the signal is positive, 1 − asymmetry where it is negative."""
+    return 1 + asymmetry * torch.sign(signal)

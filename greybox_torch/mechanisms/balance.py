@@ -50,12 +50,21 @@ class LinearLeak(Mechanism):
         return [Probe(("c",), {"reference": reference}) for reference in references]
 
 
+TINY = 1e-12
+"""Keeps a quotient finite at zero."""
+
+
 class ThresholdFlow(Mechanism):
-    """−c (level − threshold) above the threshold."""
+    """−c (level − threshold) above the threshold, where the flow sets in over a ``width`` w: −c w ln(1 + exp((level − threshold) / w)).
+
+    Without a width it sets in at once.
+    """
 
     name = "threshold_flow"
     kinds = ("balance",)
     needs = ("level",)
+    natural = ("width",)
+    later = ("width",)
     nature = "a flow that depends on the level"
     explanation = "Above a level something flows off (overflow, relief valve)."
     source = (
@@ -75,14 +84,25 @@ class ThresholdFlow(Mechanism):
                 upper=level.low + level.span,
                 description="level at which the flow sets in",
             ),
+            Parameter(
+                "width",
+                0.02 * level.span,
+                around.units.get("level", ""),
+                lower=0.0,
+                upper=0.1 * level.span,
+                description="range of levels over which it sets in",
+            ),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return -p.c * torch.clamp(s.level - p.threshold, min=0.0)
+        above = s.level - p.threshold
+        setting_in = p.width * torch.log1p(torch.exp(-torch.abs(above) / (p.width + TINY)))
+        return -p.c * (torch.clamp(above, min=0.0) + setting_in)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         level = around.ranges["level"]
-        return [Probe(("c",), {"threshold": level.low + f * level.span}) for f in (0.3, 0.5, 0.7, 0.85, 0.95)]
+        places = (level.low + f * level.span for f in (0.3, 0.5, 0.7, 0.85, 0.95))
+        return [Probe(("c",), {"threshold": place, "width": 0.02 * level.span}) for place in places]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return beyond("threshold", values["threshold"], around, "level")

@@ -15,9 +15,9 @@ ROUNDING = 1e-9
 """Share of a gap that is nothing."""
 
 
-def dead_zone(value: Any, half_gap: Any) -> Any:
-    """Zero within ±half_gap, shifted towards zero by it outside."""
-    return value - torch.clamp(value, -half_gap, half_gap)
+def dead_zone(value: Any, below: Any, above: Any) -> Any:
+    """Zero from −below to above, shifted towards zero by them outside."""
+    return value - torch.clamp(value, -below, above)
 
 
 class Backlash(Mechanism):
@@ -58,7 +58,7 @@ class Backlash(Mechanism):
         return lost if damped is None else lost + damped
 
     def deflection(self, s: Signals, p: Signals) -> Any:
-        return dead_zone(s.deflection, p.half_gap)
+        return dead_zone(s.deflection, p.half_gap, p.half_gap)
 
     def damped(self, s: Signals, p: Signals) -> Any:
         if "damping" not in p:

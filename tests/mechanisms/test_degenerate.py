@@ -24,9 +24,9 @@ SOUND: dict[str, dict[str, float]] = {
     "additional_mode": {"mass": 0.1, "omega": 60.0, "zeta": 0.05},
     "hysteretic_spring": {"F": 1.0, "z_0": 0.01, "sharpness": 0.0},
     "transmission_error": {"a": 0.01, "b": 0.0, "order": 3.0, "damping": 0.0, "reaction": 1.0},
-    "threshold_flow": {"c": 1.0, "threshold": 2.0},
+    "threshold_flow": {"c": 1.0, "threshold": 2.0, "width": 0.1},
     "input_lag": {"T": 0.01},
-    "torque_saturation": {"limit": 4.0, "softness": 0.3},
+    "torque_saturation": {"limit": 4.0, "softness": 0.3, "asymmetry": 0.1},
     "coulomb_friction": {"F_c": 1.0, "v_0": 0.1},
     "viscous_friction": {"c": 0.2},
 }

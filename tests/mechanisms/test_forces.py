@@ -93,8 +93,19 @@ def test_leak_is_proportional_and_loses(law) -> None:
 
 
 def test_threshold_flow_begins_at_its_threshold(law) -> None:
-    flow = law(ThresholdFlow(), {"c": 2.0, "threshold": 1.5}, level=np.array([0.0, 1.5, 2.0, 2.5]))
-    np.testing.assert_allclose(flow, [0.0, 0.0, -1.0, -2.0], atol=1e-12)
+    at_once = {"c": 2.0, "threshold": 1.5, "width": 0.0}
+    flow = law(ThresholdFlow(), at_once, level=np.array([0.0, 1.5, 2.0, 2.5]))
+    np.testing.assert_allclose(flow, [0.0, 0.0, -1.0, -2.0], atol=1e-11)
+
+
+def test_threshold_flow_may_set_in_over_a_width(law) -> None:
+    """c w ln(1 + exp(z / w)): half the slope at the threshold, and the same flow as without a width far above it."""
+    soft, level = {"c": 2.0, "threshold": 1.5, "width": 0.1}, np.linspace(0.5, 3.5, 301)
+    flow = law(ThresholdFlow(), soft, level=level)
+    np.testing.assert_allclose(flow, -2.0 * 0.1 * np.log1p(np.exp((level - 1.5) / 0.1)), rtol=1e-10)
+    slope = np.gradient(flow, level)
+    assert slope[100] == pytest.approx(-1.0, rel=1e-3) and slope[-1] == pytest.approx(-2.0, rel=1e-6)
+    assert flow[0] == pytest.approx(0.0, abs=1e-4)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])

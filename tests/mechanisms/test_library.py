@@ -21,7 +21,17 @@ NAMES = {
     "actuator": "input_delay input_lag input_bias input_gain torque_saturation actuator_deadzone unknown",
     "sensor": "output_delay sensor_lag sensor_bias sensor_gain unknown",
 }
-PURE_NUMBERS = {"gain_error", "order", "side", "zeta", "reaction", "sharpness", "softness", "load_dependent_friction.c"}
+PURE_NUMBERS = {
+    "gain_error",
+    "order",
+    "side",
+    "zeta",
+    "reaction",
+    "sharpness",
+    "softness",
+    "asymmetry",
+    "load_dependent_friction.c",
+}
 
 MECHANISMS = [pytest.param(m(), id=m.name) for m in LIBRARY.values()]
 ALL = [*MECHANISMS, pytest.param(Unknown("speed", knots=5), id="unknown")]

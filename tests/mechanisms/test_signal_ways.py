@@ -31,6 +31,13 @@ def test_a_soft_saturation_bends_over(law) -> None:
     np.testing.assert_allclose(nearly, np.clip(INPUT, -2.0, 2.0), atol=2e-4)
 
 
+def test_limits_and_dead_bands_may_differ_by_direction(law) -> None:
+    limited = INPUT + law(TorqueSaturation(), {"limit": 2.0, "asymmetry": -0.25}, input=INPUT)
+    np.testing.assert_allclose(limited, np.clip(INPUT, -2.5, 1.5), atol=1e-15)
+    dead = INPUT + law(ActuatorDeadzone(), {"half_width": 1.0, "asymmetry": 0.5}, input=INPUT)
+    np.testing.assert_allclose(dead, INPUT - np.clip(INPUT, -0.5, 1.5), atol=1e-15)
+
+
 def test_dead_zone_of_the_actuator(law) -> None:
     acting = INPUT + law(ActuatorDeadzone(), {"half_width": 1.0}, input=INPUT)
     np.testing.assert_allclose(acting, np.sign(INPUT) * np.maximum(np.abs(INPUT) - 1.0, 0.0), atol=1e-14)

@@ -10,6 +10,7 @@ from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified
 from greybox_torch.diagnosis.confirm.take_back import held_out_gains, take_back_weakest
+from greybox_torch.diagnosis.confirm.undone import not_undone
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.final import Final, as_windows_have_it, finish
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
@@ -74,13 +75,16 @@ def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[st
 
     Deviations are asked only where held-out experiments do not show by themselves that zero is not as good: of two amplitudes that trade
     for one another, as the stiffness and the damping of a hard stop, neither may be determined. What they show is the effect as windows
-    have it; where whole records leave next to nothing of that, it proves nothing.
+    have it; where whole records leave next to nothing of that, it proves nothing. A named law that the other parameters undo stands for
+    them, or for another law.
     """
     values, deviations, over_windows = augmented.values(), augmented.deviations(), state.current.values()
     for e in state.effects:
         vanished = _share_kept(study, e, over_windows, values) < study.settings.least_share_kept
         proven = not e.mechanism.essential and not vanished and _proven(gains.get(e.prefix), study.settings)
         if degenerate(e, study.surroundings, values, {} if proven else deviations) is not None:
+            return e.prefix
+        if not e.mechanism.free and not_undone(state.current, e, study.surroundings) < study.settings.least_not_undone:
             return e.prefix
     return None
 

@@ -72,6 +72,12 @@ class ConfirmationSettings:
         "What the fit of whole records has to leave of an effect's amplitudes for windows of held-out experiments to prove it.",
         unit="share of the amplitude over windows",
     )
+    least_not_undone: float = share(
+        0.001,
+        "What has to be left of what a named law does once all other parameters have undone what they can; it is taken back otherwise.",
+        unit="share of its squared output",
+        chosen_by="laws found rightly keep 0.008 to 0.98 of it, a sensor's gain that a spring's stiffness undid 0.00004",
+    )
     no_mismatch: float = share(
         0.01,
         "Squared error beyond the noise up to which windows of one length say nothing of an effect's size.",

@@ -125,7 +125,8 @@ def input_bias(at: Place) -> Said:
 def saturation(at: Place) -> Said:
     limit, softness = at.values["limit"], at.values["softness"]
     left = [f"the softness of the limit, {softness:.3g}: a ctrlrange is a clamp"] if softness > CLAMPS else []
-    return _actuator(at, {"ctrllimited": "true", "ctrlrange": (-limit, limit)}, *left)
+    range_ = (-limit * (1 - at.values["asymmetry"]), limit * (1 + at.values["asymmetry"]))
+    return _actuator(at, {"ctrllimited": "true", "ctrlrange": range_}, *left)
 
 
 def lag(at: Place) -> Said:

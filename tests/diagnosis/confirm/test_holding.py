@@ -15,6 +15,14 @@ from greybox_torch.mechanisms.friction import StribeckFriction
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 
 
+@pytest.fixture(autouse=True)
+def shares(monkeypatch: pytest.MonkeyPatch) -> dict[str, float]:
+    """What the other parameters leave of an effect, by prefix."""
+    left: dict[str, float] = {}
+    monkeypatch.setattr(holding, "not_undone", lambda fitted, effect, surroundings: left.get(effect.prefix, 1.0))
+    return left
+
+
 def a_stop(stub: Any, found: Gain | None, law: Any = EndStop, over_windows: float = 0.5) -> Any:
     """What is known of a hard stop whose stiffness and damping trade for one another; both ``over_windows``, and 0.5 over whole records."""
     around = Surroundings({"position": Range(-1.0, 1.0, 0.5), "speed": Range(-2.0, 2.0, 1.0)}, {}, "N m", 1e-3)
@@ -32,6 +40,13 @@ def test_what_held_out_experiments_prove_is_not_empty_whatever_trades_for_what(s
     assert a_stop(stub, Gain(0.999, 0.0005, size=0.999)) is None
     assert a_stop(stub, None) == "link.law"
     assert a_stop(stub, Gain(0.01, 0.02, size=0.01)) == "link.law"
+
+
+@pytest.mark.parametrize(("left", "empty"), [(4e-5, True), (0.008, False)])
+def test_what_the_other_parameters_undo_is_empty_however_much_it_gains(stub, shares, left: float, empty: bool) -> None:
+    """Seen: a sensor of a valve's travel that showed a third of it, beside a spring three times as stiff; what was missing was friction."""
+    shares["link.law"] = left
+    assert a_stop(stub, Gain(0.999, 0.0005, size=0.999)) == ("link.law" if empty else None)
 
 
 @pytest.mark.parametrize("over_windows", [5.5, -50.0])
