@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import torch
 
 from greybox_torch.mechanisms.degenerate import too_long
@@ -16,6 +17,9 @@ from greybox_torch.model import Parameter, Signals, State
 
 TINY = 1e-12
 """Keeps a logarithm and a quotient finite at zero."""
+
+PLAINLY_EVEN = 0.02
+"""Share of a curve's square that its even part has where the two directions differ: by a tenth and more."""
 
 
 class InputLag(Mechanism):
@@ -126,31 +130,34 @@ class InputGain(LinearLaw):
 class TorqueSaturation(Mechanism):
     """The input that acts is limited: u / (1 + |u / l|^n)^(1/n), with n = 1 / ``softness``.
 
-    As soft as iron that saturates (a softness of 0.3 to 1), or a clamp (a softness of zero). With an ``asymmetry`` a the limit l is
-    (1 + a) ``limit`` for positive inputs and (1 − a) ``limit`` for negative ones.
+    As soft as iron that saturates (a softness of 0.3 to 1), or a clamp (a softness of zero). ``by_direction``, with an ``asymmetry`` a, the
+    limit l is (1 + a) ``limit`` for positive inputs and (1 − a) ``limit`` for negative ones.
     """
 
     name = "torque_saturation"
     kinds = ("actuator",)
     needs = ("input",)
     essential = ("limit",)
-    later = ("softness", "asymmetry")
+    later = ("softness",)
     nature = "an input that acts in part only"
     explanation = "The input that acts is limited (current limit, valve fully open, iron that saturates)."
     source = "H. K. Khalil, Nonlinear Systems, 3rd ed., 2002"
     experiment = "large inputs of both signs"
+
+    def __init__(self, by_direction: bool = False) -> None:
+        self.by_direction = by_direction
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         reach = around.ranges["input"].reach
         return [
             Parameter("limit", 0.8 * reach, around.force_unit, lower=0.02 * reach, upper=reach, description="limit"),
             Parameter("softness", 0.0, "", lower=0.0, upper=1.0, description="0: a clamp, 0.5: a gradual limit"),
-            _asymmetry("the limits"),
+            *_asymmetries(self.by_direction, "the limits"),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         # ln(1 + x^n) / n as a maximum and a rest: no power overflows, and without softness it is the clamp itself.
-        limit = p.limit * _to_either_side(s.input, p.asymmetry)
+        limit = p.limit * (1 + p.asymmetry * torch.sign(s.input)) if self.by_direction else p.limit
         ln_x = 0.5 * torch.log((s.input / limit) ** 2 + TINY)
         rest = torch.log1p(torch.exp(-torch.abs(ln_x) / (p.softness + TINY)))
         return s.input * torch.expm1(-torch.clamp(ln_x, min=0.0) - p.softness * rest)
@@ -160,24 +167,35 @@ class TorqueSaturation(Mechanism):
         hard = [factor * spread.rms for factor in (1.0, 1.5, 2.0, 2.7)]
         soft = [factor * spread.rms for factor in (1.5, 3.0)]
         return [
-            Probe((SHARE,), {"limit": limit, "softness": softness, "asymmetry": 0.0})
+            Probe((SHARE,), {"limit": limit, "softness": softness})
             for softness, limits in ((0.05, hard), (0.4, soft))
             for limit in limits
             if limit < spread.reach
         ]
 
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """With limits that differ by direction."""
+        return () if self.by_direction else ((TorqueSaturation(True), {**values, "asymmetry": 0.0}),)
+
+    def nearest(
+        self, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
+    ) -> Mechanism:
+        return TorqueSaturation(_differs_by_direction(signals["input"].numpy(), force, weight))
+
 
 class ActuatorDeadzone(Mechanism):
-    """The input acts only beyond ±``half_width``; with an ``asymmetry`` a, beyond (1 + a) and below −(1 − a) times that."""
+    """The input acts only beyond ±``half_width``; ``by_direction``, with an ``asymmetry`` a, beyond (1 + a) and −(1 − a) times that."""
 
     name = "actuator_deadzone"
     kinds = ("actuator",)
     needs = ("input",)
-    later = ("asymmetry",)
     nature = "an input that acts in part only"
     explanation = "Small inputs do nothing (valve overlap, amplifier dead band)."
     source = "G. Tao, P. V. Kokotović, Adaptive Control of Systems with Actuator and Sensor Nonlinearities, 1996"
     experiment = "small inputs around zero"
+
+    def __init__(self, by_direction: bool = False) -> None:
+        self.by_direction = by_direction
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         reach = around.ranges["input"].reach
@@ -185,23 +203,35 @@ class ActuatorDeadzone(Mechanism):
             Parameter(
                 "half_width", 0.0, around.force_unit, lower=0.0, upper=0.9 * reach, description="half the dead band"
             ),
-            _asymmetry("the dead band's ends"),
+            *_asymmetries(self.by_direction, "the dead band's ends"),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return dead_zone(s.input, p.half_width * (1 - p.asymmetry), p.half_width * (1 + p.asymmetry)) - s.input
+        more = p.asymmetry if self.by_direction else 0.0
+        return dead_zone(s.input, p.half_width * (1 - more), p.half_width * (1 + more)) - s.input
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         rms = around.ranges["input"].rms
         return [Probe(("half_width",)), *(Probe((SHARE,), {"half_width": f * rms}) for f in (0.2, 0.6))]
 
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """With ends that differ by direction."""
+        return () if self.by_direction else ((ActuatorDeadzone(True), {**values, "asymmetry": 0.0}),)
 
-def _asymmetry(of: str) -> Parameter:
-    return Parameter(
-        "asymmetry", 0.0, "", lower=-0.9, upper=0.9, description=f"of {of}: 0.1 is a tenth more above, less below"
-    )
+    def nearest(
+        self, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
+    ) -> Mechanism:
+        return ActuatorDeadzone(_differs_by_direction(signals["input"].numpy(), force, weight))
 
 
-def _to_either_side(signal: Any, asymmetry: Any) -> Any:
-    """1 + asymmetry where the signal is positive, 1 − asymmetry where it is negative."""
-    return 1 + asymmetry * torch.sign(signal)
+def _asymmetries(by_direction: bool, of: str) -> list[Parameter]:
+    told = f"of {of}: 0.1 is a tenth more above, less below"
+    return [Parameter("asymmetry", 0.0, "", lower=-0.9, upper=0.9, description=told)] if by_direction else []
+
+
+def _differs_by_direction(signal: np.ndarray, change: np.ndarray, weight: np.ndarray) -> bool:
+    """Whether a curve (N,) over a rising signal (N,) is plainly not odd, points counting by weight (N,)."""
+    both = np.abs(signal) <= min(-signal[0], signal[-1])
+    even = 0.5 * (change + np.interp(-signal, signal, change))[both]
+    share = float(weight[both] @ even**2) / max(float(weight[both] @ change[both] ** 2), 1e-300) if both.any() else 0.0
+    return share > PLAINLY_EVEN

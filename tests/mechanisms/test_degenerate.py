@@ -26,7 +26,7 @@ SOUND: dict[str, dict[str, float]] = {
     "transmission_error": {"a": 0.01, "b": 0.0, "order": 3.0, "damping": 0.0, "reaction": 1.0},
     "threshold_flow": {"c": 1.0, "threshold": 2.0, "width": 0.1},
     "input_lag": {"T": 0.01},
-    "torque_saturation": {"limit": 4.0, "softness": 0.3, "asymmetry": 0.1},
+    "torque_saturation": {"limit": 4.0, "softness": 0.3},
     "coulomb_friction": {"F_c": 1.0, "v_0": 0.1},
     "viscous_friction": {"c": 0.2},
 }

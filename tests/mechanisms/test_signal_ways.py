@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import torch
 
 from greybox_torch.mechanisms.actuator import (
     ActuatorDeadzone,
@@ -32,10 +33,23 @@ def test_a_soft_saturation_bends_over(law) -> None:
 
 
 def test_limits_and_dead_bands_may_differ_by_direction(law) -> None:
-    limited = INPUT + law(TorqueSaturation(), {"limit": 2.0, "asymmetry": -0.25}, input=INPUT)
+    limited = INPUT + law(TorqueSaturation(True), {"limit": 2.0, "asymmetry": -0.25}, input=INPUT)
     np.testing.assert_allclose(limited, np.clip(INPUT, -2.5, 1.5), atol=1e-15)
-    dead = INPUT + law(ActuatorDeadzone(), {"half_width": 1.0, "asymmetry": 0.5}, input=INPUT)
+    dead = INPUT + law(ActuatorDeadzone(True), {"half_width": 1.0, "asymmetry": 0.5}, input=INPUT)
     np.testing.assert_allclose(dead, INPUT - np.clip(INPUT, -0.5, 1.5), atol=1e-15)
+
+
+@pytest.mark.parametrize("plain", [TorqueSaturation(), ActuatorDeadzone()])
+def test_the_form_by_direction_is_asked_where_a_curve_is_not_odd_or_more_than_noise_is_left(law, around, plain) -> None:
+    signals, weight = {"input": torch.as_tensor(np.sort(INPUT))}, np.ones(len(INPUT))
+    amplitude = "limit" if isinstance(plain, TorqueSaturation) else "half_width"
+    for asymmetry in (0.0, 0.4):
+        values = {amplitude: 1.0, "asymmetry": asymmetry}
+        drawn = law(type(plain)(True), values, input=np.sort(INPUT))
+        assert plain.nearest(around, signals, drawn, weight).options() == {"by_direction": asymmetry > 0.0}
+    ((form, begun),) = plain.richer({amplitude: 1.0})
+    assert form.options() == {"by_direction": True} and begun == {amplitude: 1.0, "asymmetry": 0.0}
+    assert not form.richer(begun)
 
 
 def test_dead_zone_of_the_actuator(law) -> None:

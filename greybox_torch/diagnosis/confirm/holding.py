@@ -75,8 +75,8 @@ def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[st
 
     Deviations are asked only where held-out experiments do not show by themselves that zero is not as good: of two amplitudes that trade
     for one another, as the stiffness and the damping of a hard stop, neither may be determined. What they show is the effect as windows
-    have it; where whole records leave next to nothing of that, it proves nothing. A named law that the other parameters undo stands for
-    them, or for another law.
+    have it; where whole records leave next to nothing of that, it proves nothing. A named law that the other parameters undo, and that
+    is not most of the mismatch either, stands for something else.
     """
     values, deviations, over_windows = augmented.values(), augmented.deviations(), state.current.values()
     for e in state.effects:
@@ -84,9 +84,17 @@ def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[st
         proven = not e.mechanism.essential and not vanished and _proven(gains.get(e.prefix), study.settings)
         if degenerate(e, study.surroundings, values, {} if proven else deviations) is not None:
             return e.prefix
-        if not e.mechanism.free and not_undone(state.current, e, study.surroundings) < study.settings.least_not_undone:
+        if not e.mechanism.free and _undone(study, state, e, gains.get(e.prefix)):
             return e.prefix
     return None
+
+
+def _undone(study: Study, state: SearchState, effect: Attachment, gain: Gain | None) -> bool:
+    """Whether the other parameters undo what an effect does that is not most of the mismatch."""
+    settings = study.settings
+    if gain is not None and gain.size >= settings.most_of_the_mismatch:
+        return False
+    return not_undone(state.current, effect, study.surroundings) < settings.least_not_undone
 
 
 def _share_kept(study: Study, effect: Attachment, before: Mapping[str, float], after: Mapping[str, float]) -> float:

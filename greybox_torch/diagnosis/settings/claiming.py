@@ -73,10 +73,15 @@ class ConfirmationSettings:
         unit="share of the amplitude over windows",
     )
     least_not_undone: float = share(
-        0.001,
-        "What has to be left of what a named law does once all other parameters have undone what they can; it is taken back otherwise.",
-        unit="share of its squared output",
-        chosen_by="laws found rightly keep 0.008 to 0.98 of it, a sensor's gain that a spring's stiffness undid 0.00004",
+        0.01,
+        "What has to be left of what a named law does once all other parameters have undone what they can, or it is taken back.",
+        unit="share of its squared output over the shortest windows",
+        chosen_by="laws found rightly keep 0.05 to 1 of it, a sensor's gain that a spring's stiffness undid 0.00004 to 0.003",
+    )
+    most_of_the_mismatch: float = share(
+        0.5,
+        "Size from which a law stands for the mismatch, however much of what it does other parameters undo.",
+        unit="share of the mismatch",
     )
     no_mismatch: float = share(
         0.01,

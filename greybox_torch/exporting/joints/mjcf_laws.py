@@ -125,8 +125,8 @@ def input_bias(at: Place) -> Said:
 def saturation(at: Place) -> Said:
     limit, softness = at.values["limit"], at.values["softness"]
     left = [f"the softness of the limit, {softness:.3g}: a ctrlrange is a clamp"] if softness > CLAMPS else []
-    range_ = (-limit * (1 - at.values["asymmetry"]), limit * (1 + at.values["asymmetry"]))
-    return _actuator(at, {"ctrllimited": "true", "ctrlrange": range_}, *left)
+    more = at.values.get("asymmetry", 0.0)
+    return _actuator(at, {"ctrllimited": "true", "ctrlrange": (-limit * (1 - more), limit * (1 + more))}, *left)
 
 
 def lag(at: Place) -> Said:

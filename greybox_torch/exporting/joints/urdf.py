@@ -43,7 +43,7 @@ def limited(at: Place) -> Said:
     if found is None:
         return [], [f"the input {at.port.input} is no force on one body alone, so no joint can be named"]
     body, force = found
-    asymmetry = at.values["asymmetry"]
+    asymmetry = at.values.get("asymmetry", 0.0)
     left = [f"the limit's asymmetry, {asymmetry:.3g}: an effort is the same in both directions"] if asymmetry else []
     return [Counterpart("joint", body, {"effort": (abs(force) * at.values["limit"],)})], left
 

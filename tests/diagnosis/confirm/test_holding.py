@@ -46,7 +46,8 @@ def test_what_held_out_experiments_prove_is_not_empty_whatever_trades_for_what(s
 def test_what_the_other_parameters_undo_is_empty_however_much_it_gains(stub, shares, left: float, empty: bool) -> None:
     """Seen: a sensor of a valve's travel that showed a third of it, beside a spring three times as stiff; what was missing was friction."""
     shares["link.law"] = left
-    assert a_stop(stub, Gain(0.999, 0.0005, size=0.999)) == ("link.law" if empty else None)
+    assert a_stop(stub, Gain(0.7, 0.01, size=0.16)) == ("link.law" if empty else None)
+    assert a_stop(stub, Gain(0.999, 0.0005, size=0.999)) is None, "most of the mismatch: a leak, or what looks like it"
 
 
 @pytest.mark.parametrize("over_windows", [5.5, -50.0])
