@@ -166,8 +166,9 @@ class TorqueSaturation(Mechanism):
         spread = around.ranges["input"]
         hard = [factor * spread.rms for factor in (1.0, 1.5, 2.0, 2.7)]
         soft = [factor * spread.rms for factor in (1.5, 3.0)]
+        odd = {"asymmetry": 0.0} if self.by_direction else {}
         return [
-            Probe((SHARE,), {"limit": limit, "softness": softness})
+            Probe((SHARE,), {"limit": limit, "softness": softness, **odd})
             for softness, limits in ((0.05, hard), (0.4, soft))
             for limit in limits
             if limit < spread.reach

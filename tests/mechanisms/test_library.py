@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import torch
 
+from greybox_torch.mechanisms.actuator import ActuatorDeadzone, TorqueSaturation
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Range, Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
@@ -34,7 +35,12 @@ PURE_NUMBERS = {
 }
 
 MECHANISMS = [pytest.param(m(), id=m.name) for m in LIBRARY.values()]
-ALL = [*MECHANISMS, pytest.param(Unknown("speed", knots=5), id="unknown")]
+FORMS = [
+    pytest.param(Unknown("speed", knots=5), id="unknown"),
+    pytest.param(TorqueSaturation(by_direction=True), id="torque_saturation by direction"),
+    pytest.param(ActuatorDeadzone(by_direction=True), id="actuator_deadzone by direction"),
+]
+ALL = [*MECHANISMS, *FORMS]
 every = pytest.mark.parametrize("mechanism", ALL)
 
 

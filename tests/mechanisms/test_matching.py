@@ -39,6 +39,17 @@ def test_the_law_that_drew_the_curve_matches_it(name: str, values: dict[str, flo
     assert max(m.share for m in found.values()) <= 1.0 + 1e-12
 
 
+@pytest.mark.parametrize("name", ["torque_saturation", "actuator_deadzone"])
+def test_a_limit_or_a_dead_band_that_differs_by_direction_is_asked_in_that_form(name: str) -> None:
+    law = LIBRARY[name](by_direction=True)
+    around = Surroundings({"input": Range(-5.0, 5.0, 2.5)}, {"input": "V"}, "V", 0.01)
+    values = {"limit": 2.0, "softness": 0.05, "half_width": 1.0, "asymmetry": 0.3}
+    own = {p.name: values[p.name] for p in law.parameters(around)}
+    change = law_force(law, around, {"input": SPEED}, own)
+    found = {m.law.name: m for m in matching_laws("actuator", around, {"input": SPEED}, change, EVENLY)}
+    assert found[name].law.options() == {"by_direction": True} and found[name].share > LEAST_MATCH
+
+
 def test_best_first_and_few_of_them() -> None:
     force = law_force(LIBRARY["quadratic_drag"](), AROUND, {"speed": SPEED}, {"c": 0.3})
     matches = matching_laws("body", AROUND, {"speed": SPEED}, force, EVENLY)
