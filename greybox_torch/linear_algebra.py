@@ -6,7 +6,9 @@ finite. None of these is a reason to end a search: what cannot be determined mov
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import wraps
 from typing import ParamSpec, TypeVar
 
@@ -21,6 +23,27 @@ RIDGE = 1e-12
 """Share of the largest diagonal entry that is added where a matrix cannot be factored."""
 
 
+_torch = threading.Lock()
+_within: list[int] = []
+"""How many threads torch had before the functions that are under way, in this and other threads: those before the first."""
+
+
+@contextmanager
+def _torch_on_one_thread() -> Iterator[None]:
+    """Within, torch computes on the thread that calls it; afterwards on as many as before the first of the blocks under way."""
+    with _torch:
+        here = torch.get_num_threads()  # asked in any case: a thread takes what another has set when it asks first
+        before = _within[0] if _within else here
+        _within.append(before)
+        torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        with _torch:
+            _within.pop()
+            torch.set_num_threads(before)
+
+
 def on_one_thread(function: Callable[Arguments, Returned]) -> Callable[Arguments, Returned]:
     """The function, within which BLAS, LAPACK and torch compute on the thread that calls them.
 
@@ -31,13 +54,8 @@ def on_one_thread(function: Callable[Arguments, Returned]) -> Callable[Arguments
 
     @wraps(function)
     def limited(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Returned:
-        threads = torch.get_num_threads()
-        torch.set_num_threads(1)
-        try:
-            with threadpool_limits(limits=1, user_api="blas"):
-                return function(*args, **kwargs)
-        finally:
-            torch.set_num_threads(threads)
+        with _torch_on_one_thread(), threadpool_limits(limits=1, user_api="blas"):
+            return function(*args, **kwargs)
 
     return limited
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 import pytest
 import torch
@@ -73,4 +75,31 @@ def test_torch_takes_one_thread_within_and_has_its_own_back_afterwards() -> None
             on_one_thread(failing)()
         assert torch.get_num_threads() == 2
     finally:
+        torch.set_num_threads(before)
+
+
+def test_of_two_diagnoses_in_two_threads_both_have_their_threads_back() -> None:
+    """A thread begins with what another has set; it is not to keep the one thread of a diagnosis beside it."""
+    begun, ended, before, seen = threading.Event(), threading.Event(), torch.get_num_threads(), []
+
+    @on_one_thread
+    def longer() -> None:
+        begun.set()
+        assert ended.wait(10.0)
+        seen.append(torch.get_num_threads())
+
+    def other() -> None:
+        longer()
+        seen.append(torch.get_num_threads())
+
+    try:
+        torch.set_num_threads(2)
+        thread = threading.Thread(target=other)
+        on_one_thread(lambda: (thread.start(), begun.wait(10.0)))()
+        assert torch.get_num_threads() == 2
+        ended.set()
+        thread.join(10.0)
+        assert seen == [1, 2]
+    finally:
+        ended.set()
         torch.set_num_threads(before)

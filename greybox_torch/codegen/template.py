@@ -45,7 +45,7 @@ INLINE vec splat(double a) { return (real)a - vec{}; }
 INLINE vec choose(mask m, vec a, vec b) { return m ? a : b; }
 INLINE vec v_abs(vec a) { return a < 0 ? -a : a; }
 INLINE vec v_sign(vec a) { return (a > 0 ? splat(1) : splat(0)) - (a < 0 ? splat(1) : splat(0)); }
-// What would be no normal number is zero: vector mathematics compute it lane by lane, five times as slowly.
+// What would be no normal number is zero: the vector library computes subnormal numbers lane by lane, five times as slowly.
 INLINE vec v_exp(vec a) {
   const vec least = splat(sizeof(real) == 8 ? -708 : -87);
   return a < least ? vec{} : normal_exp(a < least ? least : a);

@@ -6,12 +6,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.verdict import Verdict
-from greybox_torch.estimate.comparison import Score, held_out_scores
+from greybox_torch.estimate.comparison import Score, held_out_scores, mean_fit, of_moving_outputs
 from greybox_torch.fleets.row import Row
 from greybox_torch.mechanisms.library import LEARNED
 
@@ -71,8 +69,8 @@ def _leading(effect: Effect) -> dict[str, Any]:
 
 def _mean_fit(scores: Sequence[Score]) -> float | None:
     """Over the validation experiments; over all where there are none."""
-    fits = [s.fit for s in held_out_scores(scores)]
-    return _finite(float(np.mean(fits))) if fits else None
+    held_out = of_moving_outputs(held_out_scores(scores))
+    return _finite(mean_fit(held_out)) if held_out else None
 
 
 def _learned(name: str) -> bool:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
 import torch
 
+from greybox_torch.mechanisms.by_direction import ByDirection
 from greybox_torch.mechanisms.degenerate import too_long
 from greybox_torch.mechanisms.linear_law import LinearLaw, Of, Per
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
@@ -17,9 +17,6 @@ from greybox_torch.model import Parameter, Signals, State
 
 TINY = 1e-12
 """Keeps a logarithm and a quotient finite at zero."""
-
-PLAINLY_EVEN = 0.02
-"""Share of a curve's square that its even part has where the two directions differ: by a tenth and more."""
 
 
 class InputLag(Mechanism):
@@ -127,7 +124,7 @@ class InputGain(LinearLaw):
         return size * s.input
 
 
-class TorqueSaturation(Mechanism):
+class TorqueSaturation(ByDirection):
     """The input that acts is limited: u / (1 + |u / l|^n)^(1/n), with n = 1 / ``softness``.
 
     As soft as iron that saturates (a softness of 0.3 to 1), or a clamp (a softness of zero). ``by_direction``, with an ``asymmetry`` a, the
@@ -144,15 +141,12 @@ class TorqueSaturation(Mechanism):
     source = "H. K. Khalil, Nonlinear Systems, 3rd ed., 2002"
     experiment = "large inputs of both signs"
 
-    def __init__(self, by_direction: bool = False) -> None:
-        self.by_direction = by_direction
-
     def parameters(self, around: Surroundings) -> list[Parameter]:
         reach = around.ranges["input"].reach
         return [
             Parameter("limit", 0.8 * reach, around.force_unit, lower=0.02 * reach, upper=reach, description="limit"),
             Parameter("softness", 0.0, "", lower=0.0, upper=1.0, description="0: a clamp, 0.5: a gradual limit"),
-            *_asymmetries(self.by_direction, "the limits"),
+            *self.asymmetry("the limits"),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
@@ -174,17 +168,8 @@ class TorqueSaturation(Mechanism):
             if limit < spread.reach
         ]
 
-    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
-        """With limits that differ by direction."""
-        return () if self.by_direction else ((TorqueSaturation(True), {**values, "asymmetry": 0.0}),)
 
-    def nearest(
-        self, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
-    ) -> Mechanism:
-        return TorqueSaturation(_differs_by_direction(signals["input"].numpy(), force, weight))
-
-
-class ActuatorDeadzone(Mechanism):
+class ActuatorDeadzone(ByDirection):
     """The input acts only beyond ±``half_width``; ``by_direction``, with an ``asymmetry`` a, beyond (1 + a) and −(1 − a) times that."""
 
     name = "actuator_deadzone"
@@ -195,16 +180,13 @@ class ActuatorDeadzone(Mechanism):
     source = "G. Tao, P. V. Kokotović, Adaptive Control of Systems with Actuator and Sensor Nonlinearities, 1996"
     experiment = "small inputs around zero"
 
-    def __init__(self, by_direction: bool = False) -> None:
-        self.by_direction = by_direction
-
     def parameters(self, around: Surroundings) -> list[Parameter]:
         reach = around.ranges["input"].reach
         return [
             Parameter(
                 "half_width", 0.0, around.force_unit, lower=0.0, upper=0.9 * reach, description="half the dead band"
             ),
-            *_asymmetries(self.by_direction, "the dead band's ends"),
+            *self.asymmetry("the dead band's ends"),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
@@ -214,25 +196,3 @@ class ActuatorDeadzone(Mechanism):
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         rms = around.ranges["input"].rms
         return [Probe(("half_width",)), *(Probe((SHARE,), {"half_width": f * rms}) for f in (0.2, 0.6))]
-
-    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
-        """With ends that differ by direction."""
-        return () if self.by_direction else ((ActuatorDeadzone(True), {**values, "asymmetry": 0.0}),)
-
-    def nearest(
-        self, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
-    ) -> Mechanism:
-        return ActuatorDeadzone(_differs_by_direction(signals["input"].numpy(), force, weight))
-
-
-def _asymmetries(by_direction: bool, of: str) -> list[Parameter]:
-    told = f"of {of}: 0.1 is a tenth more above, less below"
-    return [Parameter("asymmetry", 0.0, "", lower=-0.9, upper=0.9, description=told)] if by_direction else []
-
-
-def _differs_by_direction(signal: np.ndarray, change: np.ndarray, weight: np.ndarray) -> bool:
-    """Whether a curve (N,) over a rising signal (N,) is plainly not odd, points counting by weight (N,)."""
-    both = np.abs(signal) <= min(-signal[0], signal[-1])
-    even = 0.5 * (change + np.interp(-signal, signal, change))[both]
-    share = float(weight[both] @ even**2) / max(float(weight[both] @ change[both] ** 2), 1e-300) if both.any() else 0.0
-    return share > PLAINLY_EVEN

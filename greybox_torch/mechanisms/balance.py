@@ -11,6 +11,9 @@ from greybox_torch.mechanisms.degenerate import beyond
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
 
+TINY = 1e-12
+"""Keeps a quotient finite at zero."""
+
 
 class LinearLeak(Mechanism):
     """−c (level − reference): towards zero, or towards the level of a room or of a second vessel."""
@@ -48,10 +51,6 @@ class LinearLeak(Mechanism):
         level = around.ranges["level"]
         references = dict.fromkeys((0.0, level.low, level.low + 0.5 * level.span))
         return [Probe(("c",), {"reference": reference}) for reference in references]
-
-
-TINY = 1e-12
-"""Keeps a quotient finite at zero."""
 
 
 class ThresholdFlow(Mechanism):

@@ -15,7 +15,7 @@ REACH = 4
 """To either side of how many neighbours a bump is computed with: an exponential costs as much as ten products."""
 
 FAR = 10.5
-"""Spacings from a bump beyond which it and its neighbours are zero; exp(2 · 10.5)⁴ is still a number in single precision."""
+"""Spacings from a bump beyond which it and its neighbours are below 1e-18; exp(2 · 10.5)⁴ is still a number in single precision."""
 
 
 class Unknown(Mechanism):

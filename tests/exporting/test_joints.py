@@ -15,7 +15,7 @@ import greybox_torch as gt
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.library import LIBRARY
-from greybox_torch.mechanisms.mechanism import Range, Surroundings
+from greybox_torch.mechanisms.mechanism import Mechanism, Range, Surroundings
 from greybox_torch.model import GreyBoxModel
 
 SIGNALS = ("speed", "position", "deflection", "rate", "input", "output")
@@ -26,11 +26,16 @@ def with_effects(model: GreyBoxModel, effects: Mapping[tuple[str, str], Mapping[
     """Effects by port and mechanism, with their values."""
     around = Surroundings(dict.fromkeys(SIGNALS, Range(-20.0, 20.0, 5.0)), dict.fromkeys(SIGNALS, ""), "N", STEP)
     attached = [
-        attach(model, port, law := LIBRARY[name](), "+position" if law.kinematic else "") for port, name in effects
+        attach(model, port, law := _law(name, own), "+position" if law.kinematic else "")
+        for (port, name), own in effects.items()
     ]
     made = AugmentedModel(model, attached, {port: around for port, _ in effects})
     made.set_values({f"{port}.{name}.{p}": v for (port, name), own in effects.items() for p, v in own.items()})
     return made
+
+
+def _law(name: str, values: Mapping[str, float]) -> Mechanism:
+    return LIBRARY[name](by_direction=True) if "asymmetry" in values else LIBRARY[name]()
 
 
 def rotor(machines: Path, effects: Mapping[tuple[str, str], Mapping[str, float]]) -> AugmentedModel:
@@ -91,6 +96,10 @@ ROTORS = {
         ("actuator", "input_bias"): {"bias": 1.5},
     },
     "saturation": {("rotor", "viscous_friction"): {"c": 0.05}, ("actuator", "torque_saturation"): {"limit": 4.0}},
+    "saturation by direction": {
+        ("rotor", "viscous_friction"): {"c": 0.05},
+        ("actuator", "torque_saturation"): {"limit": 4.0, "asymmetry": 0.5},
+    },
     "gain": {("rotor", "viscous_friction"): {"c": 0.05}, ("actuator", "input_gain"): {"gain_error": 0.2}},
     "delay": {("rotor", "viscous_friction"): {"c": 0.05}, ("actuator", "input_delay"): {"T": 0.05}},
 }
@@ -159,10 +168,13 @@ def test_a_tank_has_no_joints(machines: Path) -> None:
     assert len(made.rows) == 2
 
 
-def test_limits_in_urdf(machines: Path) -> None:
-    """The rotor's voltage is a torque of 0.1 N m/V, which the joint's effort is limited to."""
-    model = rotor(machines, {("actuator", "torque_saturation"): {"limit": 4.0}})
-    root = ElementTree.fromstring(gt.export(model, to="urdf").snippet.text)
+@pytest.mark.parametrize(("asymmetry", "effort"), [({}, 0.4), ({"asymmetry": -0.25}, 0.3)])
+def test_limits_in_urdf(machines: Path, asymmetry: dict[str, float], effort: float) -> None:
+    """The rotor's voltage is a torque of 0.1 N m/V, which the joint's effort is limited to: that of the weaker direction."""
+    model = rotor(machines, {("actuator", "torque_saturation"): {"limit": 4.0, **asymmetry}})
+    made = gt.export(model, to="urdf")
+    root = ElementTree.fromstring(made.snippet.text)
+    assert bool(made.rows) == bool(asymmetry)
     limit = root.find("joint[@name='rotor']/limit")
     assert limit is not None
-    assert float(limit.attrib["effort"]) == pytest.approx(0.4)
+    assert float(limit.attrib["effort"]) == pytest.approx(effort)

@@ -85,3 +85,20 @@ def test_lag_settles_to_its_signal_with_its_time_constant(law, rates, lag, signa
 def test_delay_acts_by_the_delayed_input(law) -> None:
     acting = INPUT + law(InputDelay(), {"T": 0.01}, input=INPUT, delayed=INPUT - 0.4)
     np.testing.assert_allclose(acting, INPUT - 0.4)
+
+
+def test_a_form_by_direction_is_not_asked_of_one_direction_nor_in_the_order_of_the_samples(law, around) -> None:
+    """A one-sided input tells nothing of the other side; samples of a record come in the order of time."""
+    above, rng = np.linspace(0.0, 5.0, 101), np.random.default_rng(2)
+    for signal, values in (
+        (above, {"limit": 2.0}),
+        (above - 0.1, {"limit": 2.0}),
+        (rng.permutation(INPUT), {"limit": 2.0}),
+    ):
+        drawn = law(TorqueSaturation(), values, input=signal) + 1e-3
+        form = TorqueSaturation().nearest(around, {"input": torch.as_tensor(signal)}, drawn, np.ones(len(signal)))
+        assert form.options() == {"by_direction": False}
+    mixed = rng.permutation(INPUT)
+    drawn = law(TorqueSaturation(True), {"limit": 2.0, "asymmetry": 0.4}, input=mixed)
+    form = TorqueSaturation().nearest(around, {"input": torch.as_tensor(mixed)}, drawn, np.ones(len(mixed)))
+    assert form.options() == {"by_direction": True}

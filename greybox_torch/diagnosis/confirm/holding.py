@@ -9,6 +9,7 @@ from greybox_torch.diagnosis.confirm.free_runs import NOWHERE, Places
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified
+from greybox_torch.diagnosis.confirm.standing import sizes
 from greybox_torch.diagnosis.confirm.take_back import held_out_gains, take_back_weakest
 from greybox_torch.diagnosis.confirm.undone import not_undone
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
@@ -79,22 +80,22 @@ def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[st
     is not most of the mismatch either, stands for something else.
     """
     values, deviations, over_windows = augmented.values(), augmented.deviations(), state.current.values()
+    together = sizes(study, state, gains)
     for e in state.effects:
         vanished = _share_kept(study, e, over_windows, values) < study.settings.least_share_kept
         proven = not e.mechanism.essential and not vanished and _proven(gains.get(e.prefix), study.settings)
         if degenerate(e, study.surroundings, values, {} if proven else deviations) is not None:
             return e.prefix
-        if not e.mechanism.free and _undone(study, state, e, gains.get(e.prefix)):
-            return e.prefix
-    return None
+    return _undone(study, state, together)
 
 
-def _undone(study: Study, state: SearchState, effect: Attachment, gain: Gain | None) -> bool:
-    """Whether the other parameters undo what an effect does that is not most of the mismatch."""
+def _undone(study: Study, state: SearchState, sizes: Mapping[str, float]) -> str | None:
+    """The named effect, not most of the mismatch, of which the other laws' and the model's parameters undo most, if that is nearly all."""
     settings = study.settings
-    if gain is not None and gain.size >= settings.most_of_the_mismatch:
-        return False
-    return not_undone(state.current, effect, study.surroundings) < settings.least_not_undone
+    small = [e for e in state.effects if not e.mechanism.free and not sizes[e.prefix] >= settings.most_of_the_mismatch]
+    left = {e.prefix: not_undone(state.current, e, study.surroundings) for e in small}
+    least = min(left, key=lambda p: left[p], default=None)
+    return least if least is not None and left[least] < settings.least_not_undone else None
 
 
 def _share_kept(study: Study, effect: Attachment, before: Mapping[str, float], after: Mapping[str, float]) -> float:

@@ -14,26 +14,24 @@ from greybox_torch.mechanisms.mechanism import Surroundings
 
 
 def not_undone(fitted: Hypothesis, effect: Attachment, surroundings: Mapping[str, Surroundings]) -> float:
-    """The share of what an effect does to the outputs, in squares, that no change of all other parameters undoes.
+    """The share of what an effect does to the outputs, in squares, that no change of the model's and other laws' parameters undoes.
 
     Linearised at the fitted values over the shortest windows, start states free: over longer ones a single window that is about to slip may
     outweigh all others. A sensor that shows a third of what it should, beside a spring three times as stiff, does next to nothing: the
-    little that remains is whatever the model lacks. One where nothing is known of it.
+    little that remains is whatever the model lacks. A free curve undoes nothing: it takes up whatever it can. One where nothing is known.
     """
-    names, values = fitted.problem.free_names, fitted.values()
-    own = [i for i, name in enumerate(names) if name.startswith(f"{effect.prefix}.")]
-    rest = [i for i in range(len(names)) if i not in own]
-    sizes = effect.mechanism.amplitudes(surroundings[effect.port])
-    amplitude = np.array(
-        [values[names[i]] if names[i].removeprefix(f"{effect.prefix}.") in sizes else 0.0 for i in own]
-    )
     known = window_information(fitted.fits[0], fitted.simulator)
     if known is None:
         return 1.0
+    names, values = fitted.problem.free_names, fitted.values()
+    curves = tuple(f"{e.prefix}." for e in fitted.effects if e.mechanism.free)
+    own = [i for i, name in enumerate(names) if name.startswith(f"{effect.prefix}.")]
+    rest = [i for i, name in enumerate(names) if i not in own and not name.startswith(curves)]
+    sizes = effect.mechanism.essential or effect.mechanism.amplitudes(surroundings[effect.port])
+    amplitude = np.array([values[names[i]] * (names[i].removeprefix(f"{effect.prefix}.") in sizes) for i in own])
     whole = float(amplitude @ known[np.ix_(own, own)] @ amplitude)
     onto = known[np.ix_(rest, own)] @ amplitude
-    undone = (
-        float(onto @ solve(known[np.ix_(rest, rest)], onto)) if rest else 0.0
-    )  # the Schur complement is what is left
+    # What the others undo is the projection onto them; the Schur complement is what is left.
+    undone = float(onto @ solve(known[np.ix_(rest, rest)], onto)) if rest else 0.0
     share = (whole - undone) / whole if whole > 0 else 1.0
-    return share if np.isfinite(share) else 1.0
+    return float(np.clip(share, 0.0, 1.0)) if np.isfinite(share) else 1.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
+from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import window_significance
 from greybox_torch.diagnosis.refit.curve import absorbed
@@ -34,7 +35,8 @@ def drop_superfluous(study: Study, state: SearchState) -> Stage[SearchState]:
 
 def drop(study: Study, state: SearchState, prefix: str) -> Stage[SearchState]:
     """Take one effect back, and what is superfluous without it; what it had made up for is asked again."""
-    state = state.at(state.without[prefix])
+    others = tuple(pair for pair in state.made_up_for if pair[0].prefix != prefix)
+    state = replace(state.at(state.without[prefix]), made_up_for=others)
     yield state
     return (yield from drop_superfluous(study, _with_what_was_made_up_for(study, state)))
 
@@ -43,13 +45,20 @@ def _with_what_was_made_up_for(study: Study, state: SearchState) -> SearchState:
     """The state with the effects that others had made up for, which no longer do; the last that went is asked first."""
     asked, state = state.made_up_for, replace(state, made_up_for=())
     for effect, once in reversed(asked):
+        if effect.prefix in state.prefixes:
+            continue  # it came back by another way, or in another form
         study.working_on(f"trying {effect.prefix} again")
         found = refitted(study, (*state.effects, effect), state.current, [once.values()])
-        if found is not None and not _does_as_well(study, state.current, found):
-            state = state.at(found)
-        else:
+        if found is None or _does_as_well(study, state.current, found) or _says_nothing(study, effect, found):
             state = replace(state, made_up_for=((effect, once), *state.made_up_for))
+        else:
+            state = state.at(found)
     return state
+
+
+def _says_nothing(study: Study, effect: Attachment, fitted: Hypothesis) -> bool:
+    """Whether an effect's parameters describe nothing on the machine."""
+    return degenerate(effect, study.surroundings, fitted.values(), {}) is not None
 
 
 def _made_up_for(study: Study, state: SearchState, without: Hypothesis) -> bool:

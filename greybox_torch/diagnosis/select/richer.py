@@ -1,4 +1,4 @@
-"""A law that was found, in a form with more parameters: a ripple with harmonics.
+"""A law that was found, in a form with more parameters: a ripple with harmonics, a limit that differs by direction.
 
 What a plain form leaves of its own law stands far above the noise of a good sensor, and some other law takes up a part of it. So before
 the next step the form that has it is asked, which as one law is a simpler answer than two.

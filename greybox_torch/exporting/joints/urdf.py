@@ -44,8 +44,9 @@ def limited(at: Place) -> Said:
         return [], [f"the input {at.port.input} is no force on one body alone, so no joint can be named"]
     body, force = found
     asymmetry = at.values.get("asymmetry", 0.0)
-    left = [f"the limit's asymmetry, {asymmetry:.3g}: an effort is the same in both directions"] if asymmetry else []
-    return [Counterpart("joint", body, {"effort": (abs(force) * at.values["limit"],)})], left
+    left = [f"the limit's asymmetry, {asymmetry:.3g}: an effort is that of the weaker direction"] if asymmetry else []
+    effort = abs(force) * at.values["limit"] * (1 - abs(asymmetry))
+    return [Counterpart("joint", body, {"effort": (effort,)})], left
 
 
 LAWS: dict[str, Law] = {

@@ -9,10 +9,13 @@ import pytest
 
 from greybox_torch.diagnosis.confirm import undone
 from greybox_torch.diagnosis.confirm.undone import not_undone
+from greybox_torch.mechanisms.actuator import TorqueSaturation
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import TorqueRipple
+from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.sensor import SensorGain
+from greybox_torch.mechanisms.unknown import Unknown
 
 NAMES = ("k", "sensor.sensor_gain.gain_error", "b")
 
@@ -21,10 +24,10 @@ NAMES = ("k", "sensor.sensor_gain.gain_error", "b")
 def fitted(monkeypatch: pytest.MonkeyPatch, stub: Any) -> Any:
     """A hypothesis whose outputs' slopes (samples, parameters) at one length of windows or more are given."""
 
-    def made(*slopes: np.ndarray | None, names: tuple[str, ...] = NAMES) -> Any:
+    def made(*slopes: np.ndarray | None, names: tuple[str, ...] = NAMES, effects: tuple[Attachment, ...] = ()) -> Any:
         monkeypatch.setattr(undone, "window_information", lambda fit, simulator: None if fit is None else fit.T @ fit)
         values = dict.fromkeys(names, -0.5)
-        return stub(problem=stub(free_names=names), values=lambda: values, fits=slopes, simulator=None)
+        return stub(problem=stub(free_names=names), values=lambda: values, fits=slopes, simulator=None, effects=effects)
 
     return made
 
@@ -67,3 +70,22 @@ def test_only_amplitudes_count_as_what_an_effect_does(fitted) -> None:
     names = ("k", *(f"sensor.torque_ripple.{n}" for n in ("a", "b", "order")))
     slopes = np.array([[1.0, 0.0, 0.0, 5.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]])
     assert not_undone(fitted(slopes, names=names), ripple, around()) == pytest.approx(1.0)
+
+
+def test_a_free_curve_undoes_nothing(fitted) -> None:
+    """Otherwise dry friction would be taken back beside a curve over the same speed."""
+    curve, friction = Attachment("rotor", Unknown("speed", 5)), Attachment("rotor", CoulombFriction())
+    names = ("rotor.unknown.w_1", "rotor.coulomb_friction.F_c", "k")
+    slopes = np.array([[1.0, 2.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.001, 0.0]])
+    surroundings = {"rotor": around()["sensor"]}
+    assert not_undone(fitted(slopes, names=names, effects=(curve, friction)), friction, surroundings) == pytest.approx(
+        1.0
+    )
+    assert not_undone(fitted(slopes, names=names), friction, surroundings) < 1e-6
+
+
+def test_of_a_limit_that_is_what_counts_not_its_softness(fitted) -> None:
+    limit = Attachment("actuator", TorqueSaturation())
+    names = ("k", "actuator.torque_saturation.limit", "actuator.torque_saturation.softness")
+    slopes = np.array([[1.0, 0.0, 5.0], [0.0, 1.0, 0.0]])
+    assert not_undone(fitted(slopes, names=names), limit, {"actuator": around()["sensor"]}) == pytest.approx(1.0)

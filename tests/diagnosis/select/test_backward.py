@@ -44,7 +44,10 @@ def test_what_the_newest_effect_was_compared_with_is_not_refitted(dead_zone_sear
 def test_what_an_effect_had_made_up_for_is_asked_again_once_that_is_taken_back(
     dead_zone_search, monkeypatch, again
 ) -> None:
-    """Seen: dry friction of a robot's joint, made up for by a lag that other recordings took back; nothing was left."""
+    """Seen: dry friction of a robot's joint, made up for by a lag that other recordings took back; nothing was left.
+
+    What is taken back itself, or is there again by another way, is not added.
+    """
     study, plain = dead_zone_search.study, dead_zone_search.plain
     lag, friction = Attachment("rotor", CoulombFriction()), Attachment("load", StribeckFriction())
 
@@ -56,9 +59,14 @@ def test_what_an_effect_had_made_up_for_is_asked_again_once_that_is_taken_back(
     both = having((lag, friction), errors[lag, friction])
     monkeypatch.setattr(backward, "window_significance", lambda *_: 9.0)
     monkeypatch.setattr(backward, "absorbed", lambda *_: None)
+    monkeypatch.setattr(backward, "degenerate", lambda *_: None)
     monkeypatch.setattr(backward, "refitted", lambda study, effects, *_: having(effects, errors[effects]))
     state = result_of(drop_superfluous(study, SearchState(plain, both)))
     assert state.effects == (lag,) and [e for e, _ in state.made_up_for] == [friction]
     left = result_of(drop(study, state, lag.prefix))
     assert left.effects == ((friction,) if again else ())
     assert [e for e, _ in left.made_up_for] == ([] if again else [friction])
+    there = replace(state, made_up_for=((lag, both), (lag, both)))
+    assert result_of(drop(study, replace(there, without={lag.prefix: plain}), lag.prefix)).effects == ()
+    twice = replace(state.at(both), made_up_for=((friction, both),), without={lag.prefix: having((friction,), 0.6)})
+    assert result_of(drop(study, twice, lag.prefix)).effects == (friction,)
