@@ -12,7 +12,7 @@ from greybox_torch.linear_algebra import eigenvalues, eigh
 FLAT = {"double": 1e-11, "single": 1e-5}
 """Curvature, relative to the largest in unknowns of unit diagonal, that rounding alone accounts for."""
 
-UNSEEN = {"double": 1e-16, "single": 1e-9}
+UNSEEN = {"double": 1e-16, "single": 1e-11}
 """Share of the outputs' energy, moved by a change of a parameter by its own size, that counts as none."""
 
 NEGLIGIBLE = 1e-5

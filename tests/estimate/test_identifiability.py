@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from greybox_torch.data import DataSet
@@ -123,6 +123,9 @@ def found_in(problem: Problem, precision: str = "double", **values: float) -> tu
 
 @pytest.mark.parametrize("precision", ["double", "single"])
 @given(inertia=SIZES, gain=SIZES, damping=SIZES)
+@example(inertia=44.160000000000004, gain=0.010000000000000002, damping=64.0)
+@example(inertia=100.0, gain=0.01, damping=100.0)
+@example(inertia=0.01, gain=0.01, damping=100.0)
 @settings(max_examples=12)
 def test_gain_inertia_and_friction_only_up_to_a_factor(
     machines: Path, experiments: list[Any], data_set: Any, precision: str, inertia: float, gain: float, damping: float
