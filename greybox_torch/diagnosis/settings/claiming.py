@@ -73,10 +73,10 @@ class ConfirmationSettings:
         unit="share of the amplitude over windows",
     )
     least_not_undone: float = share(
-        0.01,
+        0.003,
         "What has to be left of what a named law does once all other parameters have undone what they can, or it is taken back.",
         unit="share of its squared output over the shortest windows",
-        chosen_by="laws found rightly keep 0.05 to 1 of it, a sensor's gain that a spring's stiffness undid 0.00004 to 0.003",
+        chosen_by="laws found rightly keep 0.0075 to 1 of it, a sensor's gain that a spring's stiffness undid 0.00004 to 0.0027",
     )
     most_of_the_mismatch: float = share(
         0.5,
