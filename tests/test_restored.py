@@ -68,7 +68,10 @@ def test_the_effect_is_simulated(motor_folder: Make) -> None:
     [
         ({"port": "rotary"}, ["no port 'rotary'", "rotor, actuator, sensor"]),
         ({"mechanism": "stiction"}, ["mechanism 'stiction' is not in the library", "coulomb_friction"]),
-        ({"options": {"order": 2}}, ['"effects" are damaged', "unexpected keyword argument 'order'"]),
+        (
+            {"options": {"order": 2}},
+            ['"effects" are damaged', "ActuatorDeadzone", "unexpected keyword argument 'order'"],
+        ),
         ({"surroundings": {}}, ['"effects" are damaged', "ranges"]),
     ],
 )

@@ -74,7 +74,10 @@ def _mechanism(name: str, options: Mapping[str, Any], defined_in: str) -> Mechan
             f"mechanism '{name}' is not in the library; expected one of {', '.join(known)}, or that {_definition(defined_in)} "
             f"was run before, for example by putting it into the model's file"
         )
-    return known[name](**options)
+    try:
+        return known[name](**options)
+    except TypeError as error:
+        raise TypeError(f"{known[name].__name__}: {error}") from None  # the constructor may be another class's
 
 
 def _definition(file: str) -> str:

@@ -80,19 +80,20 @@ def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[st
     is not most of the mismatch either, stands for something else.
     """
     values, deviations, over_windows = augmented.values(), augmented.deviations(), state.current.values()
-    together = sizes(study, state, gains)
     for e in state.effects:
         vanished = _share_kept(study, e, over_windows, values) < study.settings.least_share_kept
         proven = not e.mechanism.essential and not vanished and _proven(gains.get(e.prefix), study.settings)
         if degenerate(e, study.surroundings, values, {} if proven else deviations) is not None:
             return e.prefix
-    return _undone(study, state, together)
+    return _undone(study, state, sizes(study, state, gains))
 
 
-def _undone(study: Study, state: SearchState, sizes: Mapping[str, float]) -> str | None:
+def _undone(study: Study, state: SearchState, by_effect: Mapping[str, float]) -> str | None:
     """The named effect, not most of the mismatch, of which the other laws' and the model's parameters undo most, if that is nearly all."""
     settings = study.settings
-    small = [e for e in state.effects if not e.mechanism.free and not sizes[e.prefix] >= settings.most_of_the_mismatch]
+    small = [
+        e for e in state.effects if not e.mechanism.free and not by_effect[e.prefix] >= settings.most_of_the_mismatch
+    ]
     left = {e.prefix: not_undone(state.current, e, study.surroundings) for e in small}
     least = min(left, key=lambda p: left[p], default=None)
     return least if least is not None and left[least] < settings.least_not_undone else None
