@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 WORSE = 1.001
@@ -15,7 +15,7 @@ NEGLIGIBLE = 1e-5
 Rows = Sequence[Mapping[str, Any]]
 
 
-def worse_than_refit(fit: Rows) -> bool:
+def worse_than_refit(fit: Rows, unstable: Collection[str] = ()) -> bool:
     """Whether the recommended model simulates the validation experiments worse than the re-estimated one.
 
     By the root mean square over experiments and outputs, each in units of the re-estimated model's error. A free run that overflows has
@@ -24,11 +24,12 @@ def worse_than_refit(fit: Rows) -> bool:
 
     Args:
         fit: the rows ``fit`` of a verdict.
+        unstable: experiments that no free run follows, which do not count.
     """
     spreads = _spreads(fit)
     ratios = []
     for row in fit:
-        if row["role"] == "validation":
+        if row["role"] == "validation" and row["experiment"] not in unstable:
             before, after = (_finite(row[stage]["rmse"]) for stage in ("refit", "augmented"))
             if before is None:
                 continue
@@ -57,7 +58,7 @@ def contradictions(verdict: Mapping[str, Any]) -> list[str]:
 def _of_the_whole(verdict: Mapping[str, Any]) -> Iterator[str]:
     if verdict["effects"] and not verdict["mismatch"]:
         yield "effects are named, and nothing is said to be missing"
-    if verdict["effects"] and worse_than_refit(verdict["fit"]):
+    if verdict["effects"] and worse_than_refit(verdict["fit"], verdict.get("unstable", ())):
         yield "the recommended model simulates the validation experiments worse than the re-estimated one"
     if not verdict["effects"] and any(_differ(row) for row in verdict["fit"]):
         yield "nothing is named, and the recommended model is not the re-estimated one"

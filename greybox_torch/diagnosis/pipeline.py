@@ -11,6 +11,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.confirm.standing import refinements, sizes
+from greybox_torch.diagnosis.confirm.unstable import no_free_run_follows
 from greybox_torch.diagnosis.contradictions import contradictions
 from greybox_torch.diagnosis.describe.effects import describe
 from greybox_torch.diagnosis.describe.evidence import sentences
@@ -177,6 +178,7 @@ def _as_found(
         evidence=(
             *sentences(found.dataset, study, state, effects, found.gains, detected, not found.complete),
             *(judged.augmented.sentences() if effects else ()),
+            *(no_free_run_follows(judged.unstable, study.settings) if effects else ()),
             *((A_DISTURBANCE,) if left is not None and unexplained is None else ()),
             *found.more,
         ),
@@ -189,6 +191,7 @@ def _as_found(
         unexplained=unexplained,
         refinements=refinements,
         left=what_is_left(judged, detected, bool(effects)),
+        unstable=judged.unstable if effects else frozenset(),
         settings=study.settings,
         budget=study.budget,
         beliefs=study.beliefs,

@@ -122,6 +122,8 @@ class Verdict:
     refinements: tuple[Effect, ...] = ()
     """What is significant and small beside the findings; in the model where there are findings, never in the headline."""
     left: Left | None = None
+    unstable: frozenset[str] = frozenset()
+    """Validation experiments that the recommended model simulates worse than the re-estimated one, as no free run of it follows them."""
     settings: DiagnosisSettings = DiagnosisSettings()
     """By what it was decided, and with ``budget`` how much was computed for it."""
     budget: SearchBudget = SearchBudget()
@@ -164,13 +166,14 @@ class Verdict:
         pairs = [
             (before.fit, after.fit)
             for before, after in zip(self.scores["refit"], self.scores["augmented"], strict=True)
-            if before.role == "validation"
+            if before.role == "validation" and before.experiment not in self.unstable
         ]
         if not pairs:
             return ""
         before, after = (float(np.mean(side)) for side in zip(*pairs, strict=True))
         them = "it" if len(self.effects) == 1 else "them"
-        return f"; with {them} the validation fit goes from {before:.1f} % to {after:.1f} %"
+        but = f" (without {', '.join(sorted(self.unstable))}, which no free run follows)" if self.unstable else ""
+        return f"; with {them} the validation fit goes from {before:.1f} % to {after:.1f} %{but}"
 
     def as_json(self) -> dict[str, Any]:
         """The dictionary of `verdict.json` (contract sections 4 and 8).
@@ -194,6 +197,7 @@ class Verdict:
             if self.left is None
             else {n: getattr(self.left, n) for n in ("share", "times_noise", "sentence")},
             "fit": fit_rows(self.scores),
+            **({"unstable": sorted(self.unstable)} if self.unstable else {}),
             "evidence": list(self.evidence),
             "stages": dict(self.stages),
             "not_tried": self.not_tried.as_json(),

@@ -55,6 +55,15 @@ def test_estimation_experiments_do_not_count() -> None:
     assert not worse_than_refit([row(0.1, 0.2) | {"role": "estimation"}])
 
 
+def test_experiments_that_no_free_run_follows_do_not_count() -> None:
+    rows = [row(0.1, 0.2), row(0.1, 0.05) | {"experiment": "other"}]
+    assert worse_than_refit(rows) and not worse_than_refit(rows, {"run"})
+    verdict = {"effects": [], "mismatch": True, "fit": rows, "unstable": ["run"]}
+    named = [{"port": "rotor", "mechanism": "coulomb_friction", "probability": 0.9, "parameters": {}}]
+    assert contradictions(verdict | {"effects": named}) == []
+    assert len(contradictions(verdict | {"effects": named, "unstable": ["other"]})) == 1
+
+
 def dead_zone(voltage: np.ndarray) -> np.ndarray:
     return np.sign(voltage) * np.maximum(np.abs(voltage) - 0.5, 0.0)
 

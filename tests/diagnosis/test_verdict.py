@@ -158,3 +158,14 @@ def test_sentence(effects, words) -> None:
 
 def test_a_search_that_was_stopped_does_not_say_nothing() -> None:
     assert "no answer yet" in verdict(complete=False).sentence
+
+
+def test_experiments_that_no_free_run_follows_are_named_and_do_not_count() -> None:
+    with_run_3 = {
+        stage: (*rows, Score("Run 3", "validation", "speed", 10.0 if stage == "augmented" else 60.0, 0.3))
+        for stage, rows in verdict().scores.items()
+    }
+    told = replace(verdict(BACKLASH), scores=with_run_3, unstable=frozenset({"Run 3"}))
+    assert told.as_json()["unstable"] == ["Run 3"]
+    assert told.sentence.endswith("goes from 79.0 % to 89.0 % (without Run 3, which no free run follows).")
+    assert "unstable" not in verdict(BACKLASH).as_json()

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.confirm.unstable import parted
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.comparison import Comparison, compare
@@ -43,15 +44,15 @@ class FreeRuns:
         """
         return self._compared(final.problem, final.problem.values, final, places)
 
+    def parted(self, final: Final, comparison: Comparison, asked: Collection[str]) -> dict[str, float]:
+        """By name of ``asked``, how far free runs part that begin next to those of ``comparison``, see :func:`parted`."""
+        problem, simulator = self._simulated_as(final.problem, final.problem.values)
+        began = problem.with_values(problem.values, np.array(comparison.initial))
+        return parted(began, simulator, asked, self.settings)
+
     def _compared(self, like: Problem, values: np.ndarray, final: Final | None, places: Places = NOWHERE) -> Comparison:
         """Free runs of all experiments; start states fitted on whole estimation records where there are any, else on the first tenth."""
-        named = dict(zip(like.names, map(float, values), strict=True))
-        problem = (
-            self.problem.with_values(values)
-            if like.model is self.problem.model
-            else problem_for(self.problem, like.model, named)
-        )
-        simulator = Simulator.of(like.model, (), self.options)
+        problem, simulator = self._simulated_as(like, values)
         started = estimate_initial(problem, simulator, places=places)
         if final is not None:
             initial = started.initial.copy()
@@ -60,3 +61,13 @@ class FreeRuns:
                     initial[started.records.names.index(name)] = row
             started = replace(started, initial=initial)
         return compare(started, self.recordings, simulator, estimate_starts=False)
+
+    def _simulated_as(self, like: Problem, values: np.ndarray) -> tuple[Problem, Simulator]:
+        """All experiments with the model and the parameter values of another problem, and its simulator."""
+        named = dict(zip(like.names, map(float, values), strict=True))
+        problem = (
+            self.problem.with_values(values)
+            if like.model is self.problem.model
+            else problem_for(self.problem, like.model, named)
+        )
+        return problem, Simulator.of(like.model, (), self.options)

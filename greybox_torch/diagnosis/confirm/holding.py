@@ -44,12 +44,14 @@ def holding(
 
     while state.effects:
         empty = _empty(study, state, judged.augmented, gains)
-        if empty is None and judged.holds:
+        if empty is None and judged.holds and not judged.unstable:
             break
         if empty is None:
             by_windows = judged.having(as_windows_have_it(state.current, study.recorded), places())
-            if by_windows.holds and _empty(study, state, by_windows.augmented, gains) is None:
+            if by_windows.better_than(judged) and _empty(study, state, by_windows.augmented, gains) is None:
                 return state, gains, by_windows, (*told, WINDOWS_STAND), True
+            if judged.holds:
+                break
         if not state.compared_without:
             state = result_of(drop_superfluous(study, state))
         if empty is not None and empty in state.prefixes:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -49,8 +51,11 @@ class Judgement:
 
     @property
     def sums(self) -> tuple[float, float]:
-        """Sums of the mean squared validation errors of the refit and of the model with effects, outputs in units of their spread."""
-        return self._energy(self.refit), self._energy(self.with_effects)
+        """Sums of the mean squared errors of the refit and of the model with effects on the validation experiments that count.
+
+        Outputs in units of their spread.
+        """
+        return self._energy(self.refit, self.unstable), self._energy(self.with_effects, self.unstable)
 
     @property
     def problem(self) -> Problem:
@@ -69,19 +74,44 @@ class Judgement:
 
     @property
     def holds(self) -> bool:
-        """Whether the model with effects simulates the validation experiments no worse than the one without.
+        """Whether the model with effects simulates the validation experiments that count no worse than the one without."""
+        return self._no_worse(self.unstable)
+
+    def better_than(self, other: Judgement) -> bool:
+        """Whether its model holds, and ``other``'s does not or leaves more, on the experiments that count with both."""
+        but = self.unstable | other.unstable
+        left, left_there = (self._energy(j.with_effects, but) for j in (self, other))
+        return self.holds and (not other.holds or left < left_there)
+
+    @cached_property
+    def unstable(self) -> frozenset[str]:
+        """Validation experiments that do not count, as no free run of the model with effects follows them, and it comes out worse there.
+
+        None where they were more than half of all: what is left would say too little.
+        """
+        if self._no_worse(frozenset()):
+            return frozenset()
+        worse = {row["experiment"] for row in self._rows if worse_than_refit([row])}
+        parted = self.free_runs.parted(self.augmented, self.with_effects, worse)
+        found = frozenset(name for name, share in parted.items() if share >= self.settings.least_parted)
+        return found if 2 * len(found) <= len(self.judges) else frozenset()
+
+    def _no_worse(self, but: frozenset[str]) -> bool:
+        """Whether the model with effects simulates the validation experiments no worse, ``but`` for some.
 
         By the mean squared error, outputs in units of their spread, by the mean fit in %, what a user sees, and by the errors in units of
         those without effects, by which no verdict may contradict itself.
         """
-        if worse_than_refit(fit_rows({m: c.scores for m, c in self.comparisons(True).items()})):
+        if worse_than_refit(self._rows, but):
             return False
-        before, after = (mean_fit(c.scores) for c in (self._judged(self.refit), self._judged(self.with_effects)))
-        refit, with_effects = self.sums
-        return (
-            with_effects <= (1 + self.settings.unexercised) * refit
-            and after >= before - 100 * self.settings.unexercised
-        )
+        before, after = (mean_fit(self._judged(c, but).scores) for c in (self.refit, self.with_effects))
+        refit, with_effects = (self._energy(c, but) for c in (self.refit, self.with_effects))
+        allowed = self.settings.unexercised
+        return with_effects <= (1 + allowed) * refit and after >= before - 100 * allowed
+
+    @property
+    def _rows(self) -> list[dict[str, Any]]:
+        return fit_rows({m: c.scores for m, c in self.comparisons(True).items()})
 
     @property
     def times_noise(self) -> np.ndarray:
@@ -98,7 +128,7 @@ class Judgement:
         noise, the largest root mean square error in units of the noise, and in which experiment; NaN where no output shows the noise.
         """
         final = self.with_effects if effects else self.refit
-        times = np.where(self._judging(), self._times_noise(final), np.nan)
+        times = np.where(self._judging(self.unstable), self._times_noise(final), np.nan)
         share = _share_left(self.mismatch(False), self.mismatch(effects))
         if not np.isfinite(times).any():
             return share, np.nan, ""
@@ -114,10 +144,10 @@ class Judgement:
         """Sum of the mean squared errors beyond the noise of the recommended model, outputs in units of their spread.
 
         Args:
-            among: of these experiments; by default of all that judge.
+            among: of these experiments; by default of all that judge and count.
         """
         final = self.with_effects if effects else self.refit
-        names = self.judges if among is None else among
+        names = self.judges - self.unstable if among is None else among
         chosen = np.array([r.name in names for r in self.recordings])
         return float(self._beyond(final, self._floors())[chosen].sum())
 
@@ -173,19 +203,19 @@ class Judgement:
         count = known.sum(axis=1)
         return np.sqrt(np.where(count > 0, ratios.sum(axis=1) / np.maximum(count, 1), np.nan))
 
-    def _judged(self, comparison: Comparison) -> Comparison:
-        """The validation experiments alone, where there are any."""
-        names = self.judges
+    def _judged(self, comparison: Comparison, but: frozenset[str]) -> Comparison:
+        """The experiments that judge alone, ``but`` for some."""
+        names = self.judges - but
         return replace(comparison, scores=tuple(s for s in comparison.scores if s.experiment in names))
 
-    def _judging(self) -> np.ndarray:
-        """Which experiments (E,) judge: those of validation, all where there is none."""
+    def _judging(self, but: frozenset[str] = frozenset()) -> np.ndarray:
+        """Which experiments (E,) judge: those of validation, all where there is none, ``but`` for some."""
         validation = np.array([r.role == "validation" for r in self.recordings])
-        return validation | ~validation.any()
+        return (validation | ~validation.any()) & ~np.isin([r.name for r in self.recordings], list(but))
 
-    def _energy(self, comparison: Comparison, floors: np.ndarray | float = 0.0) -> float:
-        """Sum of the mean squared errors of the experiments that judge, outputs in units of their spread, beyond ``floors`` (E, n_y)."""
-        return float(sum(self._beyond(comparison, floors)[self._judging()].ravel()))
+    def _energy(self, comparison: Comparison, but: frozenset[str]) -> float:
+        """Sum of the mean squared errors of the experiments that judge, ``but`` for some, outputs in units of their spread."""
+        return float(sum(self._beyond(comparison, 0.0)[self._judging(but)].ravel()))
 
     @np.errstate(over="ignore")
     def _beyond(self, comparison: Comparison, floors: np.ndarray | float) -> np.ndarray:

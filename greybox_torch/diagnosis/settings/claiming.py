@@ -83,6 +83,18 @@ class ConfirmationSettings:
         "Size from which a law stands for the mismatch, however much of what it does other parameters undo.",
         unit="share of the mismatch",
     )
+    unseen_start: float = share(
+        1e-5,
+        "Change of a start state that no sensor shows, by which it is asked whether free runs can follow an experiment.",
+        unit="share of the state's travel",
+        chosen_by="a hundredth of what sensors of three digits show",
+    )
+    least_parted: float = share(
+        0.1,
+        "How far such a change has to part two free runs of a model, of an experiment that free runs cannot follow.",
+        unit="share of the free run's error (root mean square)",
+        chosen_by="orders of magnitude: beside an error of 1 % of the travel, changes have grown a hundredfold",
+    )
     no_mismatch: float = share(
         0.01,
         "Squared error beyond the noise up to which windows of one length say nothing of an effect's size.",

@@ -70,7 +70,7 @@ def test_where_whole_records_lead_astray_the_values_of_the_windows_may_stand(mon
     """Seen: a ripple of order 10 along a position that nobody measures; whole records drifted to 10.1, worse on validation."""
     effect = stub(prefix="rotor.ripple")
     state = stub(effects=(effect,), current="windows", compared_without=True)
-    by_windows = stub(holds=windows_hold, augmented="windows")
+    by_windows = stub(better_than=lambda other: windows_hold, augmented="windows")
     judged = stub(
         holds=False, augmented="records", having=lambda final, places: by_windows, without_effects=lambda: "plain"
     )

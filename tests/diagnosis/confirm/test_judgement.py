@@ -1,0 +1,81 @@
+"""Which free runs count, and when a model with effects holds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.confirm import judgement
+from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.estimate.comparison import Comparison, Score
+
+EXPERIMENTS = ("first", "second", "third", "fourth")
+
+
+def errors_of(*errors: float) -> Comparison:
+    """Outputs of spread one."""
+    scores = (
+        Score(name, "estimation" if name == "first" else "validation", "speed", 100 * (1 - error), error)
+        for name, error in zip(EXPERIMENTS, errors, strict=True)
+    )
+    return Comparison(tuple(scores), EXPERIMENTS, (), ())
+
+
+@pytest.fixture
+def judged(stub):
+    def make(parted: Mapping[str, float], *after: float) -> Judgement:
+        """The refit leaves 0.1, 0.1, 1.4, 0.3, and the model with effects ``after``."""
+        speed = np.tile([-1.0, 1.0], 50)[None]  # of spread one
+        problem: Any = stub(model=stub(outputs=[stub(name="speed")]), records=stub(y=speed))
+        recordings = tuple(stub(name=n, role="estimation" if n == "first" else "validation") for n in EXPERIMENTS)
+
+        def of(final: Any, comparison: Comparison, asked: set[str]) -> dict[str, float]:
+            return {name: parted.get(name, 0.0) for name in asked}
+
+        runs: Any = stub(settings=DiagnosisSettings(), recordings=recordings, problem=problem, parted=of, start=None)
+        refit, final = errors_of(0.1, 0.1, 1.4, 0.3), stub()
+        runs.start = refit
+        return Judgement(runs, final, final, refit, errors_of(*after))
+
+    return make
+
+
+def test_a_model_that_is_better_everywhere_asks_nothing(judged) -> None:
+    better = judged({"second": 9.0}, 0.1, 0.05, 0.1, 0.2)
+    assert better.holds and better.unstable == frozenset()
+
+
+def test_an_experiment_that_no_free_run_follows_does_not_count(judged, monkeypatch) -> None:
+    """Seen: a ripple of 97 % over windows, taken back as one of three free runs fell into another well."""
+    found = judged({"second": 0.4}, 0.1, 0.5, 0.1, 0.2)
+    assert found.unstable == {"second"} and found.holds
+    assert found.sums == (pytest.approx(1.4**2 + 0.3**2), pytest.approx(0.1**2 + 0.2**2))
+    monkeypatch.setattr(judgement, "output_floors", lambda problem, settings: np.zeros((4, 1)))
+    assert found.mismatch(True) == pytest.approx(0.1**2 + 0.2**2)
+    assert found.mismatch(True, {"second"}) == pytest.approx(0.25)
+
+
+def test_where_runs_stay_together_they_have_the_last_word(judged) -> None:
+    found = judged({"second": 0.05}, 0.1, 0.5, 0.1, 0.2)
+    assert found.unstable == frozenset() and not found.holds
+
+
+def test_more_than_half_of_all_are_never_left_out(judged) -> None:
+    found = judged({"second": 0.4, "fourth": 0.4}, 0.1, 0.5, 0.1, 0.5)
+    assert found.unstable == frozenset() and not found.holds
+
+
+def test_the_rest_has_to_hold(judged) -> None:
+    found = judged({"second": 0.4}, 0.1, 0.5, 1.6, 0.2)
+    assert found.unstable == {"second"} and not found.holds
+
+
+def test_of_two_that_hold_the_one_that_leaves_less_where_both_count(judged) -> None:
+    worse = judged({}, 0.1, 0.1, 1.0, 0.2)
+    better = judged({"second": 0.4}, 0.1, 0.5, 0.1, 0.2)
+    assert better.better_than(worse) and not worse.better_than(better)
+    assert not judged({}, 0.1, 0.5, 0.1, 0.2).better_than(worse), "it does not hold"
