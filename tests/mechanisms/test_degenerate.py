@@ -110,6 +110,16 @@ def test_zero_is_a_natural_bound_and_so_is_true_sticking(around: Surroundings) -
     assert law_of("end_stop").degenerate(around, values, small(values)) is None
 
 
+@pytest.mark.parametrize(
+    ("width", "objection"), [(0.05, None), (0.4, None), (0.41, "highest at a speed, not near standstill")]
+)
+def test_stribeck_friction_is_highest_near_standstill(around, width: float, objection: str | None) -> None:
+    """Seen: an eddy current brake whose torque is highest at a tenth of the speeds, told as Stribeck friction at the wrong body."""
+    values = SOUND["stribeck_friction"] | {"v_0": width, "v_s": 2.0}
+    told = law_of("stribeck_friction").degenerate(around, values, small(values))
+    assert told is None if objection is None else told is not None and told.endswith(objection)
+
+
 @pytest.mark.parametrize("name", ["coulomb_friction", "stribeck_friction", "friction_warmup"])
 def test_a_width_may_be_at_either_end(name: str, around: Surroundings) -> None:
     """Friction that truly sticks, and a width that nothing determines; no dry friction is as wide as a force that grows with speed.
@@ -119,7 +129,7 @@ def test_a_width_may_be_at_either_end(name: str, around: Surroundings) -> None:
     (width,) = (p for p in law_of(name).parameters(around) if p.name == "v_0")
     assert width.bounds[1] == 0.1 * around.ranges["speed"].reach
     for end in width.bounds:
-        values = {**SOUND[name], "v_0": end}
+        values = {**SOUND[name], "v_0": end, **({"v_s": 15.0} if "v_s" in SOUND[name] else {})}
         assert law_of(name).degenerate(around, values, small(values)) is None
 
 

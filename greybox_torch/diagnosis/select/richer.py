@@ -13,10 +13,12 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.above_noise import only_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.flexed import widened
 from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
@@ -29,7 +31,7 @@ def with_richer_form(study: Study, state: SearchState) -> Stage[SearchState]:
         return state
     taken = done.taken
     tried = (_in_form(study, state, taken, law, start) for law, start in _forms(taken.candidate.attachment, state))
-    paying = [r for r in tried if r is not None and _pays(study, r)]
+    paying = [r for r in tried if r is not None and _pays(study, state.current, r)]
     best = min(paying, key=lambda r: r.fitted.score, default=None)
     if best is None:
         return state
@@ -57,8 +59,24 @@ def _in_form(
     return None if fitted is None else judged(candidate, state.current, fitted, study.settings)
 
 
-def _pays(study: Study, ranked: RankedCandidate) -> bool:
-    """Whether a form takes up most of what the plain one leaves, beyond chance: less may be another effect's."""
+def _pays(study: Study, before: Hypothesis, ranked: RankedCandidate) -> bool:
+    """Whether a form takes up most of what the plain one leaves, beyond chance: less may be another effect's.
+
+    Most of the squared error over all window lengths, or of what is beyond the noise over those that show it best: over short windows
+    the plain form may leave noise alone.
+    """
     settings = study.settings
-    most = -np.log1p(-settings.least_of_richer_form)
-    return ranked.significance > settings.least_significance and ranked.gain > most and sound(study, ranked)
+    most = ranked.gain > -np.log1p(-settings.least_of_richer_form) or (
+        _left_where_it_shows(before, ranked.fitted, settings) < 1 - settings.least_of_richer_form
+    )
+    return most and ranked.significance > settings.least_significance and sound(study, ranked)
+
+
+def _left_where_it_shows(before: Hypothesis, after: Hypothesis, settings: DiagnosisSettings) -> float:
+    """The share of the squared error beyond the noise that a form leaves, over the windows in which the plain one leaves most of it."""
+    pairs = [
+        (b.mean_square, a.mean_square, noise_floor(b.problem, settings))
+        for b, a in zip(before.fits, after.fits, strict=True)
+    ]
+    plain, form, floor = max(pairs, key=lambda pair: pair[0] / max(pair[2], 1e-300))
+    return max(form - floor, 0.0) / (plain - floor) if plain > floor else 1.0

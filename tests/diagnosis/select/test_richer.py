@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.refit.rank import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
-from greybox_torch.diagnosis.select.richer import with_richer_form
+from greybox_torch.diagnosis.select.richer import _pays, with_richer_form
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.attachment import attach
@@ -51,3 +52,21 @@ def test_what_has_no_richer_form_or_leaves_noise_alone_stays_as_it_is(motor_data
     for effect, start in ((ripple, {f"{ripple.prefix}.b": 0.06}), (dry, {f"{dry.prefix}.F_c": 0.01})):
         before = found(search, effect, start)
         assert result_of(with_richer_form(search.study, before)) is before
+
+
+@pytest.mark.parametrize(("left", "taken"), [(1.05, True), (9.0, False)])
+def test_what_it_takes_up_is_asked_where_the_law_leaves_most(motor_data, motor, begun, left, taken) -> None:
+    """Seen: cogging of two orders along a rail; over all but the longest windows one order left little more than an encoder's steps."""
+    search = begun(motor_data(torque=lambda q, v: 0.06 * np.sin(2.5 * q)), motor)
+    ripple = attach(motor, "rotor", TorqueRipple(2.5))
+    fitted, settings = found(search, ripple, {f"{ripple.prefix}.b": 0.06}).current, search.study.settings
+    floors = [noise_floor(f.problem, settings) for f in fitted.fits]
+
+    def leaving(*times: float) -> Any:
+        fits = [replace(f, mean_square=t * n) for f, t, n in zip(fitted.fits, times, floors, strict=True)]
+        return replace(fitted, fits=tuple(fits))
+
+    before, after = leaving(1.0, 1.1, 20.0), leaving(1.0, 1.05, left)
+    ranked = replace(judged(Candidate(ripple, (), 0.5), before, after, settings), significance=5.0)
+    assert ranked.gain < -np.log1p(-settings.least_of_richer_form)
+    assert _pays(search.study, before, ranked) is taken
