@@ -29,7 +29,7 @@ def compare(
     screened: Sequence[Sequence[ScreenScore]],
     ranked: Sequence[RankedCandidate],
 ) -> Comparison:
-    """The front runners polished, and compared with their parent refitted from the best one's values.
+    """The front runners polished, also from where the best one has the model's parameters, and compared with their parent from there.
 
     Without the first, the order among close rivals would be the luck of their start values; without the second, an effect of next
     to no size could win merely because its refit got out of a local minimum that the parent sits in.
@@ -38,6 +38,8 @@ def compare(
         return Comparison(parent, tuple(ranked))
     front = _front(study, ranked)
     polish = side_by_side(partial(_polished, study, r.fitted, restarts(study, screened, r)) for r in front)
+    best = min(polish, key=lambda fitted: fitted.score)
+    polish = side_by_side(partial(_from_there, study, fitted, best, parent.problem.names) for fitted in polish)
     best = min(polish, key=lambda fitted: fitted.score)
     again = _polished(study, parent, [best.values(), {**best.values(), **study.card}])
     parent = again if again.score < parent.score else parent
@@ -55,6 +57,14 @@ def _front(study: Study, ranked: Sequence[RankedCandidate]) -> list[RankedCandid
     # Not always the first of the ranking: that has a price for every parameter.
     close = [r for r in ranked if r.gain > study.settings.polish_share * ranked[0].gain]
     return close[: max(study.budget.front_runners, min(tied, study.budget.most_tied))]
+
+
+def _from_there(study: Study, fitted: Hypothesis, best: Hypothesis, names: Sequence[str]) -> Hypothesis:
+    """A front runner polished from where the best one has the parameters ``names``; a curve as it is, whose refits are the slowest."""
+    if fitted is best or fitted.effects[-1].mechanism.free:
+        return fitted
+    values = best.values()
+    return _polished(study, fitted, [{**fitted.values(), **{n: values[n] for n in names}}])
 
 
 def _polished(study: Study, fitted: Hypothesis, starts: Sequence[dict[str, float]]) -> Hypothesis:
