@@ -116,7 +116,7 @@ class Scored:
 
     @property
     def worse(self) -> bool:
-        """Whether the recommended model simulates the validation experiments worse than the re-estimated one."""
+        """Whether the recommended model simulates the validation experiments worse than the re-estimated one, all of them counted."""
         return self.verdict is not None and worse_than_refit(self.verdict["fit"])
 
 

@@ -60,6 +60,9 @@ def _of_the_whole(verdict: Mapping[str, Any]) -> Iterator[str]:
         yield "effects are named, and nothing is said to be missing"
     if verdict["effects"] and worse_than_refit(verdict["fit"], verdict.get("unstable", ())):
         yield "the recommended model simulates the validation experiments worse than the re-estimated one"
+    judging = {row["experiment"] for row in verdict["fit"] if row["role"] == "validation"}
+    if 2 * len(set(verdict.get("unstable", ()))) > len(judging):
+        yield "more than half of the validation experiments do not count"
     if not verdict["effects"] and any(_differ(row) for row in verdict["fit"]):
         yield "nothing is named, and the recommended model is not the re-estimated one"
     confidence = verdict.get("confidence", 0.5)

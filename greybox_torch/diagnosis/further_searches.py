@@ -8,8 +8,9 @@ from functools import partial
 
 from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, TimeIsUp, until
+from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.longer_windows import longer_windows, sentence, stands
-from greybox_torch.diagnosis.confirm.promotion import promote_validation, replaces
+from greybox_torch.diagnosis.confirm.promotion import Promotion, promote_unstable, promote_validation, replaces
 from greybox_torch.diagnosis.findings import Findings, judge
 from greybox_torch.diagnosis.selection import MakeStudy, Selection, find
 from greybox_torch.diagnosis.stopwatch import Stopwatch
@@ -39,7 +40,7 @@ def find_with_more(
         own = best if isinstance(best, Findings) else judged(best)
         if not whole:
             return replace(own, complete=False, others=own.others if in_time else None, cut=(*own.cut, AGAIN))
-        if own.state is best.state:
+        if own is best or (own.state is best.state and not own.judged.unstable):
             return own
         known[_chosen_with(own.dataset)] = own
 
@@ -63,7 +64,7 @@ def _selected(
     try:
         with until(end):
             while last.complete and last.others is not None:
-                more = promote_validation(last.study, last.dataset, last.state, last.others)
+                more = _promotion(last, last.others)
                 if more is None:
                     break
                 names = _chosen_with(more.dataset)
@@ -73,13 +74,24 @@ def _selected(
                     found = replace(found, more=(*last.more, more.sentence()))
                     known[names] = found if judged is None else judged(found)
                 last = known[names]
-                if last.others and replaces(last.others, best.state, last.state):
+                if last.others and replaces(last.others, best.state, last.state, bool(_unstable(best))):
                     best = last
                 elif best.state.effects:
                     break  # one more experiment does not better what was found, and each costs a whole search
     except (TimeIsUp, KeyboardInterrupt):
         return best, False, False
     return best, last.complete or not best.complete, True
+
+
+def _promotion(found: Selection, others: HeldOut) -> Promotion | None:
+    """The data set with one more experiment to choose with: one that cannot score, or that shows what the others do not."""
+    cannot_score = promote_unstable(found.dataset, _unstable(found))
+    return cannot_score or promote_validation(found.study, found.dataset, found.state, others)
+
+
+def _unstable(found: Selection) -> frozenset[str]:
+    """The experiments that no free run follows, where free runs were judged."""
+    return found.judged.unstable if isinstance(found, Findings) else frozenset()
 
 
 def _chosen_with(dataset: DataSet) -> tuple[str, ...]:

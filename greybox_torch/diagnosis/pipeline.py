@@ -144,7 +144,8 @@ def _diagnosis(found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int
 def _taken_back(found: Findings, against: Sequence[str]) -> Findings:
     """The findings without any effect, and why."""
     why = f"Everything found was taken back, as a verdict with it would contradict itself: {'; '.join(against)}."
-    return replace(found, state=found.state.at(found.state.plain), gains={}, more=(*found.more, why))
+    plain = found.state.at(found.state.plain)
+    return replace(found, state=plain, gains={}, judged=found.judged.without_effects(), more=(*found.more, why))
 
 
 def _as_found(

@@ -22,7 +22,10 @@ def row_of_verdict(verdict: Verdict, parameters: Mapping[str, Mapping[str, Any]]
     """
     leading = max(verdict.effects, key=lambda e: e.size if math.isfinite(e.size) else -1.0, default=None)
     told = {} if leading is None else _leading(leading)
-    before, after = (_mean_fit(verdict.scores[name]) for name in ("refit", "augmented" if leading else "refit"))
+    before, after = (
+        _mean_fit([s for s in verdict.scores[name] if s.experiment not in verdict.unstable])
+        for name in ("refit", "augmented" if leading else "refit")
+    )
     return Row(
         dataset=row.dataset,
         card=row.card,
@@ -68,7 +71,7 @@ def _leading(effect: Effect) -> dict[str, Any]:
 
 
 def _mean_fit(scores: Sequence[Score]) -> float | None:
-    """Over the validation experiments; over all where there are none."""
+    """Over the validation experiments that count; over all where there are none."""
     held_out = of_moving_outputs(held_out_scores(scores))
     return _finite(mean_fit(held_out)) if held_out else None
 

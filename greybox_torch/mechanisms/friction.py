@@ -17,6 +17,9 @@ WIDEST_BESIDE_A_PEAK = 0.2
 """Share of the Stribeck speed within which the force changes its sign. Of machines whose friction is known it was 0.08 at the most, of an
 eddy current brake 0.37."""
 
+NO_WIDTH = 0.01
+"""Share of the fastest speed within which a change of sign is as good as sticking, whatever the Stribeck speed."""
+
 
 class ViscousFriction(LinearLaw):
     """−c v."""
@@ -78,7 +81,7 @@ class StribeckFriction(Mechanism):
             Parameter("F_s", 0.0, around.force_unit, lower=0.0, description="extra level near standstill"),
             Parameter("c", 0.0, around.per("speed"), lower=0.0, description="viscous coefficient"),
             Parameter("v_s", 0.1 * reach, unit, lower=0.005 * reach, upper=reach, description="Stribeck speed"),
-            width_parameter(around),
+            width_parameter(around, 0.01),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
@@ -91,6 +94,7 @@ class StribeckFriction(Mechanism):
             Probe(("F_c", "F_s", "c"), {"v_s": share * reach, "v_0": width})
             for share in (0.05, 0.2)
             for width in widths(around)[:2]
+            if width <= WIDEST_BESIDE_A_PEAK * share * reach
         ]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
@@ -99,7 +103,8 @@ class StribeckFriction(Mechanism):
 
 def _highest_at_a_speed(values: Mapping[str, float], around: Surroundings) -> str | None:
     """The force changes its sign so slowly that it is highest at a speed, as an eddy current brake's, and not near standstill."""
-    if values["v_0"] <= WIDEST_BESIDE_A_PEAK * values["v_s"]:
+    least = NO_WIDTH * around.ranges["speed"].reach
+    if values["v_0"] <= max(WIDEST_BESIDE_A_PEAK * values["v_s"], least):
         return None
     unit = around.units.get("speed", "")
     return (

@@ -17,12 +17,16 @@ def smooth_sign(speed: Any, width: Any) -> Any:
     return torch.tanh(speed / width)
 
 
-def width_parameter(around: Surroundings) -> Parameter:
-    """The speed v_0 over which a Coulomb force changes its sign: no more than a tenth of the fastest, or it would grow with speed."""
+def width_parameter(around: Surroundings, begun: float = 0.03) -> Parameter:
+    """The speed v_0 over which a Coulomb force changes its sign: no more than a tenth of the fastest, or it would grow with speed.
+
+    Args:
+        begun: its start value, as a share of the fastest.
+    """
     reach = around.ranges["speed"].reach
     unit = around.units.get("speed", "")
     return Parameter(
-        "v_0", 0.03 * reach, unit, lower=2e-3 * reach, upper=0.1 * reach, description="width of the sign change"
+        "v_0", begun * reach, unit, lower=2e-3 * reach, upper=0.1 * reach, description="width of the sign change"
     )
 
 

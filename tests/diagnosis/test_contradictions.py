@@ -62,6 +62,8 @@ def test_experiments_that_no_free_run_follows_do_not_count() -> None:
     named = [{"port": "rotor", "mechanism": "coulomb_friction", "probability": 0.9, "parameters": {}}]
     assert contradictions(verdict | {"effects": named}) == []
     assert len(contradictions(verdict | {"effects": named, "unstable": ["other"]})) == 1
+    (told,) = contradictions(verdict | {"effects": named, "unstable": ["run", "other"]})
+    assert told == "more than half of the validation experiments do not count"
 
 
 def dead_zone(voltage: np.ndarray) -> np.ndarray:

@@ -118,6 +118,8 @@ def test_stribeck_friction_is_highest_near_standstill(around, width: float, obje
     values = SOUND["stribeck_friction"] | {"v_0": width, "v_s": 2.0}
     told = law_of("stribeck_friction").degenerate(around, values, small(values))
     assert told is None if objection is None else told is not None and told.endswith(objection)
+    narrow = values | {"v_0": 0.04, "v_s": 0.12}  # 0.2 and 0.6 % of the fastest speed: it sticks
+    assert law_of("stribeck_friction").degenerate(around, narrow, small(narrow)) is None
 
 
 @pytest.mark.parametrize("name", ["coulomb_friction", "stribeck_friction", "friction_warmup"])

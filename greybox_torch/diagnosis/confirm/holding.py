@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 
 from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
 from greybox_torch.diagnosis.confirm.free_runs import NOWHERE, Places
@@ -17,7 +18,7 @@ from greybox_torch.diagnosis.hypothesis.final import Final, as_windows_have_it, 
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
-from greybox_torch.diagnosis.stopping import result_of
+from greybox_torch.diagnosis.stopping import or_else, result_of
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
 
@@ -47,11 +48,12 @@ def holding(
         if empty is None and judged.holds and not judged.unstable:
             break
         if empty is None:
-            by_windows = judged.having(as_windows_have_it(state.current, study.recorded), places())
-            if by_windows.better_than(judged) and _empty(study, state, by_windows.augmented, gains) is None:
-                return state, gains, by_windows, (*told, WINDOWS_STAND), True
+            trial = partial(_better_by_windows, study, state, gains, judged, places())
+            better, whole = or_else(trial, lambda: None) if judged.holds else (trial(), True)
+            if better is not None:
+                return state, gains, better, (*told, WINDOWS_STAND), True
             if judged.holds:
-                break
+                return state, gains, judged, told, whole
         if not state.compared_without:
             state = result_of(drop_superfluous(study, state))
         if empty is not None and empty in state.prefixes:
@@ -65,6 +67,15 @@ def holding(
         gains = held_out_gains(state, others) if others is not None else {}
         judged = judged.having(finish(state.current, study.settings, study.budget, study.recorded), places())
     return state, gains, judged, told, True
+
+
+def _better_by_windows(
+    study: Study, state: SearchState, gains: Mapping[str, Gain], judged: Judgement, places: Places
+) -> Judgement | None:
+    """The free runs with the values that windows have, where those hold better than ``judged`` and say something of the machine."""
+    by_windows = judged.having(as_windows_have_it(state.current, study.recorded), places)
+    better = by_windows.better_than(judged) and _empty(study, state, by_windows.augmented, gains) is None
+    return by_windows if better else None
 
 
 def _without(study: Study, state: SearchState, prefix: str) -> SearchState:

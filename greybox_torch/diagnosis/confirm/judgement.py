@@ -33,8 +33,7 @@ class Judgement:
     @staticmethod
     def of(free_runs: FreeRuns, plain: Final) -> Judgement:
         """Of the model as it stands."""
-        refit = free_runs.of(plain)
-        return Judgement(free_runs, plain, plain, refit, refit)
+        return Judgement(free_runs, plain, plain, refit := free_runs.of(plain), refit)
 
     def having(self, augmented: Final, places: Places = NOWHERE) -> Judgement:
         """Beside the same plain refit, another model with effects; ``places`` as for :meth:`FreeRuns.of`."""
@@ -59,12 +58,12 @@ class Judgement:
 
     @property
     def problem(self) -> Problem:
-        """The plain model on all experiments."""
+        """The plain model on all experiments, which are in the order of the card."""
         return self.free_runs.problem
 
     @property
     def recordings(self) -> tuple[Recording, ...]:
-        """All experiments, in the order of the card."""
+        """All experiments."""
         return self.free_runs.recordings
 
     @property
@@ -78,10 +77,13 @@ class Judgement:
         return self._no_worse(self.unstable)
 
     def better_than(self, other: Judgement) -> bool:
-        """Whether its model holds, and ``other``'s does not or leaves more, on the experiments that count with both."""
+        """Whether its model holds and ``other``'s does not, or on fewer experiments, or leaves more of those that count with both."""
+        if not (self.holds and other.holds):
+            return self.holds
+        if len(self.unstable) != len(other.unstable):
+            return len(self.unstable) < len(other.unstable)
         but = self.unstable | other.unstable
-        left, left_there = (self._energy(j.with_effects, but) for j in (self, other))
-        return self.holds and (not other.holds or left < left_there)
+        return self._energy(self.with_effects, but) < self._energy(other.with_effects, but)
 
     @cached_property
     def unstable(self) -> frozenset[str]:
@@ -91,7 +93,7 @@ class Judgement:
         """
         if self._no_worse(frozenset()):
             return frozenset()
-        worse = {row["experiment"] for row in self._rows if worse_than_refit([row])}
+        worse = {name for name in self.judges if worse_than_refit(self._rows, self.judges - {name})}
         parted = self.free_runs.parted(self.augmented, self.with_effects, worse)
         found = frozenset(name for name, share in parted.items() if share >= self.settings.least_parted)
         return found if 2 * len(found) <= len(self.judges) else frozenset()
@@ -106,8 +108,8 @@ class Judgement:
             return False
         before, after = (mean_fit(self._judged(c, but).scores) for c in (self.refit, self.with_effects))
         refit, with_effects = (self._energy(c, but) for c in (self.refit, self.with_effects))
-        allowed = self.settings.unexercised
-        return with_effects <= (1 + allowed) * refit and after >= before - 100 * allowed
+        least = self.settings.unexercised
+        return with_effects <= (1 + least) * refit and after >= before - 100 * least
 
     @property
     def _rows(self) -> list[dict[str, Any]]:
@@ -128,8 +130,9 @@ class Judgement:
         noise, the largest root mean square error in units of the noise, and in which experiment; NaN where no output shows the noise.
         """
         final = self.with_effects if effects else self.refit
-        times = np.where(self._judging(self.unstable), self._times_noise(final), np.nan)
-        share = _share_left(self.mismatch(False), self.mismatch(effects))
+        but = self.unstable if effects else frozenset[str]()
+        times = np.where(self._judging(but), self._times_noise(final), np.nan)
+        share = _share_left(*(self.mismatch(e, self.judges - but) for e in (False, effects)))
         if not np.isfinite(times).any():
             return share, np.nan, ""
         worst = int(np.nanargmax(times))
@@ -144,11 +147,10 @@ class Judgement:
         """Sum of the mean squared errors beyond the noise of the recommended model, outputs in units of their spread.
 
         Args:
-            among: of these experiments; by default of all that judge and count.
+            among: of these experiments; by default of all that judge.
         """
         final = self.with_effects if effects else self.refit
-        names = self.judges - self.unstable if among is None else among
-        chosen = np.array([r.name in names for r in self.recordings])
+        chosen = np.array([r.name in (self.judges if among is None else among) for r in self.recordings])
         return float(self._beyond(final, self._floors())[chosen].sum())
 
     def comparisons(self, effects: bool) -> dict[str, Comparison]:

@@ -65,8 +65,9 @@ def explains_free_runs(before: Judgement, after: Judgement, settings: DiagnosisS
     By experiments that had no part in choosing either: those that judge ``after``, which may have taken one more to choose with. What the
     model as it stands explains once it is estimated from that one, too, is none of the effects' doing.
     """
-    least = min(before.mismatch(True, after.judges), after.mismatch(False))
-    return after.mismatch(True) <= settings.slow_share * least
+    counting = after.judges - after.unstable
+    least = min(before.mismatch(True, counting), after.mismatch(False, counting))
+    return after.mismatch(True, counting) <= settings.slow_share * least
 
 
 def sentence(before: Judgement, state: SearchState, longer: SearchState) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,18 +16,31 @@ from greybox_torch.diagnosis.study import Study
 
 @dataclass(frozen=True)
 class Promotion:
-    """A data set with the experiment ``taken`` among those to choose with, which the model fits ``error`` times the noise."""
+    """A data set with the experiment ``taken`` among those to choose with, and why."""
 
     dataset: DataSet
     taken: str
-    error: float
+    why: str
 
     def sentence(self) -> str:
         """What the reader of a verdict has to know of it."""
-        return (
-            f"{self.taken} was taken to choose with as well, as the model found before leaves {self.error:.2g} times the noise there, "
-            "which the estimation experiments do not show so: it no longer counts as validation."
-        )
+        return f"{self.taken} was taken to choose with as well, as {self.why}: it no longer counts as validation."
+
+    @staticmethod
+    def of(dataset: DataSet, taken: str, why: str) -> Promotion:
+        """The validation experiment ``taken`` of a data set."""
+        changed = (replace(r, role="estimation") if r.name == taken else r for r in dataset.recordings)
+        return Promotion(replace(dataset, recordings=tuple(changed)), taken, why)
+
+
+def promote_unstable(dataset: DataSet, unstable: Collection[str]) -> Promotion | None:
+    """The data set with a validation experiment that no free run follows, and so cannot score, among those to choose with.
+
+    None where there is none, or where no validation experiment would be left.
+    """
+    if not unstable or len(dataset.validation()) < 2:
+        return None
+    return Promotion.of(dataset, min(unstable), "no free run of the model found before follows it")
 
 
 def promote_validation(study: Study, dataset: DataSet, state: SearchState, others: HeldOut) -> Promotion | None:
@@ -45,13 +59,18 @@ def promote_validation(study: Study, dataset: DataSet, state: SearchState, other
         return None
     if found and errors[worst] < settings.promote_share_beside * others.times_noise(state.plain)[worst]:
         return None
-    name = recordings[worst].name
-    changed = tuple(replace(r, role="estimation") if r.name == name else r for r in dataset.recordings)
-    return Promotion(replace(dataset, recordings=changed), name, float(errors[worst]))
+    why = f"the model found before leaves {errors[worst]:.2g} times the noise there, which the estimation experiments do not show so"
+    return Promotion.of(dataset, recordings[worst].name, why)
 
 
-def replaces(others: HeldOut, before: SearchState, after: SearchState) -> bool:
-    """Whether what one more experiment to choose with led to takes the place of what was found before it."""
+def replaces(others: HeldOut, before: SearchState, after: SearchState, settles: bool = False) -> bool:
+    """Whether what one more experiment to choose with led to takes the place of what was found before it.
+
+    Args:
+        settles: whether that experiment cannot score, so that the same effects estimated from it as well are to be preferred.
+    """
+    if settles and before.prefixes == after.prefixes:
+        return _no_worse(others, before, after)
     return serves(others, before, after) if after.effects else not before.effects and _complete(others, after)
 
 
@@ -62,9 +81,15 @@ def serves(others: HeldOut, before: SearchState, after: SearchState) -> bool:
     shows an effect that they need not show, such as a stop that they never reach. Against nothing the latter is enough.
     """
     fits, fits_before = others.fits(after.current), others.fits(before.current)
-    no_worse = gain(fits, fits_before).errors_away < others.study.settings.held_out_beyond_chance
     adds = not before.effects or before.prefixes < after.prefixes
-    return (adds and no_worse) or (bool(before.effects) and gain(fits_before, fits).share > 0)
+    better = bool(before.effects) and gain(fits_before, fits).share > 0
+    return better or (adds and _no_worse(others, before, after))
+
+
+def _no_worse(others: HeldOut, before: SearchState, after: SearchState) -> bool:
+    """Whether the model of ``after`` predicts held-out experiments no worse than that of ``before``, beyond chance."""
+    found = gain(others.fits(after.current), others.fits(before.current))
+    return found.errors_away < others.study.settings.held_out_beyond_chance
 
 
 def _complete(others: HeldOut, state: SearchState) -> bool:

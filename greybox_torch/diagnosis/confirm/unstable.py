@@ -11,6 +11,7 @@ from collections.abc import Collection
 import numpy as np
 
 from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.estimate.initial import FRACTION
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.simulator import Simulator
@@ -23,29 +24,31 @@ def parted(
     """How far the free runs of experiments part from one that begins next to them, in units of their error, by name.
 
     Each state in turn begins ``settings.unseen_start`` of its travel away; the farthest of them counts, root mean square over the record.
+    A run beside it that overflows has parted from it.
 
-    Zero where a free run overflows: that is the model's fault.
+    Zero where that is not the machine's doing: a free run that overflows, or that is farther from the measurement than a constant; and
+    where the change hardly grows from the first tenth of the record on (``settings.least_growth``), as an offset or a drift does.
 
     Args:
         problem: with the start states of the free runs.
         asked: names of the experiments.
     """
     rows = [e for e, name in enumerate(problem.records.names) if name in asked]
-    return {problem.records.names[e]: _parted(problem, simulator, e, settings.unseen_start) for e in rows}
+    return {problem.records.names[e]: _parted(problem, simulator, e, settings) for e in rows}
 
 
 def no_free_run_follows(experiments: Collection[str], settings: DiagnosisSettings) -> tuple[str, ...]:
     """What the reader of a verdict has to know of experiments that no free run follows, in a sentence for each."""
     return tuple(
-        f"{name}: the model with effects comes out worse in a free run. That does not count, as no free run of it follows this one: "
-        f"one that begins {settings.unseen_start:.0e} of a state's travel away parts from it by {100 * settings.least_parted:.0f} % of its "
-        "error or more. Over windows with start states of their own the experiment did count."
+        f"{name}: with the effects the free run is worse. It does not count: a second free run, whose start differs by "
+        f"{100 * settings.unseen_start:.2g} % of a state's travel, departs from the first by {100 * settings.least_parted:.0f} % of its "
+        "error or more, so that no free run follows this experiment."
         for name in sorted(experiments)
     )
 
 
-@np.errstate(over="ignore", invalid="ignore")
-def _parted(problem: Problem, simulator: Simulator, experiment: int, share: float) -> float:
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")
+def _parted(problem: Problem, simulator: Simulator, experiment: int, settings: DiagnosisSettings) -> float:
     """How far a small change of the start state moves the outputs of one experiment, at most, in units of its error."""
     records, length = problem.records, int(problem.records.lengths[experiment])
 
@@ -56,12 +59,23 @@ def _parted(problem: Problem, simulator: Simulator, experiment: int, share: floa
         assert run.states is not None
         return run.y[:, :length], run.states[:, :length]
 
-    start = problem.initial[experiment : experiment + 1]
+    start, measured = problem.initial[experiment : experiment + 1], records.y[:, records.span(experiment)].T
     along, states = runs(start)
-    if not np.isfinite(along).all():
+    error, spread = (_size(problem.weights * e) for e in (along[0] - measured, measured - np.nanmean(measured, axis=0)))
+    if not np.isfinite(states[0]).all() or not error <= spread:
         return 0.0
-    beside, _ = runs(start + np.diag(share * np.ptp(states[0], axis=0)))
-    error = along[0] - records.y[:, records.span(experiment)].T
-    unit = problem.weights / max(float(np.sqrt(np.nanmean((problem.weights * error) ** 2))), 1e-300)
-    moved = np.sqrt(np.mean((unit * (beside - along)) ** 2, axis=(1, 2)))
-    return float(np.max(np.nan_to_num(moved, nan=np.inf), initial=0.0))
+    beside, _ = runs(start + np.diag(settings.unseen_start * np.ptp(states[0], axis=0)))
+    moved = problem.weights * (beside - along)
+    shares = [_size(m) / max(error, 1e-300) for m in moved if _grew(m) >= settings.least_growth]
+    return max(shares, default=0.0)
+
+
+def _grew(moved: np.ndarray) -> float:
+    """How many times as large a change (N, n_y) is over the record as over its first tenth."""
+    early = _size(moved[: max(1, int(np.ceil(FRACTION * len(moved))))])
+    return _size(moved) / early if early > 0 else 0.0
+
+
+def _size(values: np.ndarray) -> float:
+    """Root mean square of those that are known; infinite where one overflows."""
+    return float("inf") if np.isinf(values).any() else float(np.sqrt(np.nanmean(values**2)))

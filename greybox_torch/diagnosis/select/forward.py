@@ -74,9 +74,17 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     branch = yield from only_if(_without_curves(study, start, with_curve), partial(_as_far, study, with_curve))
     if _as_far(study, with_curve, branch):
         return branch
-    stand_for_it = len(branch.effects) > len(done.parent.effects) and not _in_pieces(study, with_curve, branch)
-    found = replace(branch, named=None) if stand_for_it else with_curve.named
+    standing = _first_name(start, branch) if _in_pieces(study, with_curve, branch) else branch
+    stands = standing is not None and len(standing.effects) > len(done.parent.effects)
+    found = replace(standing, named=None) if standing is not None and stands else with_curve.named
     return replace(with_curve, plain=branch.plain, named=found)
+
+
+def _first_name(start: SearchState, branch: SearchState) -> SearchState | None:
+    """``branch`` after the first step from ``start``, where that took a name: the one to ask where the curve does not hold."""
+    steps = branch.steps[: len(start.steps) + 1]
+    taken = steps[-1].taken if len(steps) > len(start.steps) else None
+    return None if taken is None else replace(branch.at(taken.fitted), steps=steps)
 
 
 def _without_curves(study: Study, start: SearchState, with_curve: SearchState) -> Stage[SearchState]:

@@ -73,10 +73,12 @@ def _pays(study: Study, before: Hypothesis, ranked: RankedCandidate) -> bool:
 
 
 def _left_where_it_shows(before: Hypothesis, after: Hypothesis, settings: DiagnosisSettings) -> float:
-    """The share of the squared error beyond the noise that a form leaves, over the windows in which the plain one leaves most of it."""
-    pairs = [
-        (b.mean_square, a.mean_square, noise_floor(b.problem, settings))
-        for b, a in zip(before.fits, after.fits, strict=True)
-    ]
-    plain, form, floor = max(pairs, key=lambda pair: pair[0] / max(pair[2], 1e-300))
-    return max(form - floor, 0.0) / (plain - floor) if plain > floor else 1.0
+    """The share of the squared error beyond the noise that a form leaves, over the windows in which the plain one leaves most of it.
+
+    All of it where the plain one leaves hardly more than noise.
+    """
+    plain, form = max(zip(before.fits, after.fits, strict=True), key=lambda pair: pair[0].mean_square)
+    floor = noise_floor(plain.problem, settings)
+    if plain.mean_square < settings.above_noise**2 * floor:
+        return 1.0
+    return max(form.mean_square - floor, 0.0) / (plain.mean_square - floor)

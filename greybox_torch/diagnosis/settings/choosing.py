@@ -165,8 +165,8 @@ class SelectionSettings:
     )
     least_of_richer_form: float = share(
         0.67,
-        "What a richer form has to remove of the squared error that a law leaves to be told as one law with it: over windows of all "
-        "lengths, or beyond the noise over those where the law leaves most.",
+        "What a richer form has to remove of the squared error that the plain law leaves to replace it: over windows of all lengths, or "
+        "beyond the noise over those where the plain law leaves most.",
         unit="share of the squared error over windows",
     )
     least_significance: float = number(

@@ -95,6 +95,12 @@ class ConfirmationSettings:
         unit="share of the free run's error (root mean square)",
         chosen_by="orders of magnitude: beside an error of 1 % of the travel, changes have grown a hundredfold",
     )
+    least_growth: float = ratio(
+        100.0,
+        "How much larger it has to be over the record than over its first tenth.",
+        unit="times, root mean square",
+        chosen_by="what drifts steadily grows tenfold",
+    )
     no_mismatch: float = share(
         0.01,
         "Squared error beyond the noise up to which windows of one length say nothing of an effect's size.",

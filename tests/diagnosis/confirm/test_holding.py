@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from greybox_torch.deadline import TimeIsUp
 from greybox_torch.diagnosis.confirm import holding
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.holding import WINDOWS_STAND, _empty
@@ -84,3 +85,24 @@ def test_where_whole_records_lead_astray_the_values_of_the_windows_may_stand(mon
         assert (left, kept, told) == (state, by_windows, (WINDOWS_STAND,))
     else:
         assert (left.effects, kept, told) == ((), "plain", ())
+
+
+@pytest.mark.parametrize(("windows", "time"), [(True, True), (False, True), (False, False)])
+def test_values_that_hold_on_some_experiments_give_way_to_better_ones_and_are_not_lost(
+    monkeypatch, stub, windows, time
+) -> None:
+    """Where time is up while the values of the windows are tried, those of whole records stand."""
+    state = stub(effects=(stub(prefix="rotor.ripple"),), current="windows", compared_without=True)
+    by_windows = stub(better_than=lambda other: windows, augmented="windows")
+
+    def having(final: Any, places: Any) -> Any:
+        if not time:
+            raise TimeIsUp
+        return by_windows
+
+    judged = stub(holds=True, unstable={"run 2"}, augmented="records", having=having)
+    monkeypatch.setattr(holding, "as_windows_have_it", lambda hypothesis, records: hypothesis)
+    monkeypatch.setattr(holding, "_empty", lambda *args: None)
+    left, gains, kept, told, whole = holding.holding(stub(settings=None, recorded=None), state, None, {}, judged)
+    assert left is state and whole is time
+    assert (kept, told) == ((by_windows, (WINDOWS_STAND,)) if windows else (judged, ()))

@@ -52,6 +52,7 @@ def judgement(stub, share: float = 1.0, times: float = 10.0, *, plain: float = 1
     return stub(
         left=lambda effects: (share, times, "run 2"),
         judges=set(errors),
+        unstable=frozenset(),
         mismatch=lambda effects, among=None: sum(errors[name] if effects else plain for name in among or errors),
     )
 
@@ -87,6 +88,13 @@ def test_what_longer_windows_find_has_to_explain_most_where_it_had_no_part_in_ch
     # Run 2, which was taken to choose with, does not judge.
     assert not explains_free_runs(before, judgement(stub, run_3=1.1), SETTINGS)
     assert explains_free_runs(before, judgement(stub, run_3=0.9), SETTINGS)
+
+
+def test_experiments_that_no_free_run_follows_count_for_neither(stub) -> None:
+    before, after = judgement(stub, run_2=10.0, run_3=500.0), judgement(stub, run_2=5.0, run_3=1.0)
+    assert explains_free_runs(before, after, SETTINGS)
+    after.unstable = frozenset({"run_3"})
+    assert not explains_free_runs(before, after, SETTINGS)
 
 
 def test_what_the_model_explains_by_itself_with_one_more_experiment_is_not_the_effects_doing(stub) -> None:

@@ -54,8 +54,8 @@ def test_what_has_no_richer_form_or_leaves_noise_alone_stays_as_it_is(motor_data
         assert result_of(with_richer_form(search.study, before)) is before
 
 
-@pytest.mark.parametrize(("left", "taken"), [(1.05, True), (9.0, False)])
-def test_what_it_takes_up_is_asked_where_the_law_leaves_most(motor_data, motor, begun, left, taken) -> None:
+@pytest.mark.parametrize(("plain", "left", "taken"), [(20.0, 1.05, True), (20.0, 9.0, False), (1.5, 0.9, False)])
+def test_what_it_takes_up_is_asked_where_the_law_leaves_most(motor_data, motor, begun, plain, left, taken) -> None:
     """Seen: cogging of two orders along a rail; over all but the longest windows one order left little more than an encoder's steps."""
     search = begun(motor_data(torque=lambda q, v: 0.06 * np.sin(2.5 * q)), motor)
     ripple = attach(motor, "rotor", TorqueRipple(2.5))
@@ -66,7 +66,7 @@ def test_what_it_takes_up_is_asked_where_the_law_leaves_most(motor_data, motor, 
         fits = [replace(f, mean_square=t * n) for f, t, n in zip(fitted.fits, times, floors, strict=True)]
         return replace(fitted, fits=tuple(fits))
 
-    before, after = leaving(1.0, 1.1, 20.0), leaving(1.0, 1.05, left)
+    before, after = leaving(1.0, 1.1, plain), leaving(1.0, 1.05, left)
     ranked = replace(judged(Candidate(ripple, (), 0.5), before, after, settings), significance=5.0)
     assert ranked.gain < -np.log1p(-settings.least_of_richer_form)
     assert _pays(search.study, before, ranked) is taken
