@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
-from typing import Any, cast
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -42,8 +43,9 @@ def selection(state: SearchState, dataset: Any, study: Any, others: Any) -> Sele
 
 
 def judged(selection: Selection, clock: Any) -> Findings:
-    """Everything is borne out."""
-    return Findings(**{f.name: getattr(selection, f.name) for f in fields(Selection)}, judged=cast(Any, clock))
+    """Everything is borne out, whatever the clock."""
+    runs: Any = SimpleNamespace(unstable=frozenset())
+    return Findings(**{f.name: getattr(selection, f.name) for f in fields(Selection)}, judged=runs)
 
 
 @pytest.fixture
@@ -133,7 +135,7 @@ def test_what_free_runs_take_back_is_selected_once_more_with_that_known(monkeypa
     steps: dict[str, Any] = {
         "promote_validation": lambda study, dataset, state, others: more if state is plain else None,
         "find": lambda *args, **named: again,
-        "replaces": lambda others, before, after: before is plain,
+        "replaces": lambda others, before, after, settles: before is plain,
         "judge": judge,
     }
     for name, step in steps.items():
@@ -152,3 +154,33 @@ def test_one_more_search_begins_from_all_that_was_found_before(monkeypatch, stub
     monkeypatch.setattr(further_searches, "find", find)
     find_with_more(replace(first, searched=searched), stub(), stub(), stub())
     assert told == [searched]
+
+
+@pytest.mark.parametrize("limited", [False, True])
+@pytest.mark.parametrize("replaced", [True, False])
+def test_what_no_free_run_follows_is_chosen_with(monkeypatch, stub, first, more, replaced, limited) -> None:
+    """Once; what is found with it takes the place of what was found before where it predicts the others no worse."""
+    found = replace(first, state=SearchState(stub(effects=()), stub(effects=(stub(),))))
+    again = replace(found, state=SearchState(stub(effects=()), stub(effects=(stub(),))), dataset=more.dataset)
+    asked: list[Any] = []
+
+    def judge(selection: Selection, clock: Any) -> Findings:
+        runs: Any = stub(unstable=frozenset({"run 2"}) if selection.state is found.state else frozenset())
+        return replace(judged(selection, clock), judged=runs)
+
+    def search(*args: Any, **named: Any) -> Selection:
+        asked.append(args)
+        return again
+
+    steps: dict[str, Any] = {
+        "promote_validation": lambda *args: None,
+        "promote_unstable": lambda dataset, unstable: more if unstable else None,
+        "find": search,
+        "replaces": lambda others, before, after, settles: replaced and settles,
+        "judge": judge,
+    }
+    for name, step in steps.items():
+        monkeypatch.setattr(further_searches, name, step)
+    best = find_with_more(found, stub(), stub(), stub(), Deadline.after(60.0) if limited else Deadline())
+    assert best.state is (again if replaced else found).state
+    assert len(asked) == 1

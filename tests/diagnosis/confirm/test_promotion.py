@@ -8,7 +8,7 @@ import pytest
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm import promotion
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
-from greybox_torch.diagnosis.confirm.promotion import promote_validation, replaces, serves
+from greybox_torch.diagnosis.confirm.promotion import promote_unstable, promote_validation, replaces, serves
 from greybox_torch.diagnosis.pipeline import diagnose
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import attach
@@ -61,7 +61,8 @@ def test_the_experiment_that_shows_most_is_taken(drag_at_speed, motor, begun) ->
     data = drag_at_speed((SLOW, 1.0, FAST))
     search = begun(data, motor)
     more = promote_validation(search.study, data, search.state, HeldOut(data, search.study))
-    assert more is not None and more.taken == data.recordings[2].name and more.error > 1.5
+    assert more is not None and more.taken == data.recordings[2].name
+    assert float(more.why.split("leaves ")[1].split(" times")[0]) > 1.5
     assert [r.role for r in more.dataset.recordings] == ["estimation", "validation", "estimation"]
 
 
@@ -117,3 +118,28 @@ def test_the_noise_of_other_experiments_is_the_unit_of_their_errors(drag_at_spee
     search = begun(data, motor)
     errors = HeldOut(data, search.study).times_noise(search.current)
     assert errors == pytest.approx([1.0, 1.0], abs=0.1)
+
+
+def test_an_experiment_that_no_free_run_follows_is_taken_as_long_as_another_judges(drag_at_speed) -> None:
+    data = drag_at_speed()
+    last, before = data.recordings[2].name, data.recordings[1].name
+    more = promote_unstable(data, {last})
+    assert more is not None and [r.role for r in more.dataset.recordings] == ["estimation", "validation", "estimation"]
+    assert more.sentence() == (
+        f"{last} was taken to choose with as well, as no free run of the model found before follows it: it no longer counts as validation."
+    )
+    assert promote_unstable(more.dataset, {before}) is None
+    assert promote_unstable(data, set()) is None
+
+
+@pytest.mark.parametrize(
+    ("share", "settles", "takes"), [(-0.01, True, True), (-0.3, True, False), (-0.01, False, False)]
+)
+def test_the_same_effects_estimated_from_what_cannot_score_as_well_are_preferred(
+    monkeypatch, stub, share, settles, takes
+) -> None:
+    before, after = (stub(current=c, effects=("curve",), prefixes={"curve"}) for c in ("before", "after"))
+    others = stub(fits=lambda hypothesis: hypothesis, study=stub(settings=DiagnosisSettings()))
+    sign = {("before", "after"): 1.0, ("after", "before"): -1.0}
+    monkeypatch.setattr(promotion, "gain", lambda old, new: Gain(share * sign[old, new], 0.01))
+    assert replaces(others, before, after, settles) is takes

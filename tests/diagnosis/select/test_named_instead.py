@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from greybox_torch.diagnosis.select import forward
-from greybox_torch.diagnosis.select.forward import _in_pieces, _without_curves
+from greybox_torch.diagnosis.select.forward import _first_name, _in_pieces, _without_curves
+from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import result_of
 
@@ -46,3 +47,19 @@ def test_others_are_looked_for_beside_a_name_that_brings_a_part_of_what_the_curv
     study = stub(settings=DiagnosisSettings())
     assert result_of(_without_curves(study, stub(), with_curve)) is branch  # type: ignore[arg-type]
     assert bool(joined) is followed
+
+
+def test_of_names_that_are_pieces_of_a_curve_the_first_is_asked_where_the_curve_does_not_hold(stub) -> None:
+    """Seen: a pendulum's dry friction, which held-out recordings bear out and which was lost beside a warm-up and a ripple."""
+    dry, none, two = (stub(effects=effects) for effects in (("dry",), (), ("dry", "warmup")))
+    started, first, second, nothing = (
+        stub(taken=None),
+        stub(taken=stub(fitted=dry)),
+        stub(taken=stub(fitted=two)),
+        stub(taken=None),
+    )
+    start = SearchState(none, none, steps=(started,))
+    found = _first_name(start, SearchState(none, two, steps=(started, first, second)))
+    assert found is not None and found.current is dry and found.steps == (started, first)
+    assert _first_name(start, SearchState(none, none, steps=(started, nothing))) is None
+    assert _first_name(start, start) is None
