@@ -29,7 +29,7 @@ def worse_than_refit(fit: Rows, unstable: Collection[str] = ()) -> bool:
     spreads = _spreads(fit)
     ratios = []
     for row in fit:
-        if row["role"] == "validation" and row["experiment"] not in unstable:
+        if row["role"] == "validation" and row.get("experiment") not in unstable:
             before, after = (_finite(row[stage]["rmse"]) for stage in ("refit", "augmented"))
             if before is None:
                 continue
@@ -60,7 +60,7 @@ def _of_the_whole(verdict: Mapping[str, Any]) -> Iterator[str]:
         yield "effects are named, and nothing is said to be missing"
     if verdict["effects"] and worse_than_refit(verdict["fit"], verdict.get("unstable", ())):
         yield "the recommended model simulates the validation experiments worse than the re-estimated one"
-    judging = {row["experiment"] for row in verdict["fit"] if row["role"] == "validation"}
+    judging = {row.get("experiment") for row in verdict["fit"] if row["role"] == "validation"}
     if 2 * len(set(verdict.get("unstable", ()))) > len(judging):
         yield "more than half of the validation experiments do not count"
     if not verdict["effects"] and any(_differ(row) for row in verdict["fit"]):
