@@ -165,6 +165,7 @@ def _as_found(
     chosen_by = times_noise(study.problem, state.plain, study.settings)
     tried = found.complete and not explained
     unexplained = left if is_missing(left, chosen_by, detected, tried, study.settings) else None
+    unstable = judged.unstable if effects else frozenset[str]()
     looked = not study.beliefs.exclude_all(model)
     verdict = Verdict(
         dataset=dataset.name,
@@ -179,7 +180,7 @@ def _as_found(
         evidence=(
             *sentences(found.dataset, study, state, effects, found.gains, detected, not found.complete),
             *(judged.augmented.sentences() if effects else ()),
-            *(no_free_run_follows(judged.unstable, study.settings) if effects else ()),
+            *no_free_run_follows(unstable, study.settings),
             *((A_DISTURBANCE,) if left is not None and unexplained is None else ()),
             *found.more,
         ),
@@ -192,7 +193,7 @@ def _as_found(
         unexplained=unexplained,
         refinements=refinements,
         left=what_is_left(judged, detected, bool(effects)),
-        unstable=judged.unstable if effects else frozenset(),
+        unstable=unstable,
         settings=study.settings,
         budget=study.budget,
         beliefs=study.beliefs,

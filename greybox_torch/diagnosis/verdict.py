@@ -162,11 +162,15 @@ class Verdict:
         start = "The mismatch is" if all(e.one_of is None for e in self.effects) else "The mismatch:"
         return f"{start} {found}{self._gain()}."
 
+    def counted(self, model: str) -> tuple[Score, ...]:
+        """The scores of a model ("start", "refit", "augmented") but for those on experiments that do not count (``unstable``)."""
+        return tuple(s for s in self.scores[model] if s.experiment not in self.unstable)
+
     def _gain(self) -> str:
         pairs = [
             (before.fit, after.fit)
-            for before, after in zip(self.scores["refit"], self.scores["augmented"], strict=True)
-            if before.role == "validation" and before.experiment not in self.unstable
+            for before, after in zip(self.counted("refit"), self.counted("augmented"), strict=True)
+            if before.role == "validation"
         ]
         if not pairs:
             return ""

@@ -22,10 +22,7 @@ def row_of_verdict(verdict: Verdict, parameters: Mapping[str, Mapping[str, Any]]
     """
     leading = max(verdict.effects, key=lambda e: e.size if math.isfinite(e.size) else -1.0, default=None)
     told = {} if leading is None else _leading(leading)
-    before, after = (
-        _mean_fit([s for s in verdict.scores[name] if s.experiment not in verdict.unstable])
-        for name in ("refit", "augmented" if leading else "refit")
-    )
+    before, after = (_mean_fit(verdict.counted(name)) for name in ("refit", "augmented" if leading else "refit"))
     return Row(
         dataset=row.dataset,
         card=row.card,

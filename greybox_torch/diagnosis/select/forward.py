@@ -75,9 +75,9 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     if _as_far(study, with_curve, branch):
         return branch
     standing = _first_name(start, branch) if _in_pieces(study, with_curve, branch) else branch
-    stands = standing is not None and len(standing.effects) > len(done.parent.effects)
-    found = replace(standing, named=None) if standing is not None and stands else with_curve.named
-    return replace(with_curve, plain=branch.plain, named=found)
+    if standing is None or len(standing.effects) <= len(done.parent.effects):
+        return replace(with_curve, plain=branch.plain)
+    return replace(with_curve, plain=branch.plain, named=replace(standing, named=None))
 
 
 def _first_name(start: SearchState, branch: SearchState) -> SearchState | None:

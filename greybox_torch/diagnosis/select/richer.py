@@ -17,6 +17,7 @@ from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.flexed import widened
+from greybox_torch.diagnosis.select.remaining import completes
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import Stage
@@ -77,8 +78,8 @@ def _left_where_it_shows(before: Hypothesis, after: Hypothesis, settings: Diagno
 
     All of it where the plain one leaves hardly more than noise.
     """
+    if completes(before, settings):
+        return 1.0
     plain, form = max(zip(before.fits, after.fits, strict=True), key=lambda pair: pair[0].mean_square)
     floor = noise_floor(plain.problem, settings)
-    if plain.mean_square < settings.above_noise**2 * floor:
-        return 1.0
     return max(form.mean_square - floor, 0.0) / (plain.mean_square - floor)

@@ -47,8 +47,7 @@ class Headline:
 
 def held_out(verdict: Verdict, model: str, output: str | None = None) -> list[Score]:
     """The scores that a model reached on the validation experiments that count, where there are any; on all otherwise."""
-    counting = [s for s in verdict.scores[model] if s.experiment not in verdict.unstable]
-    return held_out_scores([s for s in counting if output is None or s.output == output])
+    return held_out_scores([s for s in verdict.counted(model) if output is None or s.output == output])
 
 
 def units(verdict: Verdict) -> dict[str, str]:
