@@ -106,7 +106,7 @@ def _switchable(model: GreyBoxModel) -> tuple[GreyBoxModel, set[str]]:
     plain, attachments, surroundings = attached(model)
     if not attachments:
         return model, set()
-    made = AugmentedModel(plain, attachments, surroundings, probed=attachments)
+    made = AugmentedModel(plain, attachments, surroundings, switched=attachments)
     return made, {f"{a.prefix}.{SHARE}" for a in attachments}
 
 

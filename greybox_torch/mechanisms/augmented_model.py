@@ -15,6 +15,7 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.delayed_input import after, delayed
 from greybox_torch.mechanisms.local_signals import LocalSignals
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
+from greybox_torch.mechanisms.signal_paths import SignalPaths
 from greybox_torch.mechanisms.start_positions import position_trials
 from greybox_torch.model import GreyBoxModel, Signals
 from greybox_torch.model.ports import Actuator, Sensor, value_of
@@ -28,7 +29,8 @@ class AugmentedModel(GreyBoxModel):
 
     Args:
         surroundings: by port, what the mechanisms may know of it.
-        probed: attachments that get a factor ``share`` on the whole of their effect, for the screen.
+        probed: attachments that get a factor ``share`` on the whole of their effect, for the screen: looks, which leave one another alone.
+        switched: attachments that get the same factor to be turned on and off.
         start: parameter values that replace the declared ones.
 
     Raises:
@@ -42,12 +44,15 @@ class AugmentedModel(GreyBoxModel):
         surroundings: Mapping[str, Surroundings],
         *,
         probed: Sequence[Attachment] = (),
+        switched: Sequence[Attachment] = (),
         start: Mapping[str, float] | None = None,
     ) -> None:
         self.attachments = tuple(attachments)
         self.surroundings = dict(surroundings)
         self.probed = frozenset(a.prefix for a in probed)
+        self.shared = self.probed | {a.prefix for a in switched}
         self.local = LocalSignals(base, self.attachments, self.surroundings)
+        self.paths = SignalPaths(self.local, self.probed, self._share)
         for attachment in attachments:
             if attachment.port not in self.local.ports:
                 raise UserError(
@@ -58,7 +63,7 @@ class AugmentedModel(GreyBoxModel):
         self.inputs = [*base.inputs, *added_inputs(self.attachments)]
         self.outputs = list(base.outputs)
         self.ports = list(base.ports)
-        added = added_parameters(self.attachments, self.surroundings, self.probed)
+        added = added_parameters(self.attachments, self.surroundings, self.shared)
         self.declared_parameters = tuple(started_at(p, start or {}) for p in (*base.declared_parameters, *added))
         super().__init__()
         self.base = base
@@ -72,12 +77,14 @@ class AugmentedModel(GreyBoxModel):
 
     def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
         seen = self._seen_states(x, u, p)
-        acting = self._acting_inputs(x, u, p)
-        forces = self._forces(seen, u, acting, p, port)
+        acting, reaching = self.paths.inputs(x, u, p)
+        forces = self._forces(seen, reaching, acting, p, port)
         extra: dict[str, Any] = {}
+        shown = self.paths.outputs(self.base.outputs_with(seen, acting, p, forces), x, p)[1]
         for a in (a for a in self.attachments if a.mechanism.states(self.surroundings[a.port])):
-            given = self._given(a, seen, u if isinstance(self.local.ports[a.port], Actuator) else acting, p, forces)
-            for name, rate in a.mechanism.rates(*given).items():
+            local, own, memory = self._given(a, seen, reaching.get(a.prefix, acting), p, forces)
+            local = local.replaced(output=shown[a.prefix]) if a.prefix in shown else local
+            for name, rate in a.mechanism.rates(local, own, memory).items():
                 extra[f"{a.prefix}.{name}"] = rate
         rates = dict(self.base.derivative(seen, acting, p, forces))
         for name in self.local.integrated_bodies():
@@ -87,43 +94,33 @@ class AugmentedModel(GreyBoxModel):
         return {**rates, **extra}
 
     def output(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
-        true = self._true_outputs(x, u, p, port)
-        values = dict(true)
-        for a in self.attachments:
-            site = self.local.ports[a.port]
-            if isinstance(site, Sensor):
-                local = Signals(
-                    "signal", {"output": true[site.output], **self.local.sampling(a.port), **self.local.clock(x)}
-                )
-                own, memory = self.local.parameters(a, p), self.local.memory(a, x)
-                values[site.output] = values[site.output] + self._share(a, p) * a.mechanism.force(local, own, memory)
-        return values
+        return self.paths.outputs(self._true_outputs(x, u, p, port), x, p)[0]
 
     def _true_outputs(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
         """The outputs before what sensors add; where they are forces, with those that act at the ports."""
-        acting = self._acting_inputs(x, u, p)
+        acting, reaching = self.paths.inputs(x, u, p)
         if not self.base.shows_forces:
             return dict(self.base.output(x, acting, p))
-        forces = self._forces(self._seen_states(x, u, p), u, acting, p, port)
+        forces = self._forces(self._seen_states(x, u, p), reaching, acting, p, port)
         return dict(self.base.outputs_with(x, acting, p, forces))
 
-    def _shown_forces(self, seen: Any, u: Any, acting: Any, p: Any, port: Any) -> Signals | None:
+    def _shown_forces(self, seen: Any, reaching: Any, acting: Any, p: Any, port: Any) -> Signals | None:
         """:meth:`_forces` where an output shows them; else no law asks for them, and evaluating every law would take long."""
-        return self._forces(seen, u, acting, p, port) if self.base.shows_forces else None
+        return self._forces(seen, reaching, acting, p, port) if self.base.shows_forces else None
 
-    def _forces(self, seen: Any, u: Any, acting: Any, p: Any, port: Any) -> Signals:
+    def _forces(self, seen: Any, reaching: Any, acting: Any, p: Any, port: Any) -> Signals:
         """The forces at the ports: ``port``, and what the attached laws add to them.
 
         Args:
             seen: the states with the deflections changed by kinematic laws.
-            acting: the inputs as actuators pass them on; ``u`` as they are recorded.
+            acting: the inputs as actuators pass them on; ``reaching`` as they reach each law at an actuator, by prefix.
         """
         forces = dict(port)
         for a in self.attachments:
             site = self.local.ports[a.port]
             if isinstance(site, Sensor):
                 continue  # it shows forces, and adds none
-            local, own, memory = self._given(a, seen, u if isinstance(site, Actuator) else acting, p)
+            local, own, memory = self._given(a, seen, reaching.get(a.prefix, acting), p)
             if not a.mechanism.kinematic and not isinstance(site, Actuator):
                 forces[a.port] = forces[a.port] + self._share(a, p) * a.mechanism.force(local, own, memory)
             for place, force in (*_kinematic_forces(a, local, own), *a.mechanism.elsewhere(local, own, memory).items()):
@@ -160,11 +157,22 @@ class AugmentedModel(GreyBoxModel):
         own = len(self.base.states), len(self.base.declared_parameters)
         result = states.copy()
         result[:, : own[0]] = self.base.begun(states[:, : own[0]], records, samples, values[: own[1]])
-        forces = self._shown_forces(x, u, u, p, self.local.no_forces())
-        for a in self.attachments:
-            for name, value in a.mechanism.starts(self.local.at(a, x, u, p, forces)).items():
+        forces = self._shown_forces(x, {}, u, p, self.local.no_forces())
+        for a in (a for a in self.attachments if a.mechanism.states(self.surroundings[a.port])):
+            begun = a.mechanism.starts(self._reached(a, x, u, p, forces))
+            x = x.replaced(**{f"{a.prefix}.{name}": torch.as_tensor(value) for name, value in begun.items()})
+            for name, value in begun.items():
                 result[:, names.index(f"{a.prefix}.{name}")] = np.asarray(value)
         return result
+
+    def _reached(self, a: Attachment, x: Signals, u: Signals, p: Signals, forces: Signals | None) -> Signals:
+        """The signals at the port of a law, with what the laws before it at an actuator or a sensor pass on."""
+        acting, reaching = self.paths.inputs(x, u, p)
+        local = self.local.at(a, x, reaching.get(a.prefix, u), p, forces)
+        if not isinstance(self.local.ports[a.port], Sensor):
+            return local
+        true = self.base.outputs_with(x, acting, p, forces or self.local.no_forces())
+        return local.replaced(output=self.paths.outputs(true, x, p)[1][a.prefix])
 
     def carried_states(self) -> tuple[str, ...]:
         """Positions, time and lasting memories: free in every window, they would explain anything."""
@@ -194,8 +202,9 @@ class AugmentedModel(GreyBoxModel):
     def local_signals(self, attachment: Attachment, x: Any, u: Any, p: Any) -> Signals:
         """The signals that an attached mechanism sees."""
         seen = self._seen_states(x, u, p)
-        forces = self._shown_forces(seen, u, self._acting_inputs(x, u, p), p, self.local.no_forces())
-        return self.local.at(attachment, seen, u, p, forces)
+        acting, reaching = self.paths.inputs(x, u, p)
+        forces = self._shown_forces(seen, reaching, acting, p, self.local.no_forces())
+        return self._reached(attachment, seen, u, p, forces)
 
     def _seen_states(self, x: Signals, u: Any, p: Any) -> Signals:
         """States with the deflections changed by kinematic mechanisms."""
@@ -207,18 +216,6 @@ class AugmentedModel(GreyBoxModel):
                 x = x.replaced(**{name: x[name] + change if a.shifted_state[0] == "+" else x[name] - change})
         return x
 
-    def _acting_inputs(self, x: Signals, u: Signals, p: Signals) -> Signals:
-        acting = u
-        for a in self.attachments:
-            site = self.local.ports[a.port]
-            if isinstance(site, Actuator):
-                local, own, memory = self._given(a, x, u, p)
-                share = self._share(a, p)
-                changes = {site.input: a.mechanism.force(local, own, memory)}
-                changes |= a.mechanism.other_inputs(local, own, memory)
-                acting = acting.replaced(**{name: acting[name] + share * change for name, change in changes.items()})
-        return acting
-
     def _given(
         self, a: Attachment, x: Signals, u: Signals, p: Signals, forces: Signals | None = None
     ) -> tuple[Signals, Signals, Signals]:
@@ -226,7 +223,7 @@ class AugmentedModel(GreyBoxModel):
         return self.local.at(a, x, u, p, forces), self.local.parameters(a, p), self.local.memory(a, x)
 
     def _share(self, a: Attachment, p: Signals) -> Any:
-        return p[f"{a.prefix}.{SHARE}"] if a.prefix in self.probed else 1.0
+        return p[f"{a.prefix}.{SHARE}"] if a.prefix in self.shared else 1.0
 
 
 def _kinematic_forces(a: Attachment, local: Signals, own: Signals) -> list[tuple[str, Any]]:

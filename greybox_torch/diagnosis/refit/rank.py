@@ -13,6 +13,7 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, augmented, score_
 from greybox_torch.diagnosis.hypothesis.significance import white_samples, window_significance
 from greybox_torch.diagnosis.refit.curve import laws_on_curve
 from greybox_torch.diagnosis.refit.finalists import finalists, leading_and_rest
+from greybox_torch.diagnosis.refit.order import in_both_orders, joined
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.refit.twins import from_twin
 from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of
@@ -74,6 +75,7 @@ def rank(
     """
     budget = study.budget
     study.journal.offer(candidate.attachment.named for candidate in found)
+    found = in_both_orders(study, current.effects, found)
     frozen = frozenset(
         p.name for p in current.model.declared_parameters if p.shrunk
     )  # heights of a curve: many, and good already
@@ -89,7 +91,7 @@ def rank(
     ) -> Hypothesis | None:
         study.working_on(f"refitting {candidate.attachment.prefix}")
         study.journal.begin(candidate.attachment.named)
-        effects = (*current.effects, candidate.attachment)
+        effects = joined(current.effects, candidate)
         starts = starts or candidate.first_starts(budget.trial_starts)
         return refit(effects, starts, at=[length], limits=budget.trial_iterations, simulator=simulator)
 
@@ -196,7 +198,7 @@ def _laws_behind_curve(
 
     def tried(candidate: Candidate) -> RankedCandidate | None:
         study.working_on(f"refitting {candidate.attachment.prefix} from the curve")
-        effects = (*current.effects, candidate.attachment)
+        effects = joined(current.effects, candidate)
         limits, shorter = study.budget.window_iterations, best.fitted.fits[0]
         fitted = fit(study, effects, candidate.starts, shorter, limits=limits, frozen=frozen)
         return None if fitted is None else judged(candidate, current, fitted, study.settings)
@@ -205,14 +207,15 @@ def _laws_behind_curve(
     allowed = [
         law for law in laws if not study.beliefs.exclude(law.attachment) and identity_of(law.attachment) not in there
     ]
-    return [r for r in side_by_side(partial(tried, law) for law in allowed) if r is not None]
+    tries = in_both_orders(study, current.effects, allowed)
+    return [r for r in side_by_side(partial(tried, law) for law in tries) if r is not None]
 
 
 def _compiled(study: Study, current: Hypothesis, found: Sequence[Candidate], frozen: frozenset[str]) -> list[Simulator]:
     """Simulators of the whole shortlist, compiled side by side."""
 
     def build(candidate: Candidate) -> Simulator:
-        model = augmented(study.problem, (*current.effects, candidate.attachment), study.surroundings)
+        model = augmented(study.problem, joined(current.effects, candidate), study.surroundings)
         free = without_free(problem_for(study.problem, model, {}), frozen).free_names
         return current.simulator.for_model(model, free)
 

@@ -29,6 +29,8 @@ class Candidate:
     """Values that a search with fewer experiments came to, which come before all others."""
     absent: Mapping[str, float] = field(default_factory=dict)
     """Its parameters with no size: the model without it. Empty for a law that has no amplitude."""
+    ahead: bool = False
+    """Whether it is to stand before the other laws at its actuator rather than behind them."""
 
     def first_starts(self, count: int) -> tuple[dict[str, float], ...]:
         """The first ``count`` of the screen's start values, those of the measured motion, and before them what was found before."""

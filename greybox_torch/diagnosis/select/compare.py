@@ -39,15 +39,16 @@ def compare(
     front = _front(study, ranked)
     polish = side_by_side(partial(_polished, study, r.fitted, restarts(study, screened, r)) for r in front)
     best = min(polish, key=lambda fitted: fitted.score)
-    polish = side_by_side(partial(_from_there, study, fitted, best, parent.problem.names) for fitted in polish)
+    pairs = zip(front, polish, strict=True)
+    polish = side_by_side(partial(_from_there, study, r, fitted, best, parent.problem.names) for r, fitted in pairs)
     best = min(polish, key=lambda fitted: fitted.score)
     again = _polished(study, parent, [best.values(), {**best.values(), **study.card}])
     parent = again if again.score < parent.score else parent
     rest = [r for r in ranked if all(r is not one for one in front)]
     fitted = [*polish, *(r.fitted for r in rest)]
-    pairs = zip([*front, *rest], fitted, strict=True)
+    both = zip([*front, *rest], fitted, strict=True)
     return Comparison(
-        parent, tuple(in_order([judged(r.candidate, parent, one, study.settings) for r, one in pairs], study.settings))
+        parent, tuple(in_order([judged(r.candidate, parent, one, study.settings) for r, one in both], study.settings))
     )
 
 
@@ -59,9 +60,11 @@ def _front(study: Study, ranked: Sequence[RankedCandidate]) -> list[RankedCandid
     return close[: max(study.budget.front_runners, min(tied, study.budget.most_tied))]
 
 
-def _from_there(study: Study, fitted: Hypothesis, best: Hypothesis, names: Sequence[str]) -> Hypothesis:
+def _from_there(
+    study: Study, ranked: RankedCandidate, fitted: Hypothesis, best: Hypothesis, names: Sequence[str]
+) -> Hypothesis:
     """A front runner polished from where the best one has the parameters ``names``; a curve as it is, whose refits are the slowest."""
-    if fitted is best or fitted.effects[-1].mechanism.free:
+    if fitted is best or ranked.unknown:
         return fitted
     values = best.values()
     return _polished(study, fitted, [{**fitted.values(), **{n: values[n] for n in names}}])
