@@ -48,7 +48,7 @@ class Journal:
     def pointed_at(self, effect: Named, share: float) -> None:
         """What the screen puts first, with the share of the residual that it explains there; nothing where more is known already."""
         if self._now.explained is None:
-            self._tell(leading=f"perhaps {_listed([effect])}: {100 * share:.2g} % in the screen", effects=(effect,))
+            self._tell(leading=f"perhaps {_listed([effect])}: {100 * share:.3g} % in the screen", effects=(effect,))
 
     def offer(self, candidates: Iterable[Named]) -> None:
         """Candidates that are to be refitted now."""

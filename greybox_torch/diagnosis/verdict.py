@@ -13,6 +13,7 @@ from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
 from greybox_torch.estimate.comparison import Score, fit_rows
+from greybox_torch.estimate.metrics import digits_between
 
 SCHEMA = "greybox-verdict/2"
 
@@ -177,7 +178,8 @@ class Verdict:
         before, after = (float(np.mean(side)) for side in zip(*pairs, strict=True))
         them = "it" if len(self.effects) == 1 else "them"
         but = f" (without {', '.join(sorted(self.unstable))}, which no free run follows)" if self.unstable else ""
-        return f"; with {them} the validation fit goes from {before:.1f} % to {after:.1f} %{but}"
+        digits = digits_between(before, after)
+        return f"; with {them} the validation fit goes from {before:.{digits}f} % to {after:.{digits}f} %{but}"
 
     def as_json(self) -> dict[str, Any]:
         """The dictionary of `verdict.json` (contract sections 4 and 8).

@@ -25,3 +25,8 @@ def root_mean_square(measured: np.ndarray, simulated: np.ndarray) -> float:
     known = ~np.isnan(measured)
     error = measured[known] - simulated[known]
     return float(np.sqrt(np.mean(error**2))) if np.isfinite(error).all() else float("inf")
+
+
+def digits_between(before: float, after: float, most: int = 4) -> int:
+    """Decimals, one at the least, that show how two fits in % differ where both are near 100; ``most`` where even these do not."""
+    return next((n for n in range(1, most) if f"{before:.{n}f}" != f"{after:.{n}f}"), most if before != after else 1)

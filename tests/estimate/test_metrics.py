@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greybox_torch.estimate.metrics import fit_percent, root_mean_square
+from greybox_torch.estimate.metrics import digits_between, fit_percent, root_mean_square
 
 NAN, INF = float("nan"), float("inf")
 
@@ -25,3 +25,21 @@ def test_figures(measured: list[float], simulated: list[float], fit: float, rms:
     y, s = np.array(measured), np.array(simulated)
     assert fit_percent(y, s) == pytest.approx(fit)
     assert root_mean_square(y, s) == pytest.approx(rms)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "digits"),
+    [
+        (73.5, 98.7, 1),
+        (99.94, 99.991, 1),
+        (99.96, 99.99, 2),
+        (99.9621, 99.9623, 4),
+        (99.0, 99.0, 1),
+        (100 - 1e-9, 100.0, 4),
+    ],
+)
+def test_two_fits_are_told_with_the_decimals_that_show_how_they_differ(
+    before: float, after: float, digits: int
+) -> None:
+    """Seen: "the validation fit goes from 100.0 % to 100.0 %"."""
+    assert digits_between(before, after) == digits

@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
+from greybox_torch.model.ports import Actuator, driving_body
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,10 @@ def shortlist(study: Study, screened: Sequence[Sequence[ScreenScore]], fits: Seq
 
     def first_few(best: list[ScreenScore]) -> list[ScreenScore]:
         named = _with_ties(study, [b for b in best if not b.attachment.mechanism.free])
-        return named + [b for b in best if b.attachment.mechanism.free][: study.budget.curves_per_length]
+        return (
+            named
+            + _of_bodies(study, [b for b in best if b.attachment.mechanism.free])[: study.budget.curves_per_length]
+        )
 
     return _followed(study, screened, fits, first_few)
 
@@ -115,6 +119,23 @@ def _followed(
             else:
                 found[identity] = replace(before, starts=(*before.starts, *starts))
     return sorted(found.values(), key=lambda candidate: -candidate.explained)
+
+
+def _of_bodies(study: Study, curves: Sequence[ScreenScore]) -> list[ScreenScore]:
+    """Free curves without those of a drive over the speed of the body that it drives, where that body's own explains about as much.
+
+    There both are one force, and what depends on a body's speed is its friction, until something speaks for the drive.
+    """
+    driven = driving_body(study.problem.model.all_ports)
+    own = [c for c in curves if driven is not None and c.attachment.port == driven.name and _over_speed(c)]
+    least = max((c.explained for c in own), default=0.0)
+    drives = {p.name for p in study.problem.model.all_ports if isinstance(p, Actuator)}
+    shared = study.settings.screen_tie
+    return [c for c in curves if not (c.attachment.port in drives and _over_speed(c) and least > shared * c.explained)]
+
+
+def _over_speed(score: ScreenScore) -> bool:
+    return getattr(score.attachment.mechanism, "signal", "") == "speed"
 
 
 def _with_ties(study: Study, ranked: Sequence[ScreenScore]) -> list[ScreenScore]:

@@ -7,12 +7,13 @@ from functools import partial
 
 from greybox_torch.diagnosis.hypothesis.above_noise import only_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import negligible
+from greybox_torch.diagnosis.hypothesis.significance import window_significance
 from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.flexed import flexed
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
 from greybox_torch.diagnosis.select.memory import completed_by_memory
 from greybox_torch.diagnosis.select.remaining import completes
-from greybox_torch.diagnosis.select.richer import with_richer_form
+from greybox_torch.diagnosis.select.richer import richer_instead, with_richer_form
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage, only_if
 from greybox_torch.diagnosis.study import Study
@@ -35,7 +36,7 @@ def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> St
             state = yield from forward_step(study, state, curves=curves, fine=True)
         if not state.took_one:
             break
-        wider = flexed(study, before, state)
+        wider = flexed(study, before, state) or richer_instead(study, before, state)
         if wider is not None:
             state = wider
             yield state
@@ -104,11 +105,22 @@ def _gains(with_curve: SearchState, branch: SearchState) -> tuple[float, float]:
 
 
 def _in_pieces(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
-    """Whether so many named effects stand at the curve's port that each is a piece of it, and none is the machine's."""
-    done = with_curve.steps[-1]
-    port = None if done.taken is None else done.taken.candidate.attachment.port
-    added = [e for e in branch.effects if e not in done.parent.effects and e.port == port]
-    return len(added) > study.settings.most_names_for_curve
+    """Whether named effects at the curve's port are pieces of it, and none is the machine's.
+
+    So many of them; or two and more of the curve's own signal, which can draw any smooth curve between them, where the curve still takes
+    up what they leave, beyond chance.
+    """
+    done, settings = with_curve.steps[-1], study.settings
+    curve = None if done.taken is None else done.taken.candidate.attachment
+    if curve is None:
+        return False
+    added = [e for e in branch.effects if e not in done.parent.effects and e.port == curve.port]
+    if len(added) > settings.most_names_for_curve:
+        return True
+    alike = [e for e in added if getattr(curve.mechanism, "signal", None) in e.mechanism.needs]
+    if len(alike) < 2 or with_curve.current.score >= branch.current.score:
+        return False
+    return window_significance(branch.current, with_curve.current, settings) > settings.least_significance
 
 
 def _as_far(study: Study, with_curve: SearchState, branch: SearchState) -> bool:

@@ -16,6 +16,7 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
+from greybox_torch.diagnosis.select.choice import priced_score
 from greybox_torch.diagnosis.select.flexed import widened
 from greybox_torch.diagnosis.select.remaining import completes
 from greybox_torch.diagnosis.select.state import SearchState
@@ -39,6 +40,28 @@ def with_richer_form(study: Study, state: SearchState) -> Stage[SearchState]:
     state = widened(state, done, best, best.fitted)
     yield state
     return state
+
+
+def richer_instead(study: Study, before: SearchState, after: SearchState) -> SearchState | None:
+    """``before`` with a law at the port of the newest effect in a richer form, where that does as well as ``after`` with one more effect.
+
+    None where no such form does, or where ``after`` took nothing. A second harmonic is not seen beside all that a first one leaves while
+    other effects are missing; once they are found, some other law of the same port takes it up.
+    """
+    newest = after.steps[-1].taken
+    if newest is None:
+        return None
+    to_reach = priced_score(after.current, study.settings) + study.settings.score_tie
+    port = newest.candidate.attachment.port
+    for effect in (e for e in before.effects if e.port == port):
+        done = before.step_of(effect.prefix)
+        if done is None or done.taken is None:
+            continue
+        for law, start in _forms(effect, before):
+            found = _in_form(study, before, done.taken, law, start)
+            if found is not None and priced_score(found.fitted, study.settings) <= to_reach and sound(study, found):
+                return replace(widened(before, done, found, found.fitted), plain=after.plain)
+    return None
 
 
 def _forms(effect: Attachment, state: SearchState) -> Iterator[tuple[Attachment, dict[str, float]]]:

@@ -193,6 +193,12 @@ class SelectionSettings:
         unit=GAIN,
         chosen_by="cases simulated elsewhere: effects begin at 0.05",
     )
+    same_share: float = share(
+        1e-5,
+        "Share of the mismatch by which two laws have to differ for the one with more parameters to be preferred.",
+        unit="share of the mismatch",
+        chosen_by="a motor's gain told as gravity (an overwhelming effect: their difference is 2e-7 of it)",
+    )
     curve_margin: float = number(
         0.1, "How much better a free curve must be than every name to be preferred.", unit=LOG_ERROR
     )

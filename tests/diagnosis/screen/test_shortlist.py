@@ -29,8 +29,9 @@ def fit(stub):
 
 
 @pytest.fixture
-def found(dead_zone_search, fit, stub):
+def found(dead_zone_search, fit, stub, motor):
     study = stub(
+        problem=stub(model=motor),
         card={"J": 0.01, "b": 0.1},
         surroundings=dead_zone_search.surroundings,
         settings=DiagnosisSettings(),
@@ -107,3 +108,13 @@ def test_identity() -> None:
     assert same[0] == same[1] != same[2]
     assert identity_of(Attachment("a", Unknown("speed"))) != identity_of(Attachment("a", Unknown("position")))
     assert identity_of(Attachment("a", ConstantBias())) != identity_of(Attachment("b", ConstantBias()))
+
+
+@pytest.mark.parametrize(("own", "kept"), [(0.327, ("rotor",)), (0.15, ("actuator",)), (0.0, ("actuator",))])
+def test_a_curve_over_speed_is_the_bodys_where_that_explains_as_much_as_the_drives(found, own, kept) -> None:
+    """Seen: dry friction of a winch's drum, larger in one direction, told as something unknown at the drive (0.97)."""
+    looks = [score(Unknown("speed"), 0.330, 1.0, directions=("w_1",), port="actuator")]
+    looks += [score(Unknown("speed"), own, 1.0, directions=("w_1",))] if own else []
+    assert tuple(c.attachment.port for c in found(looks)[:1]) == kept
+    other = score(Unknown("input"), 0.330, 1.0, directions=("w_1",), port="actuator")
+    assert found([other, *looks[1:]])[0].attachment.port == "actuator"

@@ -17,11 +17,37 @@ from greybox_torch.diagnosis.stopping import result_of
 )
 def test_more_than_two_names_at_the_place_of_a_curve_are_pieces_of_it(stub, ports, pieces) -> None:
     """Seen: a slack spring, outside the library, told as gravity, a stop, a bias and a ripple at the pivot."""
-    before, added = stub(port="pivot"), [stub(port=port) for port in ports]
-    taken = stub(candidate=stub(attachment=stub(port="pivot")))
+    law = stub(needs=())
+    before, added = stub(port="pivot", mechanism=law), [stub(port=port, mechanism=law) for port in ports]
+    taken = stub(candidate=stub(attachment=stub(port="pivot", mechanism=stub(signal="deflection"))))
     with_curve = stub(steps=(stub(parent=stub(effects=(before,)), taken=taken),))
     branch = stub(effects=(before, *added))
     assert _in_pieces(stub(settings=DiagnosisSettings()), with_curve, branch) is pieces  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("signals", "further", "pieces"),
+    [
+        ((("level",), ("level",)), 5.0, True),
+        ((("level",), ("level",)), 2.0, False),
+        ((("level",), ()), 5.0, False),
+        ((("level",),), 5.0, False),
+    ],
+)
+def test_two_names_of_the_curves_own_signal_stand_only_where_the_curve_takes_up_no_more(
+    monkeypatch, stub, signals, further, pieces
+) -> None:
+    """Seen: the transpiration of plants, outside the library, told as a leak and a flow above a threshold (0.97 each)."""
+    monkeypatch.setattr(forward, "window_significance", lambda before, after, settings: further)
+    curve = stub(port="air", mechanism=stub(signal="level"))
+    taken = stub(candidate=stub(attachment=curve))
+    with_curve = stub(steps=(stub(parent=stub(effects=()), taken=taken),), current=stub(score=-2.2))
+    added = tuple(stub(port="air", mechanism=stub(needs=needs)) for needs in signals)
+    branch = stub(effects=added, current=stub(score=-2.1))
+    study = stub(settings=DiagnosisSettings())
+    assert _in_pieces(study, with_curve, branch) is pieces  # type: ignore[arg-type]
+    better = stub(effects=added, current=stub(score=-2.3))
+    assert _in_pieces(study, with_curve, better) is False  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("gain", "followed"), [(0.05, False), (0.2, True)])

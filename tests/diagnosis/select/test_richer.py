@@ -11,9 +11,10 @@ import pytest
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.refit.rank import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
-from greybox_torch.diagnosis.select.richer import _pays, with_richer_form
+from greybox_torch.diagnosis.select.richer import _pays, richer_instead, with_richer_form
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
+from greybox_torch.mechanisms.actuator import InputGain
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.friction import CoulombFriction
@@ -70,3 +71,35 @@ def test_what_it_takes_up_is_asked_where_the_law_leaves_most(motor_data, motor, 
     ranked = replace(judged(Candidate(ripple, (), 0.5), before, after, settings), significance=5.0)
     assert ranked.gain < -np.log1p(-settings.least_of_richer_form)
     assert _pays(search.study, before, ranked) is taken
+
+
+@pytest.mark.parametrize(("beyond", "instead"), [(-0.5, True), (0.01, True), (0.5, False)])
+def test_a_richer_form_is_asked_once_more_when_another_law_comes_to_its_port(
+    motor_data, motor, begun, beyond, instead
+) -> None:
+    """Seen: a second harmonic of cogging, too little to see beside a rubber coupling, told as friction that depends on position."""
+    search = begun(motor_data(torque=lambda q, v: 0.06 * np.sin(2.5 * q) + 0.03 * np.sin(5.0 * q)), motor)
+    ripple = attach(motor, "rotor", TorqueRipple(2.5))
+    before = found(search, ripple, {f"{ripple.prefix}.b": 0.06})
+    (effect,) = result_of(with_richer_form(search.study, before)).effects
+    reached = search.refitted((effect,), before.current, [before.current.values()]).score
+
+    def after(port: str) -> Any:
+        other = attach(motor, port, CoulombFriction() if port == "rotor" else InputGain())
+        factor = np.exp(reached - beyond - before.current.score)
+        fits = tuple(replace(f, mean_square=factor * f.mean_square) for f in before.current.fits)
+        fitted = replace(before.current, effects=(ripple, other), fits=fits)
+        step = SelectionStep(
+            (), before.current, (), judged(Candidate(other, (), 0.5), before.current, fitted, search.study.settings)
+        )
+        return replace(before.at(fitted), steps=(*before.steps, step))
+
+    state = richer_instead(search.study, before, after("rotor"))
+    assert (state is not None) is instead
+    if state is not None:
+        (law,) = state.effects
+        assert law.mechanism.options() == effect.mechanism.options() and law.mechanism.harmonics > 1
+        (step,) = state.steps
+        assert step.taken is not None and step.taken.candidate.attachment == law
+        assert state.current.score == pytest.approx(reached, abs=1e-3)
+    assert richer_instead(search.study, before, after("actuator")) is None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction, ViscousFriction
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Body
@@ -129,6 +131,34 @@ def test_the_simpler_law_is_meant_where_the_richer_one_removes_little_more_of_th
     assert simplest([crumb, simple], plain.fitted, DiagnosisSettings(least_size=0.02)) is simple
     assert simplest([crumb, simple], plain.fitted, DiagnosisSettings(least_size=0.001)) is crumb
     assert simplest([complete, simple], plain.fitted, DiagnosisSettings(least_size=0.02)) is complete
+
+
+@pytest.mark.parametrize(("differ", "first"), [(1e-7, "size"), (1e-3, "rich")])
+def test_of_laws_that_differ_by_next_to_nothing_the_one_with_fewer_parameters_is_meant(ranked, differ, first) -> None:
+    """Seen: a motor's gain told as gravity (0.78), which has one parameter more and an offset of 3e-4 of its amplitude to say with it."""
+    spread = np.random.default_rng(0).uniform(0.9, 1.1, WINDOWS)
+    plain, gain = ranked(ViscousFriction(), 1e3 * spread), ranked(ConstantBias(), (1.0 + 1e3 * differ) * spread)
+    gravity = ranked(StribeckFriction(), 1.0 * spread)
+    sized = [replace(r, fitted=replace(r.fitted, fits=with_free(r, n))) for r, n in ((gravity, 3), (gain, 1))]
+    assert [r.size for r in sized] == [3, 1]
+    told = simplest(sized, plain.fitted, DiagnosisSettings())
+    assert told is sized[1 if first == "size" else 0]
+
+
+def with_free(ranked: RankedCandidate, count: int) -> tuple[Any, ...]:
+    """The fits of a ranked hypothesis, as if its effect had so many free parameters."""
+    own = tuple(f"{ranked.candidate.attachment.prefix}.{k}" for k in range(count))
+    return tuple(replace(f, problem=Sized(f.problem, own)) for f in ranked.fitted.fits)
+
+
+class Sized:
+    """A problem with other names of free parameters."""
+
+    def __init__(self, problem: Any, free_names: tuple[str, ...]) -> None:
+        self.problem, self.free_names = problem, free_names
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.problem, name)
 
 
 @pytest.mark.parametrize("ranked", [LOUD], indirect=True)
