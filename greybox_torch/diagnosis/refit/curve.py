@@ -14,6 +14,7 @@ from greybox_torch.linear_algebra import least_squares
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.matching import force_column, kinematic_laws, matching_laws, worth_a_refit
+from greybox_torch.mechanisms.matching_pairs import matching_pair
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import GreyBoxModel, Signals
@@ -42,6 +43,25 @@ def laws_on_curve(
         values = {**base, **{f"{attachment.prefix}.{n}": v for n, v in match.values.items()}}
         found.append(Candidate(attachment, ({**values, **card}, values), match.share))
     return [*found, *_kinematic(model, curve, around, base, card)]
+
+
+def two_laws_on_curve(
+    model: GreyBoxModel, fitted: Hypothesis, curve: Attachment, surroundings: Mapping[str, Surroundings]
+) -> tuple[tuple[Attachment, Attachment], dict[str, float]] | None:
+    """The two named laws that draw the curve together, and all values with them in its place; None where no two come near it."""
+    unknown, around = curve.mechanism, surroundings[curve.port]
+    if not isinstance(unknown, Unknown) or unknown.factor:
+        return None
+    grid, target = _drawn(fitted, curve, around)
+    site = next(q for q in model.all_ports if q.name == curve.port)
+    there = {e.mechanism.name for e in fitted.effects if e.port == curve.port}
+    weight = _visited(around.ranges[unknown.signal].rms, grid.numpy())
+    match = matching_pair(site.kind, around, {unknown.signal: grid}, target, weight, there)
+    if match is None:
+        return None
+    first, second = (attach(model, curve.port, law) for law in match.laws)
+    own = [{f"{a.prefix}.{n}": v for n, v in k.items()} for a, k in zip((first, second), match.values, strict=True)]
+    return (first, second), _without(fitted, curve) | own[0] | own[1]
 
 
 def _kinematic(

@@ -15,6 +15,7 @@ from greybox_torch.diagnosis.select.memory import completed_by_memory
 from greybox_torch.diagnosis.select.remaining import completes
 from greybox_torch.diagnosis.select.richer import richer_instead, with_richer_form
 from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.select.two_laws import with_two_laws
 from greybox_torch.diagnosis.stopping import Stage, only_if
 from greybox_torch.diagnosis.study import Study
 
@@ -72,6 +73,10 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     """
     done = with_curve.steps[-1]
     start = replace(with_curve.at(done.parent), steps=before.steps)
+    two = with_two_laws(study, start, with_curve)
+    if two is not None and _as_far(study, with_curve, two):
+        yield two
+        return two
     branch = yield from only_if(_without_curves(study, start, with_curve), partial(_as_far, study, with_curve))
     if _as_far(study, with_curve, branch):
         return branch
