@@ -1,0 +1,81 @@
+"""Two laws that draw a curve together are asked in its place."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.refit.rank import judged
+from greybox_torch.diagnosis.screen.shortlist import Candidate
+from greybox_torch.diagnosis.select import forward
+from greybox_torch.diagnosis.select.forward import _named_instead
+from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
+from greybox_torch.diagnosis.select.two_laws import with_two_laws
+from greybox_torch.diagnosis.settings import SearchBudget
+from greybox_torch.diagnosis.stopping import result_of
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.unknown import Unknown
+
+
+def uneven(q: float, v: float) -> float:
+    """Dry friction of 0.09 N m forwards and 0.03 N m backwards."""
+    return -0.06 * np.tanh(v / 0.3) - 0.03 * np.tanh(v / 0.3) ** 2
+
+
+@pytest.fixture(scope="module")
+def drawn(motor_data, motor, begun):
+    """Makes a search with friction of its own and its state after a step that took a curve over the speed."""
+
+    def make(torque: Any) -> tuple[Any, SearchState]:
+        search = begun(motor_data(torque=torque), motor)
+        curve = attach(motor, "rotor", Unknown("speed", 24))
+        begin = {f"{curve.prefix}.w_{k}": 0.02 * (1 if k < 12 else -1) for k in range(24)}
+        fitted = search.refitted((curve,), search.plain, [search.plain.values() | begin])
+        assert fitted.score < search.plain.score - 0.5
+        taken = judged(Candidate(curve, (), 0.5), search.plain, fitted, search.study.settings)
+        step = SelectionStep((), search.plain, (taken,), taken)
+        return search, replace(search.state.at(fitted), steps=(step,))
+
+    return make
+
+
+def test_a_level_and_a_difference_stand_for_the_curve_of_uneven_friction(drawn) -> None:
+    """Seen: a winch's dry friction, three times as large in one direction, unknown at the drum."""
+    search, with_curve = drawn(uneven)
+    state = result_of(_named_instead(search.study, search.state, with_curve))
+    assert {e.mechanism.name for e in state.effects} == {"coulomb_friction", "coulomb_asymmetry"}
+    values = state.current.values()
+    assert values["rotor.coulomb_friction.F_c"] == pytest.approx(0.06, rel=0.1)
+    assert values["rotor.coulomb_asymmetry.delta"] == pytest.approx(0.03, rel=0.1)
+    assert state.current.score < with_curve.current.score + 0.02
+    (step,) = state.steps
+    assert step.taken is not None and step.taken.candidate.attachment == state.effects[0] and step.led is None
+
+
+def test_not_where_one_law_does_or_no_effect_may_be_added(drawn) -> None:
+    search, with_curve = drawn(lambda q, v: -0.06 * np.tanh(v / 0.3))
+    assert with_two_laws(search.study, search.state, with_curve) is None
+    search, with_curve = drawn(uneven)
+    assert with_two_laws(search.study, search.state, with_curve) is not None
+    few = replace(search.study, budget=replace(SearchBudget(), most_effects=1))
+    assert with_two_laws(few, search.state, with_curve) is None
+    nothing = replace(with_curve, steps=(replace(with_curve.steps[0], taken=None),))
+    assert with_two_laws(search.study, search.state, nothing) is None
+
+
+def test_two_that_do_not_come_as_far_as_the_curve_are_passed_over(drawn, monkeypatch, stub) -> None:
+    search, with_curve = drawn(uneven)
+    monkeypatch.setattr(forward, "_as_far", lambda *_: False)
+    monkeypatch.setattr(forward, "_without_curves", lambda *_: iter(()))
+    monkeypatch.setattr(forward, "only_if", lambda branch, test: nothing(search.state))
+    state = result_of(_named_instead(search.study, search.state, with_curve))
+    assert state.effects == with_curve.effects
+
+
+def nothing(state: SearchState) -> Any:
+    """A branch that finds nothing."""
+    yield state
+    return state
