@@ -1,7 +1,8 @@
 """The way of an input through the laws at its actuator, and of an output through those at its sensor: one law behind the other.
 
 Dead times come first, as they are of what was recorded, then the laws as they were attached. The looks of a screen, which are not there,
-see what the laws that are there pass on, and leave one another alone.
+see what the laws that are there pass on, and leave one another alone; free curves among them are of the signal before all laws, as they
+may stand for any of them.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ class SignalPaths:
             acting = self._passed(a, x, reaching[a.prefix], acting, p)
         passed = acting
         for a in looks:
-            reaching[a.prefix] = _before(a, u, passed)
+            reaching[a.prefix] = u if a.mechanism.free else _before(a, u, passed)
             acting = self._passed(a, x, reaching[a.prefix], acting, p)
         return acting, reaching
 
@@ -53,7 +54,7 @@ class SignalPaths:
             recorded[self._output(a)] = recorded[self._output(a)] + self._shown(a, reaching[a.prefix], x, p)
         passed = dict(recorded)
         for a in looks:
-            reaching[a.prefix] = passed[self._output(a)]
+            reaching[a.prefix] = (true if a.mechanism.free else passed)[self._output(a)]
             recorded[self._output(a)] = recorded[self._output(a)] + self._shown(a, reaching[a.prefix], x, p)
         return recorded, reaching
 

@@ -7,8 +7,10 @@ import pytest
 import torch
 
 from greybox_torch.mechanisms.actuator import ActuatorDeadzone, InputDelay, InputGain, InputLag, TorqueSaturation
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
 from greybox_torch.mechanisms.sensor import SensorBias, SensorGain, SensorLag
+from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Signals
 from tests.mechanisms.attaching import STEP, Tank, at, attached, free_run, records_of, starts, values_of
 
@@ -101,3 +103,25 @@ def test_looks_of_a_screen_see_what_is_there_and_leave_one_another_alone(around)
     u = Signals("input", {"pump": torch.tensor(4.0, dtype=torch.float64)})
     acting = float(model.derivative(x, u, p, model.local.no_forces())["level"])
     assert acting == pytest.approx(1.5 + 0.5 * 1.5 - 0.5 * 0.7)
+
+
+def test_a_free_curve_among_the_looks_is_of_the_signal_before_all_laws(around) -> None:
+    """It may stand for any of them: what the data say in the place of a law is a curve of the signal that the law sees."""
+    there, look = at("actuator", InputGain()), at("actuator", Unknown("input", 8))
+    model = attached(TANK, around, there, look, probed=[look])
+    heights = {n: 0.1 * k for k, n in enumerate(n for n in model.values() if ".w_" in n)}
+    values = dict(model.values()) | {"actuator.input_gain.gain_error": 0.5} | heights
+    values |= {n: 1.0 for n in values if n.endswith(f".{SHARE}")}
+    plain = attached(TANK, around, look, probed=[look])
+
+    def acting(of: AugmentedModel, pump: float) -> float:
+        own = {n: v for n, v in values.items() if n in dict(of.values())}
+        p = Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in own.items()})
+        x = Signals("state", {"level": torch.tensor(0.0, dtype=torch.float64)})
+        u = Signals("input", {"pump": torch.tensor(pump, dtype=torch.float64)})
+        return float(of.derivative(x, u, p, of.local.no_forces())["level"])
+
+    for pump in (-2.0, 0.5, 3.0):
+        curve = acting(plain, pump) - pump
+        assert abs(curve) > 1e-6
+        assert acting(model, pump) == pytest.approx(1.5 * pump + curve)

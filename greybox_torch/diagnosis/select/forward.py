@@ -112,8 +112,8 @@ def _gains(with_curve: SearchState, branch: SearchState) -> tuple[float, float]:
 def _in_pieces(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
     """Whether named effects at the curve's port are pieces of it, and none is the machine's.
 
-    So many of them; or two and more of the curve's own signal, which can draw any smooth curve between them, where the curve still takes
-    up what they leave, beyond chance.
+    So many of them; or two that are both of the curve's own signal, which can draw any smooth curve between them, where the curve still
+    takes up what they leave, beyond chance.
     """
     done, settings = with_curve.steps[-1], study.settings
     curve = None if done.taken is None else done.taken.candidate.attachment
@@ -122,10 +122,10 @@ def _in_pieces(study: Study, with_curve: SearchState, branch: SearchState) -> bo
     added = [e for e in branch.effects if e not in done.parent.effects and e.port == curve.port]
     if len(added) > settings.most_names_for_curve:
         return True
-    alike = [e for e in added if getattr(curve.mechanism, "signal", None) in e.mechanism.needs]
-    if len(alike) < 2 or with_curve.current.score >= branch.current.score:
+    if len(added) < 2 or not all(getattr(curve.mechanism, "signal", None) in e.mechanism.needs for e in added):
         return False
-    return window_significance(branch.current, with_curve.current, settings) > settings.least_significance
+    further = partial(window_significance, branch.current, with_curve.current, settings)
+    return with_curve.current.score < branch.current.score and further() > settings.least_significance
 
 
 def _as_far(study: Study, with_curve: SearchState, branch: SearchState) -> bool:

@@ -70,14 +70,15 @@ def test_a_small_effect_is_a_finding_only_where_others_confirm_it_beyond_chance(
     effect = Attachment("rotor", ConstantBias())
     state, name = stub(effects=(effect,), prefixes={effect.prefix}, current=found.plain), effect.prefix
     others = stub(times_noise=lambda hypothesis: np.array([1.0]))  # nothing but noise is left
+    study = replace(found.study, settings=replace(found.study.settings, least_size_at_noise=1e-3))
 
     def told(share: float, error: float, of: float) -> bool:
-        return not refinements(found.study, state, others, {name: Gain(share, error, size=of)}, {name: of})
+        return not refinements(study, state, others, {name: Gain(share, error, size=of)}, {name: of})
 
     assert told(0.010, 0.001, 0.002) and not told(0.001, 0.0005, 0.0012)
     assert told(0.5, 0.4, 0.3), "what is large needs no more than any effect does"
     assert not told(0.010, 0.001, 0.0005) and not told(0.5, 0.1, float("nan"))
-    assert not refinements(found.study, state, others, {}, {name: 0.002}), "nobody was asked"
+    assert not refinements(study, state, others, {}, {name: 0.002}), "nobody was asked"
 
 
 def test_of_two_laws_of_friction_at_one_body_the_small_one_is_part_of_the_other(dead_zone_search, stub) -> None:
