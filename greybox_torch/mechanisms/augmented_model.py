@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -80,7 +80,7 @@ class AugmentedModel(GreyBoxModel):
         acting, reaching = self.paths.inputs(x, u, p)
         forces = self._forces(seen, reaching, acting, p, port)
         extra: dict[str, Any] = {}
-        shown = self.paths.outputs(self.base.outputs_with(seen, acting, p, forces), x, p)[1]
+        shown = self._shown(seen, x, acting, p, forces)
         for a in (a for a in self.attachments if a.mechanism.states(self.surroundings[a.port])):
             local, own, memory = self._given(a, seen, reaching.get(a.prefix, acting), p, forces)
             local = local.replaced(output=shown[a.prefix]) if a.prefix in shown else local
@@ -158,21 +158,33 @@ class AugmentedModel(GreyBoxModel):
         result = states.copy()
         result[:, : own[0]] = self.base.begun(states[:, : own[0]], records, samples, values[: own[1]])
         forces = self._shown_forces(x, {}, u, p, self.local.no_forces())
+        at = self._signals(x, u, p, forces)
         for a in (a for a in self.attachments if a.mechanism.states(self.surroundings[a.port])):
-            begun = a.mechanism.starts(self._reached(a, x, u, p, forces))
-            x = x.replaced(**{f"{a.prefix}.{name}": torch.as_tensor(value) for name, value in begun.items()})
+            begun = a.mechanism.starts(at(a))
             for name, value in begun.items():
                 result[:, names.index(f"{a.prefix}.{name}")] = np.asarray(value)
+            if a.prefix not in self.probed:  # what it passes on begins where its memory does
+                x = x.replaced(**{f"{a.prefix}.{name}": torch.as_tensor(value) for name, value in begun.items()})
+                at = self._signals(x, u, p, forces)
         return result
 
-    def _reached(self, a: Attachment, x: Signals, u: Signals, p: Signals, forces: Signals | None) -> Signals:
+    def _shown(self, seen: Signals, x: Signals, acting: Signals, p: Signals, forces: Any) -> dict[str, Any]:
+        """What reaches every law at a sensor, by prefix; nothing where no law stands before another."""
+        there, looks = self.paths.at_sensors
+        if not there or len(there) + len(looks) < 2:
+            return {}
+        return self.paths.outputs(self.base.outputs_with(seen, acting, p, forces), x, p)[1]
+
+    def _signals(self, x: Signals, u: Signals, p: Signals, forces: Signals | None) -> Callable[[Attachment], Signals]:
         """The signals at the port of a law, with what the laws before it at an actuator or a sensor pass on."""
         acting, reaching = self.paths.inputs(x, u, p)
-        local = self.local.at(a, x, reaching.get(a.prefix, u), p, forces)
-        if not isinstance(self.local.ports[a.port], Sensor):
-            return local
-        true = self.base.outputs_with(x, acting, p, forces or self.local.no_forces())
-        return local.replaced(output=self.paths.outputs(true, x, p)[1][a.prefix])
+        shown = self._shown(x, x, acting, p, forces or self.local.no_forces())
+
+        def at(a: Attachment) -> Signals:
+            local = self.local.at(a, x, reaching.get(a.prefix, acting), p, forces)
+            return local.replaced(output=shown[a.prefix]) if a.prefix in shown else local
+
+        return at
 
     def carried_states(self) -> tuple[str, ...]:
         """Positions, time and lasting memories: free in every window, they would explain anything."""
@@ -204,7 +216,7 @@ class AugmentedModel(GreyBoxModel):
         seen = self._seen_states(x, u, p)
         acting, reaching = self.paths.inputs(x, u, p)
         forces = self._shown_forces(seen, reaching, acting, p, self.local.no_forces())
-        return self._reached(attachment, seen, u, p, forces)
+        return self._signals(seen, u, p, forces)(attachment)
 
     def _seen_states(self, x: Signals, u: Any, p: Any) -> Signals:
         """States with the deflections changed by kinematic mechanisms."""

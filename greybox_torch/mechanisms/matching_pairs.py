@@ -80,10 +80,12 @@ def _looks(kind: str, around: Surroundings, signals: Mapping[str, torch.Tensor],
     for law in (m() for name, m in LIBRARY.items() if name not in but):
         if kind not in law.kinds or not set(law.needs) <= set(signals) or law.kinematic or law.states(around):
             continue
-        for probe in law.probes(around):
-            if SHARE not in probe.directions:
-                columns = [force_column(law, around, signals, probe, name) for name in probe.directions]
-                found.append(Look(law, probe, np.stack(columns, axis=1)))
+        probes = law.probes(around)
+        if set(but) & set(law.generalises) or any(SHARE in probe.directions for probe in probes):
+            continue
+        for probe in probes:
+            columns = [force_column(law, around, signals, probe, name) for name in probe.directions]
+            found.append(Look(law, probe, np.stack(columns, axis=1)))
     return found
 
 

@@ -93,6 +93,20 @@ def test_laws_at_a_sensor_stand_one_behind_the_other(around) -> None:
     np.testing.assert_allclose(turned, 1.5 * (true + 0.2), atol=1e-9)
 
 
+def test_a_memory_begins_with_what_the_laws_before_it_pass_on(around) -> None:
+    model = attached(
+        TANK, around, at("actuator", InputGain()), at("actuator", InputLag()), at("actuator", TorqueSaturation())
+    )
+    records, first = records_of(10), np.zeros(1, dtype=np.int64)
+    p = values_of(model, gain_error=0.5, **{"input_lag.T": 0.05}, limit=99.0)
+    begun = model.begun(starts(model, np.array([[1.0]])), records, first, p)
+    assert begun[0, 1] == pytest.approx(1.5 * records.u[0, 0])
+    port = next(q.name for q in TANK.all_ports if q.kind == "sensor")
+    twice = attached(TANK, around, at(port, SensorBias()), at(port, SensorLag()))
+    p = values_of(twice, bias=0.25, **{"sensor_lag.T": 0.05})
+    assert twice.begun(starts(twice, np.array([[1.0]])), records, first, p)[0, 1] == pytest.approx(1.25)
+
+
 def test_looks_of_a_screen_see_what_is_there_and_leave_one_another_alone(around) -> None:
     there, looks = at("actuator", TorqueSaturation()), (at("actuator", InputGain()), at("actuator", ActuatorDeadzone()))
     model = attached(TANK, around, there, *looks, probed=looks)

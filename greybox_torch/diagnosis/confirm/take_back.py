@@ -59,7 +59,7 @@ def held_out_gains(state: SearchState, others: HeldOut) -> dict[str, Gain]:
 def take_back_weakest(study: Study, state: SearchState, gains: Mapping[str, Gain]) -> SearchState:
     """Without the effect that gained least on held-out experiments (the newest where that is not known)."""
     names = [e.prefix for e in state.effects]
-    weakest = min(names, key=lambda n: gains[n].share) if all(n in gains for n in names) else names[-1]
+    weakest = min(names, key=lambda n: gains[n].share) if all(n in gains for n in names) else state.newest
     return result_of(drop(study, state, weakest))
 
 

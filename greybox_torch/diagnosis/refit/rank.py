@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, augmented, score_
 from greybox_torch.diagnosis.hypothesis.significance import white_samples, window_significance
 from greybox_torch.diagnosis.refit.curve import laws_on_curve
 from greybox_torch.diagnosis.refit.finalists import finalists, leading_and_rest
-from greybox_torch.diagnosis.refit.order import in_both_orders, joined
+from greybox_torch.diagnosis.refit.order import in_better_order, in_both_orders, joined
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.refit.twins import from_twin
 from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of
@@ -146,7 +146,7 @@ def rank(
         for trial, (candidate, simulator) in zip(shown, pairs, strict=True)
         if trial is not None
     ]
-    first.sort(key=lambda entry: entry[0])
+    first = in_better_order(first)
     final: list[RankedCandidate] = []
     for some in leading_and_rest(study, finalists(first, study)):
         if any(_pays(study, r) for r in final):

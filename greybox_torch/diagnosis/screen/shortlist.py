@@ -56,10 +56,8 @@ def shortlist(study: Study, screened: Sequence[Sequence[ScreenScore]], fits: Seq
 
     def first_few(best: list[ScreenScore]) -> list[ScreenScore]:
         named = _with_ties(study, [b for b in best if not b.attachment.mechanism.free])
-        return (
-            named
-            + _of_bodies(study, [b for b in best if b.attachment.mechanism.free])[: study.budget.curves_per_length]
-        )
+        curves = [b for b in best if b.attachment.mechanism.free]
+        return named + _with_body(study, curves, study.budget.curves_per_length)
 
     return _followed(study, screened, fits, first_few)
 
@@ -121,17 +119,18 @@ def _followed(
     return sorted(found.values(), key=lambda candidate: -candidate.explained)
 
 
-def _of_bodies(study: Study, curves: Sequence[ScreenScore]) -> list[ScreenScore]:
-    """Free curves without those of a drive over the speed of the body that it drives, where that body's own explains about as much.
+def _with_body(study: Study, curves: Sequence[ScreenScore], count: int) -> list[ScreenScore]:
+    """The first few free curves; with that of a drive's gain over the speed of the body that it drives also that body's friction.
 
-    There both are one force, and what depends on a body's speed is its friction, until something speaks for the drive.
+    Both are forces on that body which change with its speed. Where the body's own curve explains about as much, refits have to decide.
     """
-    driven = driving_body(study.problem.model.all_ports)
-    own = [c for c in curves if driven is not None and c.attachment.port == driven.name and _over_speed(c)]
-    least = max((c.explained for c in own), default=0.0)
+    first, driven = list(curves[:count]), driving_body(study.problem.model.all_ports)
     drives = {p.name for p in study.problem.model.all_ports if isinstance(p, Actuator)}
-    shared = study.settings.screen_tie
-    return [c for c in curves if not (c.attachment.port in drives and _over_speed(c) and least > shared * c.explained)]
+    gains = [c.explained for c in first if c.attachment.port in drives and _over_speed(c)]
+    if driven is None or not gains:
+        return first
+    own = (c for c in curves[count:] if c.attachment.port == driven.name and _over_speed(c))
+    return [*first, *(c for c in own if c.explained > study.settings.screen_tie * min(gains))]
 
 
 def _over_speed(score: ScreenScore) -> bool:

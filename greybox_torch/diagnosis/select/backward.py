@@ -9,6 +9,7 @@ from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import window_significance
 from greybox_torch.diagnosis.refit.curve import absorbed
+from greybox_torch.diagnosis.refit.order import where_it_stood
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.state import SearchState
@@ -48,7 +49,7 @@ def _with_what_was_made_up_for(study: Study, state: SearchState) -> SearchState:
         if effect.prefix in state.prefixes:
             continue  # it came back by another way, or in another form
         study.working_on(f"trying {effect.prefix} again")
-        found = refitted(study, (*state.effects, effect), state.current, [once.values()])
+        found = refitted(study, where_it_stood(state.effects, effect, once.effects), state.current, [once.values()])
         if found is None or _does_as_well(study, state.current, found) or _says_nothing(study, effect, found):
             state = replace(state, made_up_for=((effect, once), *state.made_up_for))
         else:

@@ -49,8 +49,8 @@ def simplest(
     """The best, or what it generalises where it is not better than that by more than chance, or by less than a finding is.
 
     The latter (``least_size``) does not count against a law that leaves noise alone where the simpler one does not. Any law with fewer
-    parameters goes before one that differs from it by next to nothing of the mismatch (``same_share``): good sensors show such differences,
-    and they are not the law's.
+    parameters goes before one that ties with it and differs from it by next to nothing of the mismatch (``same_share``): good sensors show
+    such differences, and they are not the law's.
     """
     best = next(iter(ranked), None)
     if best is None:
@@ -70,7 +70,9 @@ def simplest(
         return by_chance or (small and not alone)
 
     def the_same(r: RankedCandidate) -> bool:
-        return r.size < best.size and difference(plain, r.fitted, best.fitted, settings) < settings.same_share
+        near = r.fitted.score < best.fitted.score + settings.score_tie
+        little = difference(plain, r.fitted, best.fitted, settings) < settings.same_share
+        return r.size < best.size and near and little
 
     return next((r for r in simpler if as_good(r)), next((r for r in ranked if the_same(r)), best))
 

@@ -15,7 +15,7 @@ from greybox_torch.diagnosis.select.memory import completed_by_memory
 from greybox_torch.diagnosis.select.remaining import completes
 from greybox_torch.diagnosis.select.richer import richer_instead, with_richer_form
 from greybox_torch.diagnosis.select.state import SearchState
-from greybox_torch.diagnosis.select.two_laws import with_two_laws
+from greybox_torch.diagnosis.select.two_laws import second_step, with_first_of_two
 from greybox_torch.diagnosis.stopping import Stage, only_if
 from greybox_torch.diagnosis.study import Study
 
@@ -73,10 +73,11 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     """
     done = with_curve.steps[-1]
     start = replace(with_curve.at(done.parent), steps=before.steps)
-    two = with_two_laws(study, start, with_curve)
-    if two is not None and _as_far(study, with_curve, two):
-        yield two
-        return two
+    first = with_first_of_two(study, start, with_curve)
+    if first is not None:
+        two = yield from only_if(second_step(study, first), partial(_as_far, study, with_curve))
+        if _as_far(study, with_curve, two):
+            return replace(two, found_before=start.found_before)
     branch = yield from only_if(_without_curves(study, start, with_curve), partial(_as_far, study, with_curve))
     if _as_far(study, with_curve, branch):
         return branch
@@ -112,8 +113,8 @@ def _gains(with_curve: SearchState, branch: SearchState) -> tuple[float, float]:
 def _in_pieces(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
     """Whether named effects at the curve's port are pieces of it, and none is the machine's.
 
-    So many of them; or two that are both of the curve's own signal, which can draw any smooth curve between them, where the curve still
-    takes up what they leave, beyond chance.
+    True where there are more than ``most_names_for_curve`` of them. Also true where two depend on the curve's own signal, which can draw
+    any smooth curve between them, and the curve still removes, beyond chance, some of what they leave.
     """
     done, settings = with_curve.steps[-1], study.settings
     curve = None if done.taken is None else done.taken.candidate.attachment

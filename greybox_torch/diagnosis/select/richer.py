@@ -16,7 +16,7 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
-from greybox_torch.diagnosis.select.choice import priced_score
+from greybox_torch.diagnosis.select.choice import least_gain, priced_score
 from greybox_torch.diagnosis.select.flexed import widened
 from greybox_torch.diagnosis.select.remaining import completes
 from greybox_torch.diagnosis.select.state import SearchState
@@ -59,9 +59,16 @@ def richer_instead(study: Study, before: SearchState, after: SearchState) -> Sea
             continue
         for law, start in _forms(effect, before):
             found = _in_form(study, before, done.taken, law, start)
-            if found is not None and priced_score(found.fitted, study.settings) <= to_reach and sound(study, found):
+            if found is not None and priced_score(found.fitted, study.settings) <= to_reach and _improves(study, found):
                 return replace(widened(before, done, found, found.fitted), plain=after.plain)
     return None
+
+
+def _improves(study: Study, found: RankedCandidate) -> bool:
+    """Whether a form goes farther than the plain one, beyond chance, with parameters that say something of the machine."""
+    settings = study.settings
+    further = found.gain > least_gain(found.fitted, settings) and found.significance > settings.least_significance
+    return further and sound(study, found)
 
 
 def _forms(effect: Attachment, state: SearchState) -> Iterator[tuple[Attachment, dict[str, float]]]:

@@ -46,7 +46,8 @@ def revise(study: Study, state: SearchState) -> Stage[SearchState]:
     Once one is replaced, the rest is left as it is; where none is, the hypothesis is the same as before.
     """
     price = partial(priced_score, settings=study.settings)
-    for effect in state.effects[:-1]:
+    newest = state.newest
+    for effect in (e for e in state.effects if e.prefix != newest):
         if beyond_doubt(study, state, effect):
             continue
         study.working_on(f"choosing {effect.prefix} once more")

@@ -59,6 +59,12 @@ class SearchState:
         return {e.prefix for e in self.effects}
 
     @property
+    def newest(self) -> str:
+        """The prefix of the effect that was taken last (it may stand before others that were found earlier); empty without effects."""
+        last = next((s.taken.candidate.attachment.prefix for s in reversed(self.steps) if s.taken is not None), "")
+        return last if last in self.prefixes or not self.effects else self.effects[-1].prefix
+
+    @property
     def has_curve(self) -> bool:
         """Whether one of them is a free curve or response."""
         return any(e.mechanism.free for e in self.effects)

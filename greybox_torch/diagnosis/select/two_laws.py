@@ -7,37 +7,57 @@ to make up for the other that the second is not found beside it.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 from greybox_torch.diagnosis.refit.curve import two_laws_on_curve
-from greybox_torch.diagnosis.refit.rank import judged, sound
+from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.screen.shortlist import Candidate
+from greybox_torch.diagnosis.select.forward_step import forward_step
 from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.attachment import Attachment
 
 
-def with_two_laws(study: Study, start: SearchState, with_curve: SearchState) -> SearchState | None:
-    """``start`` with the two laws that draw the curve which the last step of ``with_curve`` took; None where there are none.
+def with_first_of_two(study: Study, start: SearchState, with_curve: SearchState) -> SearchState | None:
+    """``start`` with the first of the two laws that draw the curve of ``with_curve``, and both as what was found before.
 
-    The step is on record as if it had taken the first of them.
+    None where no two laws do. The step with the second, beside its rivals, is to be made from there (:func:`second_step`).
     """
     done = with_curve.steps[-1]
     if done.taken is None or len(with_curve.effects) >= study.budget.most_effects:
         return None
-    curve = with_curve.current.effects[-1]
-    found = two_laws_on_curve(study.problem.model, with_curve.current, curve, study.surroundings)
+    found = two_laws_on_curve(
+        study.problem.model, with_curve.current, with_curve.current.effects[-1], study.surroundings
+    )
     if found is None or any(study.beliefs.exclude(law) for law in found[0]):
         return None
     laws, values = found
     study.working_on(f"refitting {laws[0].prefix} and {laws[1].prefix} from the curve")
-    fitted = fit(study, (*start.effects, *laws), [values, {**values, **study.card}], with_curve.current.fits[0])
-    if fitted is None:
+    refit = partial(fit, study, shorter=with_curve.current.fits[0])
+    both = refit((*start.effects, *laws), [values, {**values, **study.card}])
+    if both is None or both.score >= start.current.score:
         return None
-    both = [
-        judged(Candidate(law, (), done.taken.candidate.explained), start.current, fitted, study.settings)
-        for law in laws
-    ]
-    if not all(sound(study, one) for one in both):
-        return None
-    step = replace(done, taken=both[0], led=None)
-    return replace(start.at(fitted), steps=(*start.steps, step))
+    first = _refitted_alone(done.ranked, laws[0])
+    if first is None:
+        alone = refit((*start.effects, laws[0]), [both.values()], limits=study.budget.trial_iterations)
+        if alone is None:
+            return None
+        candidate = Candidate(laws[0], (), done.taken.candidate.explained)
+        first = judged(candidate, start.current, alone, study.settings)
+    ranked = (*(r for r in done.ranked if r.candidate.attachment.named != laws[0].named), first)
+    step = replace(done, ranked=ranked, taken=first, led=None)
+    return replace(start.at(first.fitted), steps=(*start.steps, step), found_before=both)
+
+
+def second_step(study: Study, first: SearchState) -> Stage[SearchState]:
+    """The forward step from the first of two laws; what was found before is again what it was before them."""
+    before = first.found_before
+    state = yield from forward_step(study, first, curves=False)
+    return replace(state, found_before=before)
+
+
+def _refitted_alone(ranked: tuple[RankedCandidate, ...], law: Attachment) -> RankedCandidate | None:
+    """The refit of a law among those of a step."""
+    return next((r for r in ranked if r.candidate.attachment.named == law.named), None)

@@ -110,11 +110,12 @@ def test_identity() -> None:
     assert identity_of(Attachment("a", ConstantBias())) != identity_of(Attachment("b", ConstantBias()))
 
 
-@pytest.mark.parametrize(("own", "kept"), [(0.327, ("rotor",)), (0.15, ("actuator",)), (0.0, ("actuator",))])
-def test_a_curve_over_speed_is_the_bodys_where_that_explains_as_much_as_the_drives(found, own, kept) -> None:
+@pytest.mark.parametrize(("own", "ports"), [(0.327, ["actuator", "rotor"]), (0.15, ["actuator"]), (0.0, ["actuator"])])
+def test_beside_a_drives_gain_over_speed_the_bodys_friction_is_asked(found, own, ports) -> None:
     """Seen: dry friction of a winch's drum, larger in one direction, told as something unknown at the drive (0.97)."""
-    looks = [score(Unknown("speed"), 0.330, 1.0, directions=("w_1",), port="actuator")]
-    looks += [score(Unknown("speed"), own, 1.0, directions=("w_1",))] if own else []
-    assert tuple(c.attachment.port for c in found(looks)[:1]) == kept
-    other = score(Unknown("input"), 0.330, 1.0, directions=("w_1",), port="actuator")
-    assert found([other, *looks[1:]])[0].attachment.port == "actuator"
+    gain = score(Unknown("speed", factor="input"), 0.330, 1.0, directions=("w_1",), port="actuator")
+    friction = [score(Unknown("speed"), own, 1.0, directions=("w_1",))] if own else []
+    curves = [score(Unknown("position"), 0.329, 1.0, directions=("w_1",)), *friction]
+    assert [c.attachment.port for c in found([gain, *curves])] == ports
+    own_input = score(Unknown("input"), 0.330, 1.0, directions=("w_1",), port="actuator")
+    assert [c.attachment.port for c in found([own_input, *curves])] == ["actuator"]

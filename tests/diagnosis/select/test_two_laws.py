@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select import forward
 from greybox_torch.diagnosis.select.forward import _named_instead
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
-from greybox_torch.diagnosis.select.two_laws import with_two_laws
+from greybox_torch.diagnosis.select.two_laws import with_first_of_two
 from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.attachment import attach
@@ -42,35 +42,46 @@ def drawn(motor_data, motor, begun):
     return make
 
 
-def test_a_level_and_a_difference_stand_for_the_curve_of_uneven_friction(drawn) -> None:
+@pytest.mark.parametrize(
+    ("torque", "second", "parameter"),
+    [
+        (uneven, "coulomb_asymmetry", "delta"),
+        (lambda q, v: -0.06 * np.tanh(v / 0.3) - 0.03, "constant_bias", "bias"),
+    ],
+)
+def test_a_level_and_another_law_stand_for_the_curve(drawn, torque, second, parameter) -> None:
     """Seen: a winch's dry friction, three times as large in one direction, unknown at the drum."""
-    search, with_curve = drawn(uneven)
+    search, with_curve = drawn(torque)
     state = result_of(_named_instead(search.study, search.state, with_curve))
-    assert {e.mechanism.name for e in state.effects} == {"coulomb_friction", "coulomb_asymmetry"}
+    assert {e.mechanism.name for e in state.effects} == {"coulomb_friction", second}
     values = state.current.values()
     assert values["rotor.coulomb_friction.F_c"] == pytest.approx(0.06, rel=0.1)
-    assert values["rotor.coulomb_asymmetry.delta"] == pytest.approx(0.03, rel=0.1)
+    assert abs(values[f"rotor.{second}.{parameter}"]) == pytest.approx(0.03, rel=0.1)
     assert state.current.score < with_curve.current.score + 0.02
-    (step,) = state.steps
-    assert step.taken is not None and step.taken.candidate.attachment == state.effects[0] and step.led is None
+    assert state.found_before is None
+    for effect in state.effects:  # each with its own step, beside its rivals
+        step = state.step_of(effect.prefix)
+        assert step is not None and step.taken is not None and len(step.ranked) >= 1
+        assert set(step.taken.fitted.effects) - set(step.parent.effects) == {step.taken.candidate.attachment}
 
 
 def test_not_where_one_law_does_or_no_effect_may_be_added(drawn) -> None:
     search, with_curve = drawn(lambda q, v: -0.06 * np.tanh(v / 0.3))
-    assert with_two_laws(search.study, search.state, with_curve) is None
+    assert with_first_of_two(search.study, search.state, with_curve) is None
     search, with_curve = drawn(uneven)
-    assert with_two_laws(search.study, search.state, with_curve) is not None
+    first = with_first_of_two(search.study, search.state, with_curve)
+    assert first is not None and len(first.effects) == 1 and first.found_before is not None
+    assert len(first.found_before.effects) == 2 and first.steps[-1].taken.fitted is first.current
     few = replace(search.study, budget=replace(SearchBudget(), most_effects=1))
-    assert with_two_laws(few, search.state, with_curve) is None
+    assert with_first_of_two(few, search.state, with_curve) is None
     nothing = replace(with_curve, steps=(replace(with_curve.steps[0], taken=None),))
-    assert with_two_laws(search.study, search.state, nothing) is None
+    assert with_first_of_two(search.study, search.state, nothing) is None
 
 
-def test_two_that_do_not_come_as_far_as_the_curve_are_passed_over(drawn, monkeypatch, stub) -> None:
+def test_two_that_do_not_come_as_far_as_the_curve_are_passed_over(drawn, monkeypatch) -> None:
     search, with_curve = drawn(uneven)
     monkeypatch.setattr(forward, "_as_far", lambda *_: False)
-    monkeypatch.setattr(forward, "_without_curves", lambda *_: iter(()))
-    monkeypatch.setattr(forward, "only_if", lambda branch, test: nothing(search.state))
+    monkeypatch.setattr(forward, "_without_curves", lambda *_: nothing(search.state))
     state = result_of(_named_instead(search.study, search.state, with_curve))
     assert state.effects == with_curve.effects
 
