@@ -27,13 +27,21 @@ from greybox_torch.diagnosis.study import Study
 Screened = tuple[tuple[ScreenScore, ...], ...]
 
 
-def forward_step(study: Study, state: SearchState, *, curves: bool = True, fine: bool = False) -> Stage[SearchState]:
+def forward_step(
+    study: Study,
+    state: SearchState,
+    *,
+    curves: bool = True,
+    fine: bool = False,
+    known: Sequence[RankedCandidate] = (),
+) -> Stage[SearchState]:
     """Screen, refit the shortlist, take the best if it pays; the state's last step says whether one was taken.
 
     Args:
         curves: offer free curves, where there is none yet: one says that something is unknown, and where; a second one would only fit
             what is left.
         fine: offer curves with many knots, and nothing else.
+        known: refits on top of the state's hypothesis that were made before.
     """
     screened = screen_scores(study, state, curves=curves and not state.has_curve, fine=fine)
     found = _worth_a_refit(study, state, screened, fine)
@@ -45,7 +53,7 @@ def forward_step(study: Study, state: SearchState, *, curves: bool = True, fine:
         study.journal.pointed_at(first.attachment.named, first.explained)
     ranked = rank(study, state.current, found)
     further = rank(study, state.current, _at_other_ports(study, state, screened, found, ranked))
-    return (yield from take_best(study, state, screened, in_order([*ranked, *further], study.settings)))
+    return (yield from take_best(study, state, screened, in_order([*known, *ranked, *further], study.settings)))
 
 
 def take_best(

@@ -46,16 +46,20 @@ def with_first_of_two(study: Study, start: SearchState, with_curve: SearchState)
             return None
         candidate = Candidate(laws[0], (), done.taken.candidate.explained)
         first = judged(candidate, start.current, alone, study.settings)
-    ranked = (*(r for r in done.ranked if r.candidate.attachment.named != laws[0].named), first)
+    # The curve has told the place: what comes as far as one of the two laws elsewhere is no rival of both.
+    there = (r for r in done.ranked if r.candidate.attachment.port == laws[0].port and r is not first)
+    ranked = (first, *(r for r in there if r.candidate.attachment.named != laws[0].named))
     step = replace(done, ranked=ranked, taken=first, led=None)
     return replace(start.at(first.fitted), steps=(*start.steps, step), found_before=both)
 
 
 def second_step(study: Study, first: SearchState) -> Stage[SearchState]:
-    """The forward step from the first of two laws; what was found before is again what it was before them."""
-    before = first.found_before
-    state = yield from forward_step(study, first, curves=False)
-    return replace(state, found_before=before)
+    """The forward step from the first of two laws, the second with the values of both among its candidates."""
+    both = first.found_before
+    assert both is not None
+    (law,) = (e for e in both.effects if e.prefix not in first.prefixes)
+    known = judged(Candidate(law, (), 0.0), first.current, both, study.settings)
+    return (yield from forward_step(study, replace(first, found_before=None), curves=False, known=[known]))
 
 
 def _refitted_alone(ranked: tuple[RankedCandidate, ...], law: Attachment) -> RankedCandidate | None:
