@@ -129,6 +129,27 @@ def test_slide_beside_mujoco(name: str, machines: Path, tmp_path: Path) -> None:
     assert error_of(slide(machines, effects), SLIDE.format(own=own), steps(15.0), tmp_path, FORCE) < 0.01
 
 
+LIMIT = {("actuator", "torque_saturation"): {"limit": 4.0, "softness": 0.0}}
+LAG = {("actuator", "input_lag"): {"T": 0.05}}
+GAIN = {("actuator", "input_gain"): {"gain_error": 0.3}}
+BIAS = {("actuator", "input_bias"): {"bias": 0.5}}
+
+
+def test_laws_of_a_drive_in_the_order_of_mujoco_are_the_models(machines: Path, tmp_path: Path) -> None:
+    model = rotor(machines, {("rotor", "viscous_friction"): {"c": 0.05}, **LIMIT, **LAG, **GAIN, **BIAS})
+    assert not gt.export(model, to="mjcf", name="effects").rows
+    assert error_of(model, ROTOR.format(own='class="rotor"'), steps(8.0), tmp_path) < 0.01
+
+
+def test_another_order_than_mujocos_is_told(machines: Path) -> None:
+    made: Any = gt.export(rotor(machines, {**BIAS, **LAG, **LIMIT}), to="mjcf", name="effects")
+    (row,) = made.rows
+    assert row == {
+        "effect": "voltage",
+        "why": "MuJoCo's order is limit, lag, gain, offset; the model's is offset, then lag, then limit",
+    }
+
+
 def test_what_cannot_be_said_is_told(machines: Path, tmp_path: Path) -> None:
     model = rotor(
         machines,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping
 from xml.etree.ElementTree import Element, SubElement
 
@@ -17,8 +16,8 @@ _HOW = (
     "go before those of its class.",
     "Actuators take the place of yours of the same input; tendons add to what the joint has.",
 )
-_IN_ORDER = ("ctrlrange", "dyntype", "delay", "relative_gain")
-"""Attributes of an actuator that MuJoCo heeds one after the other."""
+_IN_ORDER = {"ctrlrange": "limit", "dyntype": "lag", "relative_gain": "gain", "biasprm": "offset"}
+"""What MuJoCo does with a delayed input, one after the other, by the attribute that says it."""
 
 
 def mjcf(model: GreyBoxModel, identifier: str) -> Snippet:
@@ -51,10 +50,15 @@ def _drive(one: Counterpart) -> dict[str, Attribute]:
 
 
 def _orders(said: list[Counterpart]) -> list[Unsaid]:
-    """Where several effects of one drive are in one actuator."""
-    several = Counter(one.name for one in said for kind in _IN_ORDER if kind in one.attributes)
-    why = "MuJoCo delays, limits, filters and scales one after the other; the model adds up what each effect changes of the recorded input"
-    return [Unsaid(name, why) for name, count in several.items() if count > 1]
+    """The actuators whose effects stand in another order than MuJoCo's."""
+    found = []
+    for one in (one for one in said if one.element == "actuator"):
+        kinds = [kind for kind in one.attributes if kind in _IN_ORDER]
+        if kinds != [kind for kind in _IN_ORDER if kind in kinds]:
+            own = ", then ".join(_IN_ORDER[kind] for kind in kinds)
+            why = f"MuJoCo's order is {', '.join(_IN_ORDER.values())}; the model's is {own}"
+            found.append(Unsaid(one.name, why))
+    return found
 
 
 def _section(root: Element, name: str) -> Element:
