@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,13 +48,20 @@ def matching_laws(
         but: names of laws that are left out, since they are there already.
     """
     found = []
-    for law in (m() for name, m in LIBRARY.items() if name not in but):
-        fits_port = kind in law.kinds and set(law.needs) <= set(signals)
-        if fits_port and not law.kinematic and not law.states(around):
-            trials = _trials(law.nearest(around, signals, force, weight), around, signals, force, weight)
-            if trials:
-                found.append(max(trials, key=lambda match: match.share))
+    for law in laws_of(kind, around, signals, but):
+        trials = _trials(law.nearest(around, signals, force, weight), around, signals, force, weight)
+        if trials:
+            found.append(max(trials, key=lambda match: match.share))
     return sorted(found, key=lambda match: -match.share)
+
+
+def laws_of(
+    kind: str, around: Surroundings, signals: Collection[str], but: Collection[str] = ()
+) -> Iterator[Mechanism]:
+    """The laws without memory at a kind of port that depend on no other ``signals``; ``but`` as for :func:`matching_laws`."""
+    for law in (m() for name, m in LIBRARY.items() if name not in but):
+        if kind in law.kinds and set(law.needs) <= set(signals) and not law.kinematic and not law.states(around):
+            yield law
 
 
 def worth_a_refit(matches: Collection[Match]) -> list[Match]:
@@ -80,7 +87,7 @@ def _trials(
     results, bounds = [], {p.name: p.bounds for p in law.parameters(around)}
     root, total = np.sqrt(weight), max(float((weight * force**2).sum()), 1e-300)
     for probe in law.probes(around):
-        columns = np.stack([force_column(law, around, signals, probe, name) for name in probe.directions], axis=1)
+        columns = force_columns(law, around, signals, probe)
         size = linear_least_squares(columns * root[:, None], force * root, rcond=1e-10)
         size = np.array([np.clip(v, *bounds[n]) for n, v in zip(probe.directions, size, strict=True)])
         share = 1.0 - float((weight * (force - columns @ size) ** 2).sum()) / total
@@ -129,12 +136,12 @@ def _without(direction: np.ndarray, vector: np.ndarray) -> np.ndarray:
     return vector if size == 0.0 else vector - direction * float(direction @ vector) / size
 
 
-def force_column(
-    law: Mechanism, around: Surroundings, signals: Mapping[str, torch.Tensor], probe: Probe, name: str
+def force_columns(
+    law: Mechanism, around: Surroundings, signals: Mapping[str, torch.Tensor], probe: Probe
 ) -> np.ndarray:
-    """The law's force (N,) per unit of one of its linear parameters, at local signals (N,)."""
-    others = {other: 1.0 if other == name else 0.0 for other in probe.directions}
-    return law_force(law, around, signals, {**probe.values, **others})
+    """The law's forces (N, d) per unit of each of its linear parameters, at local signals (N,)."""
+    per_unit = ({other: 1.0 if other == name else 0.0 for other in probe.directions} for name in probe.directions)
+    return np.stack([law_force(law, around, signals, {**probe.values, **unit}) for unit in per_unit], axis=1)
 
 
 def law_force(

@@ -10,8 +10,7 @@ import numpy as np
 import torch
 
 from greybox_torch.linear_algebra import least_squares
-from greybox_torch.mechanisms.library import LIBRARY
-from greybox_torch.mechanisms.matching import force_column
+from greybox_torch.mechanisms.matching import force_columns, laws_of
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 
 LEAST_MATCH = 0.9
@@ -56,7 +55,7 @@ def matching_pair(
     total = _left(line, force, root)[1]
     if not total > 0.0:
         return None
-    looks = list(_looks(kind, around, signals, but))
+    looks = _looks(kind, around, signals, but)
     alone = [1.0 - _left(np.hstack([line, a.columns]), force, root)[1] / total for a in looks]
     best: PairMatch | None = None
     for (a, of_a), (b, of_b) in combinations(zip(looks, alone, strict=True), 2):
@@ -76,16 +75,12 @@ def matching_pair(
 
 def _looks(kind: str, around: Surroundings, signals: Mapping[str, torch.Tensor], but: Collection[str]) -> list[Look]:
     """Every law without memory that is linear in its sizes and depends on no other signals, with every shape it is looked for with."""
-    found = []
-    for law in (m() for name, m in LIBRARY.items() if name not in but):
-        if kind not in law.kinds or not set(law.needs) <= set(signals) or law.kinematic or law.states(around):
-            continue
+    found: list[Look] = []
+    for law in laws_of(kind, around, signals, but):
         probes = law.probes(around)
         if set(but) & set(law.generalises) or any(SHARE in probe.directions for probe in probes):
             continue
-        for probe in probes:
-            columns = [force_column(law, around, signals, probe, name) for name in probe.directions]
-            found.append(Look(law, probe, np.stack(columns, axis=1)))
+        found += [Look(law, probe, force_columns(law, around, signals, probe)) for probe in probes]
     return found
 
 

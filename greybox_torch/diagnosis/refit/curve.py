@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.linear_algebra import least_squares
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.matching import force_column, kinematic_laws, matching_laws, worth_a_refit
+from greybox_torch.mechanisms.matching import force_columns, kinematic_laws, matching_laws, worth_a_refit
 from greybox_torch.mechanisms.matching_pairs import matching_pair
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
@@ -118,8 +118,7 @@ def _heights(curve: Attachment, around: Surroundings, grid: torch.Tensor, force:
     """The heights with which a curve draws a force (N,) over its signal (N,), by least squares."""
     unknown, probe = curve.mechanism, curve.mechanism.probes(around)[0]
     assert isinstance(unknown, Unknown)
-    columns = [force_column(unknown, around, {unknown.signal: grid}, probe, name) for name in probe.directions]
-    heights = least_squares(np.stack(columns, axis=1), force, rcond=1e-6)
+    heights = least_squares(force_columns(unknown, around, {unknown.signal: grid}, probe), force, rcond=1e-6)
     return {f"{curve.prefix}.{n}": float(h) for n, h in zip(probe.directions, heights, strict=True)}
 
 
