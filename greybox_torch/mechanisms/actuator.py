@@ -9,50 +9,28 @@ import torch
 
 from greybox_torch.mechanisms.by_direction import ByDirection
 from greybox_torch.mechanisms.degenerate import too_long
+from greybox_torch.mechanisms.lag import Lag
 from greybox_torch.mechanisms.linear_law import LinearLaw, Of, Per
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
-from greybox_torch.mechanisms.short_lag import lag_change, lag_rate
 from greybox_torch.mechanisms.transmission import dead_zone
-from greybox_torch.model import Parameter, Signals, State
+from greybox_torch.model import Parameter, Signals
 
 TINY = 1e-12
 """Keeps a logarithm and a quotient finite at zero."""
 
 
-class InputLag(Mechanism):
-    """The input acts through a first-order lag: T dv/dt = u − v."""
+class InputLag(Lag):
+    """The input acts through a lag of first or second order, see :class:`Lag`."""
 
     name = "input_lag"
     kinds = ("actuator",)
     needs = ("input",)
-    fades = True
-    linear = True
-    nature = "a time shift"
-    explanation = "The input acts through a first-order lag (current loop, valve)."
-    source = "L. Ljung, System Identification, 2nd ed., 1999"
+    explanation = "The input acts through a lag (current loop, valve)."
     experiment = "a step or a chirp of the input, to tell a lag from a delay"
+    looks = (2, 6, 20, 60)
 
-    def parameters(self, around: Surroundings) -> list[Parameter]:
-        step = around.sample_time
-        return [Parameter("T", 3 * step, "s", lower=0.0, upper=2000 * step, description="time constant")]
-
-    def states(self, around: Surroundings) -> list[State]:
-        return [State("lagged", around.force_unit)]
-
-    def starts(self, s: Signals) -> dict[str, Any]:
-        return {"lagged": s.input}
-
-    def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
-        return {"lagged": lag_rate(s.input, z.lagged, p.T, s.sample_time)}
-
-    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return lag_change(s.input, z.lagged, p.T, s.sample_time)
-
-    def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (2, 6, 20, 60)]
-
-    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        return too_long("T", values["T"], around)
+    def unit(self, around: Surroundings) -> str:
+        return around.force_unit
 
 
 class InputDelay(Mechanism):
@@ -84,6 +62,10 @@ class InputDelay(Mechanism):
 
     def other_inputs(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
         return {name: s[f"delayed@{name}"] - s[f"input@{name}"] for name in self.drives}
+
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """A lag of second order, which a dead time comes nearer to than a lag of first order does."""
+        return () if self.drives else ((InputLag(True), {**values, "damping": 1.0}),)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (2, 6, 20, 60)]

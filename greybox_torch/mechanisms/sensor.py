@@ -6,46 +6,24 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from greybox_torch.mechanisms.degenerate import too_long
+from greybox_torch.mechanisms.lag import Lag
 from greybox_torch.mechanisms.linear_law import LinearLaw, Of
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
-from greybox_torch.mechanisms.short_lag import lag_change, lag_rate
 from greybox_torch.model import Parameter, Signals, State
 
 
-class SensorLag(Mechanism):
-    """The output is recorded through a first-order lag: T dw/dt = y − w."""
+class SensorLag(Lag):
+    """The output is recorded through a lag of first or second order, see :class:`Lag`."""
 
     name = "sensor_lag"
     kinds = ("sensor",)
     needs = ("output",)
-    fades = True
-    linear = True
-    nature = "a time shift"
-    explanation = "The output is recorded through a first-order lag (filter, sensor dynamics)."
-    source = "L. Ljung, System Identification, 2nd ed., 1999"
+    explanation = "The output is recorded through a lag (filter, sensor dynamics)."
     experiment = "a second sensor, or a known motion"
+    looks = (2, 6, 20)
 
-    def parameters(self, around: Surroundings) -> list[Parameter]:
-        step = around.sample_time
-        return [Parameter("T", 3 * step, "s", lower=0.0, upper=2000 * step, description="time constant")]
-
-    def states(self, around: Surroundings) -> list[State]:
-        return [State("lagged", around.units.get("output", ""))]
-
-    def starts(self, s: Signals) -> dict[str, Any]:
-        return {"lagged": s.output}
-
-    def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
-        return {"lagged": lag_rate(s.output, z.lagged, p.T, s.sample_time)}
-
-    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return lag_change(s.output, z.lagged, p.T, s.sample_time)
-
-    def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (2, 6, 20)]
-
-    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        return too_long("T", values["T"], around)
+    def unit(self, around: Surroundings) -> str:
+        return around.units.get("output", "")
 
 
 class OutputDelay(Mechanism):
@@ -85,6 +63,10 @@ class OutputDelay(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((SHARE,), {"T": factor * around.sample_time}) for factor in (3, 8, 24)]
+
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """A filter of second order, which a dead time comes nearer to than a filter of first order does."""
+        return ((SensorLag(True), {**values, "damping": 1.0}),)
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return too_long("T", values["T"], around)

@@ -8,6 +8,7 @@ from typing import Any
 import torch
 
 from greybox_torch.mechanisms.degenerate import not_a_time_of_the_record, not_seen_to_repeat
+from greybox_torch.mechanisms.forces import HARMONICS, TorqueRipple
 from greybox_torch.mechanisms.linear_law import Of
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.sign_change import DryLaw, smooth_sign, width_parameter, widths
@@ -65,6 +66,10 @@ class PositionDependentFriction(Mechanism):
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return not_seen_to_repeat(values["order"], around)
+
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """A ripple of this order with harmonics: where the speed hardly changes its sign the friction is one without."""
+        return ((TorqueRipple(values["order"], HARMONICS), {n: values[n] for n in ("a", "b", "order")}),)
 
 
 class FrictionWarmup(Mechanism):

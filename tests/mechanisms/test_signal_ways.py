@@ -14,7 +14,7 @@ from greybox_torch.mechanisms.actuator import (
     InputLag,
     TorqueSaturation,
 )
-from greybox_torch.mechanisms.sensor import SensorBias, SensorGain, SensorLag
+from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorGain, SensorLag
 
 INPUT = np.linspace(-5.0, 5.0, 101)
 
@@ -80,6 +80,36 @@ def test_lag_settles_to_its_signal_with_its_time_constant(law, rates, lag, signa
     assert after[1000] == pytest.approx(3.0 * (1 - np.exp(-1.0)), rel=1e-3)
     settled = law(lag, {"T": 0.1}, {"lagged": np.array(3.0)}, **now)
     assert settled == 0.0
+
+
+@pytest.mark.parametrize("kind", [InputLag, SensorLag])
+@pytest.mark.parametrize("damping", [0.5, 1.0, 1.5])
+def test_a_lag_of_second_order_follows_a_step_as_the_analytic_solution_does(law, rates, kind, damping) -> None:
+    """T is the mean delay: the area between the step and what is recorded of it."""
+    lag, time, h = kind(True), 0.1, 2e-4
+    values, signal = {"T": time, "damping": damping}, lag.needs[0]
+    omega = 2 * damping / time
+    z, followed = np.zeros(2), []
+    for _ in range(8000):
+        now = {signal: np.array(1.0), "sample_time": np.array(h)}
+        memory = {"lagged": z[:1], "slope": z[1:]}
+        followed.append(1.0 + float(law(lag, values, memory, **now)[0]))
+        middle = z + 0.5 * h * np.ravel(rates(lag, values, memory, **now))
+        z = z + h * np.ravel(rates(lag, values, {"lagged": middle[:1], "slope": middle[1:]}, **now))
+    t = h * np.arange(8000)
+    poles = omega * (-damping + np.array([1, -1]) * np.sqrt(complex(damping**2 - 1) + 1e-12))
+    response = 1 + np.real((poles[1] * np.exp(poles[0] * t) - poles[0] * np.exp(poles[1] * t)) / (poles[0] - poles[1]))
+    np.testing.assert_allclose(followed, response, atol=2e-4)
+    assert h * np.sum(1.0 - np.array(followed)) == pytest.approx(time, rel=1e-2)
+
+
+@pytest.mark.parametrize(("kind", "delay"), [(InputLag, InputDelay), (SensorLag, OutputDelay)])
+def test_a_lag_of_second_order_is_asked_for_a_lag_and_for_a_delay(kind, delay) -> None:
+    for plain in (kind(), delay()):
+        ((form, begun),) = plain.richer({"T": 0.02})
+        assert form.name == kind.name and form.options() == {"second_order": True}
+        assert begun == {"T": 0.02, "damping": 1.0} and not form.richer(begun)
+    assert not InputDelay(("other",)).richer({"T": 0.02}), "all inputs are late together"
 
 
 def test_delay_acts_by_the_delayed_input(law) -> None:

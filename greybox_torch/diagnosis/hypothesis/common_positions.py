@@ -46,7 +46,7 @@ def with_common_positions(
     if fit is None:
         fit = _beside_the_longest(problems[0], simulator, length, budget)
     elif not rough:
-        fit = placed(_begun(problems[0], fit, names).fixed, simulator, length, budget, everywhere=False) or fit
+        fit = placed(_begun(problems[0], fit, names).fixed, simulator, length, budget) or fit
     if fit is None:
         return list(problems), list(early)
     return [_begun(p, fit, names) for p in problems], [_begun(p, fit, names) for p in early]

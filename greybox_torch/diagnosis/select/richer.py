@@ -32,8 +32,9 @@ def with_richer_form(study: Study, state: SearchState) -> Stage[SearchState]:
     if done.taken is None or only_noise(study.problem, state.current, study.settings):
         return state
     taken = done.taken
-    tried = (_in_form(study, state, taken, law, start) for law, start in _forms(taken.candidate.attachment, state))
-    paying = [r for r in tried if r is not None and _pays(study, state.current, r)]
+    effect = taken.candidate.attachment
+    tried = (_in_form(study, state, taken, law, start) for law, start in _forms(effect, state))
+    paying = [r for r in tried if r is not None and _preferred(study, state.current, effect, r)]
     best = min(paying, key=lambda r: r.fitted.score, default=None)
     if best is None:
         return state
@@ -72,22 +73,31 @@ def _improves(study: Study, found: RankedCandidate) -> bool:
 
 
 def _forms(effect: Attachment, state: SearchState) -> Iterator[tuple[Attachment, dict[str, float]]]:
-    """The richer forms of an effect, and all parameters to begin with."""
+    """The richer forms of an effect that are not there already under their own name, and all parameters to begin with."""
     start, values = f"{effect.prefix}.", state.current.values()
     own = {n.removeprefix(start): v for n, v in values.items() if n.startswith(start)}
     others = {n: v for n, v in values.items() if not n.startswith(start)}
-    for law, begun in effect.mechanism.richer(own):
-        yield replace(effect, mechanism=law), {**others, **{f"{start}{n}": v for n, v in begun.items()}}
+    for mechanism, begun in effect.mechanism.richer(own):
+        law = replace(effect, mechanism=mechanism)
+        if law.prefix not in state.prefixes - {effect.prefix}:
+            yield law, {**others, **{f"{law.prefix}.{n}": v for n, v in begun.items()}}
 
 
 def _in_form(
     study: Study, state: SearchState, taken: RankedCandidate, law: Attachment, start: Mapping[str, float]
 ) -> RankedCandidate | None:
     """The hypothesis of ``state`` with a form of the effect that was taken, compared with it."""
-    study.working_on(f"refitting {law.prefix} in a richer form")
-    fitted: Hypothesis | None = fit(study, state.with_law(law, law), [dict(start)], state.current.fits[0])
+    effect = taken.candidate.attachment
+    study.working_on(f"refitting {effect.prefix} in a richer form")
+    fitted: Hypothesis | None = fit(study, state.with_law(effect, law), [dict(start)], state.current.fits[0])
     candidate = replace(taken.candidate, attachment=law)
     return None if fitted is None else judged(candidate, state.current, fitted, study.settings)
+
+
+def _preferred(study: Study, before: Hypothesis, effect: Attachment, ranked: RankedCandidate) -> bool:
+    """Whether a form takes the place of the effect. One under another name only has to go farther, as any candidate has to."""
+    renamed = ranked.candidate.attachment.named != effect.named
+    return _improves(study, ranked) if renamed else _pays(study, before, ranked)
 
 
 def _pays(study: Study, before: Hypothesis, ranked: RankedCandidate) -> bool:

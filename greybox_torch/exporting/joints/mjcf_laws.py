@@ -130,6 +130,8 @@ def saturation(at: Place) -> Said:
 
 
 def lag(at: Place) -> Said:
+    if "damping" in at.values:
+        return [], ["a lag of second order: an actuator's filter is of first order"]
     return _actuator(at, {"dyntype": "filterexact", "dynprm": (at.values["T"],)})
 
 

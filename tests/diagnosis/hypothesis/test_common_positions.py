@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.estimate.problem import problem_for
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.simulation.simulator import Simulator
 
 from ..conftest import STEP
 
@@ -54,6 +57,19 @@ def test_a_ripple_of_several_experiments_has_one_phase(motor, search) -> None:
     assert apart(found.problem.initial[:, 1]).max() < 0.03
     again = search.refitted((ripple, attach(motor, "rotor", ConstantBias())), found)
     assert apart(again.problem.initial[:, 1]).max() < 0.03, "what is known of it is not forgotten"
+
+
+def test_a_place_that_a_poorer_law_had_is_looked_for_along_the_whole_period(motor, search) -> None:
+    """Seen: friction along a spindle's turn in the place of its cogging, one experiment a third of a period from where it belongs."""
+    ripple = attach(motor, "rotor", TorqueRipple(ORDER))
+    start = search.plain.values() | {f"{ripple.prefix}.a": SIZE, f"{ripple.prefix}.b": 0.0}
+    right = search.refitted((ripple,), search.plain, [start]).fits[0]
+    initial = right.problem.initial.copy()
+    initial[1, 1] += 0.45 * PERIOD
+    wrong = replace(right, problem=replace(right.problem, initial=initial))
+    simulator = Simulator.of(right.problem.model, right.problem.free_names)
+    ((problem,), _) = with_common_positions([right.problem], [], simulator, 62, [wrong], SearchBudget(), False)
+    assert apart(problem.initial[:, 1]).max() < 0.03
 
 
 def test_where_every_position_is_shown_or_none_matters_nothing_changes(motor, search) -> None:

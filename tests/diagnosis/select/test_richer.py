@@ -11,13 +11,17 @@ import pytest
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.refit.rank import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
-from greybox_torch.diagnosis.select.richer import _pays, richer_instead, with_richer_form
+from greybox_torch.diagnosis.select.richer import _forms, _pays, richer_instead, with_richer_form
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.actuator import InputGain
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.friction import CoulombFriction
+from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorLag
+from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
+
+from ..conftest import STEP, turned
 
 
 def found(search: Any, effect: Any, start: dict[str, float]) -> Any:
@@ -103,3 +107,51 @@ def test_a_richer_form_is_asked_once_more_when_another_law_comes_to_its_port(
         assert step.taken is not None and step.taken.candidate.attachment == law
         assert state.current.score == pytest.approx(reached, abs=1e-3)
     assert richer_instead(search.study, before, after("actuator")) is None
+
+
+def filtered(speed: np.ndarray, time: float, damping: float, step: float, parts: int = 50) -> np.ndarray:
+    """A speed (N,) through a filter of second order with a mean delay; Euler steps, fine, the speed linear between samples."""
+    omega, h = 2 * damping / time, step / parts
+    shown, slope, recorded = speed[0], 0.0, []
+    for now, then in zip(speed, np.append(speed[1:], speed[-1]), strict=True):
+        recorded.append(shown)
+        for k in range(parts):
+            true = now + (then - now) * k / parts
+            slope += h * (omega**2 * (true - shown) - 2 * damping * omega * slope)
+            shown += h * slope
+    return np.array(recorded)
+
+
+@pytest.mark.parametrize("taken", [OutputDelay(), SensorLag()])
+def test_a_filter_of_second_order_is_found_behind_a_delay_or_a_lag(data_set, motor, motor_speed, begun, taken) -> None:
+    """Seen: a flow meter with a filter of second order told as a delay (0.97)."""
+    rng, time, damping = np.random.default_rng(0), 0.12, 0.7
+    voltage = np.repeat(rng.uniform(-3, 3, 100), 20)
+    speed = filtered(motor_speed(voltage, start=0.3), time, damping, STEP) + rng.normal(0, 0.01, 2000)
+    data = data_set({"voltage": "V", "speed": "rad/s"}, [{"voltage": voltage, "speed": speed}], sample_time=STEP)
+    search, effect = begun(data, motor), attach(motor, "sensor", taken)
+    state = result_of(with_richer_form(search.study, found(search, effect, {f"{effect.prefix}.T": time})))
+    (law,) = state.effects
+    assert law.named == ("sensor", "sensor_lag") and law.mechanism.options() == {"second_order": True}
+    values = state.current.values()
+    assert values[f"{law.prefix}.T"] == pytest.approx(time, rel=0.03)
+    assert values[f"{law.prefix}.damping"] == pytest.approx(damping, rel=0.05)
+    both = replace(state, current=replace(state.current, effects=(effect, attach(motor, "sensor", SensorLag()))))
+    if isinstance(taken, OutputDelay):
+        assert not list(_forms(effect, both)), "there is a lag at the sensor already"
+    dry = attach(motor, "sensor", SensorBias())
+    assert not list(_forms(dry, found(search, dry, {f"{dry.prefix}.bias": 0.0})))
+
+
+def test_friction_along_a_turn_that_never_reverses_is_asked_as_a_ripple_with_harmonics(data_set, motor, begun) -> None:
+    """Seen: a spindle's cogging of orders 8, 16 and 24, always forward, told as friction that depends on position."""
+    rng, cogging = np.random.default_rng(0), {1: 0.04, 2: 0.02, 3: 0.01}
+    voltage = np.repeat(rng.uniform(2, 6, 100), 20)
+    speed = turned(voltage, lambda q, v: sum(f * np.sin(2.5 * k * q) for k, f in cogging.items()))
+    record = {"voltage": voltage, "speed": speed + rng.normal(0, 0.02, 2000)}
+    search = begun(data_set({"voltage": "V", "speed": "rad/s"}, [record], sample_time=STEP), motor)
+    effect = attach(motor, "rotor", PositionDependentFriction(2.5))
+    before = found(search, effect, {f"{effect.prefix}.b": -0.04})
+    (law,) = result_of(with_richer_form(search.study, before)).effects
+    assert law.named == ("rotor", "torque_ripple")
+    assert isinstance(law.mechanism, TorqueRipple) and law.mechanism.harmonics == 3
