@@ -15,7 +15,7 @@ from greybox_torch.checkpoint import Checkpoint, check_same_parameters, check_sa
 from greybox_torch.data import DataSet
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import with_card
-from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.attached import attached
 from greybox_torch.mechanisms.stored import restored_model
 from greybox_torch.model import GreyBoxModel, Parameter
 from greybox_torch.model.copies import copy_holding
@@ -116,9 +116,7 @@ def _saved(path: Path, checkpoint: Checkpoint, model: GreyBoxModel) -> SavedMode
 
 def _with_later_parameters(checkpoint: Checkpoint, model: GreyBoxModel) -> Checkpoint:
     """The checkpoint with zero for what its laws did not have when it was written."""
-    if not isinstance(model, AugmentedModel):
-        return checkpoint
-    later = {f"{a.prefix}.{name}" for a in model.attachments for name in a.mechanism.later}
+    later = {f"{a.prefix}.{name}" for a in attached(model)[1] for name in a.mechanism.later}
     names = [p.name for p in model.declared_parameters]
     if not later & (set(names) - set(checkpoint.values)):
         return checkpoint

@@ -27,7 +27,7 @@ from greybox_torch.diagnosis.pipeline import Diagnosis
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.problem import with_card
 from greybox_torch.files import json_text, write_all
-from greybox_torch.mechanisms.stored import stored_effects
+from greybox_torch.mechanisms.stored import in_layers, stored_effects
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
 from greybox_torch.report import notebook
@@ -194,7 +194,7 @@ class DiagnosisResult(Result):
             title=self.given.title,
             values=self.found.values,
             units=self._units,
-            effects=[*stored_effects(self.given), *self.found.attachments],
+            effects=in_layers(stored_effects(self.given), self.found.attachments),
             free_starts=True,
             dataset=self.data.sha256,
             figures=self.content(Path())["fit"],

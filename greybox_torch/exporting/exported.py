@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from greybox_torch.codegen.arrays import UnsupportedOperation
 from greybox_torch.codegen.lower import Equations, lower
 from greybox_torch.errors import ArgumentError, UserError
-from greybox_torch.exporting.attached import attached
 from greybox_torch.exporting.delays import Delay, delays_of, with_delays
+from greybox_torch.mechanisms.attached import attached
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import SHARE
 from greybox_torch.model import GreyBoxModel

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import chain, count
 
 from greybox_torch.mechanisms.mechanism import Mechanism
 from greybox_torch.model import Body, GreyBoxModel
@@ -32,10 +33,16 @@ class Attachment:
 
 
 def attach(model: GreyBoxModel, port: str, mechanism: Mechanism, shifted: str = "") -> Attachment:
-    """The attachment of ``mechanism`` at ``port``, with the body that its position belongs to."""
+    """The attachment of ``mechanism`` at ``port``, with the body that its position belongs to.
+
+    Labelled where the model has an effect of this kind there already, as one that was diagnosed before may have.
+    """
     site = next(q for q in model.all_ports if q.name == port)
     position = ""
     if "position" in mechanism.signals() or "position" in mechanism.needs:
         body = site if isinstance(site, Body) else driving_body(model.ports)
         position = body.name if body is not None else ""
-    return Attachment(port, mechanism, position=position, shifted_state=shifted)
+    made = Attachment(port, mechanism, position=position, shifted_state=shifted)
+    there = {p.name.rpartition(".")[0] for p in model.declared_parameters}
+    labels = chain([""], (f"_{k}" for k in count(2)))
+    return next(a for label in labels if (a := replace(made, label=label)).prefix not in there)

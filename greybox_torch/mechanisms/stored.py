@@ -41,15 +41,36 @@ def stored_effects(model: GreyBoxModel) -> list[dict[str, Any]]:
     """What is attached to ``model``, in the form that a checkpoint keeps; empty for a plain model."""
     if not isinstance(model, AugmentedModel):
         return []
-    return [*stored_effects(model.base), *(attachment_json(a, model.surroundings[a.port]) for a in model.attachments)]
+    own = [attachment_json(a, model.surroundings[a.port]) for a in model.attachments]
+    return in_layers(stored_effects(model.base), own)
 
 
-def restored_model(base: GreyBoxModel, attachments: Sequence[Mapping[str, Any]]) -> AugmentedModel:
+def in_layers(there: Sequence[Mapping[str, Any]], further: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Effects that a model has, and those that were attached to it with these in it.
+
+    Which of them act first, and what they know of their ports, depends on what was attached to what: a ``layer`` tells.
+    """
+    layer = max((_layer(entry) for entry in there), default=-1) + 1
+    return [*(dict(e) for e in there), *({**e, "layer": layer} if layer else dict(e) for e in further)]
+
+
+def _layer(entry: Mapping[str, Any]) -> int:
+    return int(entry.get("layer", 0))
+
+
+def restored_model(base: GreyBoxModel, attachments: Sequence[Mapping[str, Any]]) -> GreyBoxModel:
     """``base`` with the effects of a checkpoint attached.
 
     Raises:
         UserError: a mechanism that is not in the library, or a port that the model does not have.
     """
+    model = base
+    for layer in sorted({_layer(entry) for entry in attachments}):
+        model = _with_layer(model, [entry for entry in attachments if _layer(entry) == layer])
+    return model
+
+
+def _with_layer(base: GreyBoxModel, attachments: Sequence[Mapping[str, Any]]) -> AugmentedModel:
     restored, surroundings = [], {}
     for entry in attachments:
         restored.append(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
-from greybox_torch.exporting.attached import attached
+from greybox_torch.mechanisms.attached import attached
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding

@@ -6,14 +6,21 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.ports import Actuator
 
 
 def attached(model: GreyBoxModel) -> tuple[GreyBoxModel, list[Attachment], dict[str, Surroundings]]:
-    """The model without effects, its effects in the order in which they were attached, and what they know of their ports."""
+    """The model without effects, its effects in the order in which one layer does what the layers do, and what they know of their ports.
+
+    What is attached to a model with effects acts on an input before these do, and on an output after them.
+    """
     attachments: list[Attachment] = []
     surroundings: dict[str, Surroundings] = {}
+    actuators = {port.name for port in model.all_ports if isinstance(port, Actuator)}
     while isinstance(model, AugmentedModel):
-        attachments[:0] = model.attachments
+        inner = model.attachments
+        before = [a for a in attachments if a.port in actuators]
+        attachments = [*before, *inner, *(a for a in attachments if a.port not in actuators)]
         surroundings = {**model.surroundings, **surroundings}
         model = model.base
     return model, attachments, surroundings
