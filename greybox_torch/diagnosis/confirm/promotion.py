@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from greybox_torch.data import DataSet
-from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain
+from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain, size
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
@@ -87,9 +87,15 @@ def serves(others: HeldOut, before: SearchState, after: SearchState) -> bool:
 
 
 def _no_worse(others: HeldOut, before: SearchState, after: SearchState) -> bool:
-    """Whether the model of ``after`` predicts held-out experiments no worse than that of ``before``, beyond chance."""
-    found = gain(others.fits(after.current), others.fits(before.current))
-    return found.errors_away < others.study.settings.held_out_beyond_chance
+    """Whether the model of ``after`` predicts held-out experiments no worse than that of ``before``, beyond chance.
+
+    Or, where that has no effects, worse by less than a finding beside the mismatch that the plain model leaves there once it is estimated
+    from what was taken: what the law of a stop lacks to be the machine's bends the parameters a little.
+    """
+    settings, (plain, old, new) = others.study.settings, map(others.fits, (after.plain, before.current, after.current))
+    if gain(new, old).errors_away < settings.held_out_beyond_chance:
+        return True
+    return not before.effects and size(plain, new, old, settings) < settings.least_size
 
 
 def _complete(others: HeldOut, state: SearchState) -> bool:

@@ -78,3 +78,18 @@ def refinements(
         return lacks and sizes[prefix] < settings.least_size_beside_larger
 
     return {p for p in state.prefixes if not sizes[p] >= least or doubtful(p) or part_of_another(p)}
+
+
+def sharing_with_the_rest(
+    study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain]
+) -> str | None:
+    """The smallest effect, where each is too small for a finding beside the rest alone, and all of them together are not.
+
+    None elsewhere. Of a lag and a delay each makes up for the other: one has to go before the other one's size is known.
+    """
+    by_effect = sizes(study, state, gains)
+    if len(by_effect) < 2 or refinements(study, state, others, gains, by_effect) != state.prefixes:
+        return None
+    plain, full = (h.fits if others is None else others.fits(h) for h in (state.plain, state.current))
+    together = size(plain, plain, full, study.settings)
+    return min(by_effect, key=lambda p: by_effect[p]) if together >= study.settings.least_size else None

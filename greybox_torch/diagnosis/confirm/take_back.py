@@ -9,6 +9,7 @@ from functools import partial
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, size, timelines
 from greybox_torch.diagnosis.confirm.second_choice import second_choice
 from greybox_torch.diagnosis.confirm.simpler_laws import with_simpler_laws
+from greybox_torch.diagnosis.confirm.standing import sharing_with_the_rest
 from greybox_torch.diagnosis.confirm.wider_laws import with_wider_laws
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
@@ -37,7 +38,7 @@ def confirm(study: Study, state: SearchState, others: HeldOut) -> Stage[SearchSt
 def _what_is_borne_out(study: Study, state: SearchState, others: HeldOut) -> Stage[SearchState]:
     """The state without the effects that held-out experiments take back, the weakest first."""
     while state.effects:
-        taken_back = _to_take_back(state, held_out_gains(state, others), others)
+        taken_back = _to_take_back(study, state, held_out_gains(state, others), others)
         if taken_back is None:
             break
         state = yield from drop(study, state, taken_back)
@@ -75,13 +76,14 @@ def _names_for_curve(study: Study, state: SearchState, others: HeldOut) -> Stage
     return (yield from drop_superfluous(study, named_state))
 
 
-def _to_take_back(state: SearchState, gains: Mapping[str, Gain], others: HeldOut) -> str | None:
-    """The weakest effect if it is not borne out, else one that is idle; None where all stand."""
+def _to_take_back(study: Study, state: SearchState, gains: Mapping[str, Gain], others: HeldOut) -> str | None:
+    """The weakest effect if it is not borne out, else one that is idle or does what the rest do; None where all stand."""
     weakest = min(gains, key=lambda p: gains[p].errors_away)
     settings = others.study.settings
     if not _borne_out(gains[weakest], settings.least_held_out, settings):
         return weakest
-    return _idle(state, gains, others.fits(state.current), others)
+    idle = _idle(state, gains, others.fits(state.current), others)
+    return sharing_with_the_rest(study, state, others, gains) if idle is None else idle
 
 
 def _borne_out(gain: Gain, least: float, settings: DiagnosisSettings) -> bool:

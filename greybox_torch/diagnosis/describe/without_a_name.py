@@ -10,7 +10,7 @@ from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.describe.residual_tests import Detection
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
-from greybox_torch.diagnosis.hypothesis.mismatch import least_mismatch, mismatch_share
+from greybox_torch.diagnosis.hypothesis.mismatch import largest_share, least_mismatch, mismatch_share
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -25,12 +25,13 @@ A_DISTURBANCE = (
 def error_without_a_name(study: Study, state: SearchState, others: HeldOut | None, judged: Judgement) -> float | None:
     """How many times the noise the model's error is on the worst experiment, if that is too much for badly determined friction.
 
-    By windows and by free runs: where either shows hardly more than noise, nothing says that anything is missing. Nor where the error is
-    less than simulations of one machine differ by. Where the recordings show no more than an upper bound of the noise, that bound is
-    counted only against errors that anybody sees.
+    By windows of any experiment and by free runs: where either shows hardly more than noise, nothing says that anything is missing. Nor
+    where the error is less than simulations of one machine differ by. Where the recordings show no more than an upper bound of the noise,
+    that bound is counted only against errors that anybody sees.
     """
     settings = study.settings
-    shares = (mismatch_share(state.plain, settings), judged.mismatch_share)
+    held_out = 0.0 if others is None else largest_share(others.fits(state.plain), settings)
+    shares = (max(mismatch_share(state.plain, settings), held_out), judged.mismatch_share)
     if max(shares) < least_mismatch(study):
         return None
     plain_to_see = min(shares) > settings.obvious_mismatch

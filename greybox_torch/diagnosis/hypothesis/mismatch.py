@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 
@@ -14,11 +15,17 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.window_fit import WindowFit
 
 
 def mismatch_share(fitted: Hypothesis, settings: DiagnosisSettings) -> float:
     """Root mean square error beyond the noise, in units of the outputs' spread: the largest over the window lengths."""
-    return max(_share(fit.mean_square, fit.problem, settings) for fit in fitted.fits)
+    return largest_share(fitted.fits, settings)
+
+
+def largest_share(fits: Sequence[WindowFit], settings: DiagnosisSettings) -> float:
+    """The same of fits over windows of several lengths; zero where there are none."""
+    return max((_share(fit.mean_square, fit.problem, settings) for fit in fits), default=0.0)
 
 
 def least_mismatch(study: Study) -> float:

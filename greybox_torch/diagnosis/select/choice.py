@@ -50,7 +50,7 @@ def simplest(
 
     The latter (``least_size``) does not count against a law that leaves noise alone where the simpler one does not. Any law with fewer
     parameters goes before one that ties with it and differs from it by next to nothing of the mismatch (``same_share``): good sensors show
-    such differences, and they are not the law's.
+    such differences, and they are not the law's. Not where both leave white noise alone: there the likelihood has told them apart.
     """
     best = next(iter(ranked), None)
     if best is None:
@@ -72,7 +72,8 @@ def simplest(
     def the_same(r: RankedCandidate) -> bool:
         near = r.fitted.score < best.fitted.score + settings.score_tie
         little = difference(plain, r.fitted, best.fitted, settings) < settings.same_share
-        return r.size < best.size and near and little
+        by_likelihood = r.cost is not None and best.cost is not None
+        return r.size < best.size and near and little and not by_likelihood
 
     return next((r for r in simpler if as_good(r)), next((r for r in ranked if the_same(r)), best))
 

@@ -95,9 +95,14 @@ def _in_form(
 
 
 def _preferred(study: Study, before: Hypothesis, effect: Attachment, ranked: RankedCandidate) -> bool:
-    """Whether a form takes the place of the effect. One under another name only has to go farther, as any candidate has to."""
+    """Whether a form takes the place of the effect. One under another name is a rival of it, which has to leave less than half.
+
+    Where the time is hardly resolved, a lag of second order and a dead time differ by what each lacks to be the machine's.
+    """
     renamed = ranked.candidate.attachment.named != effect.named
-    return _improves(study, ranked) if renamed else _pays(study, before, ranked)
+    if not renamed:
+        return _pays(study, before, ranked)
+    return _improves(study, ranked) and ranked.gain > -np.log1p(-study.settings.most_of_the_mismatch)
 
 
 def _pays(study: Study, before: Hypothesis, ranked: RankedCandidate) -> bool:
