@@ -92,10 +92,10 @@ def _no_worse(others: HeldOut, before: SearchState, after: SearchState) -> bool:
     Or, where that has no effects, worse by less than a finding beside the mismatch that the plain model leaves there once it is estimated
     from what was taken: what the law of a stop lacks to be the machine's bends the parameters a little.
     """
-    settings, (plain, old, new) = others.study.settings, map(others.fits, (after.plain, before.current, after.current))
+    settings, old, new = others.study.settings, others.fits(before.current), others.fits(after.current)
     if gain(new, old).errors_away < settings.held_out_beyond_chance:
         return True
-    return not before.effects and size(plain, new, old, settings) < settings.least_size
+    return not before.effects and size(others.fits(after.plain), new, old, settings) < settings.least_size
 
 
 def _complete(others: HeldOut, state: SearchState) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.above_noise import only_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.hypothesis.noise import noise_floor
+from greybox_torch.diagnosis.hypothesis.noise import floor_known, noise_floor
 from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.choice import least_gain, priced_score
@@ -99,31 +99,34 @@ def _preferred(study: Study, before: Hypothesis, effect: Attachment, ranked: Ran
 
     Where the time is hardly resolved, a lag of second order and a dead time differ by what each lacks to be the machine's.
     """
-    renamed = ranked.candidate.attachment.named != effect.named
-    if not renamed:
+    if ranked.candidate.attachment.named == effect.named:
         return _pays(study, before, ranked)
-    return _improves(study, ranked) and ranked.gain > -np.log1p(-study.settings.most_of_the_mismatch)
+    return _takes_up(study, before, ranked, study.settings.most_of_the_mismatch) and _improves(study, ranked)
 
 
 def _pays(study: Study, before: Hypothesis, ranked: RankedCandidate) -> bool:
-    """Whether a form takes up most of what the plain one leaves, beyond chance: less may be another effect's.
-
-    Most of the squared error over all window lengths, or of what is beyond the noise over those that show it best: over short windows
-    the plain form may leave noise alone.
-    """
+    """Whether a form takes up most of what the plain one leaves, beyond chance: less may be another effect's."""
     settings = study.settings
-    most = ranked.gain > -np.log1p(-settings.least_of_richer_form) or (
-        _left_where_it_shows(before, ranked.fitted, settings) < 1 - settings.least_of_richer_form
-    )
+    most = _takes_up(study, before, ranked, settings.least_of_richer_form)
     return most and ranked.significance > settings.least_significance and sound(study, ranked)
+
+
+def _takes_up(study: Study, before: Hypothesis, ranked: RankedCandidate, share: float) -> bool:
+    """Whether a form removes such a share of what the plain one leaves.
+
+    Of the squared error over all window lengths, or of what is beyond the noise over those that show it best: over short windows the plain
+    form may leave noise alone.
+    """
+    everywhere = ranked.gain > -float(np.log1p(-share))
+    return everywhere or _left_where_it_shows(before, ranked.fitted, study.settings) < 1 - share
 
 
 def _left_where_it_shows(before: Hypothesis, after: Hypothesis, settings: DiagnosisSettings) -> float:
     """The share of the squared error beyond the noise that a form leaves, over the windows in which the plain one leaves most of it.
 
-    All of it where the plain one leaves hardly more than noise.
+    All of it where the plain one leaves hardly more than noise, or nobody knows how much of it there is.
     """
-    if completes(before, settings):
+    if completes(before, settings) or not floor_known(before.problem, settings):
         return 1.0
     plain, form = max(zip(before.fits, after.fits, strict=True), key=lambda pair: pair[0].mean_square)
     floor = noise_floor(plain.problem, settings)

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
-from greybox_torch.diagnosis.confirm.standing import least_size, refinements, sizes
+from greybox_torch.diagnosis.confirm.standing import least_size, refinements, sharing_with_the_rest, sizes
 from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.mechanisms.actuator import InputDelay, InputLag
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import ViscousFriction
@@ -124,3 +125,24 @@ def test_small_effects_are_findings_only_where_noise_alone_is_left(motor, begun,
     wrong = motor_data(acting=lambda v: np.sign(v) * np.maximum(np.abs(v) - 1.0, 0.0))
     missing = begun(wrong, motor)
     assert least_size(missing.study, missing.state, HeldOut(wrong, missing.study)) == settings.least_size
+
+
+@pytest.mark.parametrize(
+    ("sizes_beside", "all_of_it", "taken_back"),
+    [((0.001, 0.002), 1.0, "actuator.input_lag"), ((0.001, 0.002), 0.004, None), ((0.001, 0.3), 1.0, None)],
+)
+def test_of_effects_that_make_up_for_each_other_one_has_to_go(
+    dead_zone_search, fits, stub, sizes_beside, all_of_it, taken_back
+) -> None:
+    """Seen: a delay of 1.2 samples, told as a lag and a delay, each a refinement beside the other: nothing was missing."""
+    study, noise = dead_zone_search.study, 4e-4
+    effects = (Attachment("actuator", InputLag()), Attachment("actuator", InputDelay()))
+    prefixes = {e.prefix for e in effects}
+    plain, full = stub(fits=fits(1.0)), stub(fits=fits(noise + (1 - all_of_it) * (1.0 - noise)))
+    state = stub(effects=effects, prefixes=prefixes, plain=plain, current=full, without=dict.fromkeys(prefixes))
+    gains = {e.prefix: Gain(0.7, 0.01, size=s) for e, s in zip(effects, sizes_beside, strict=True)}
+    others = stub(fits=lambda h: h.fits, times_noise=lambda h: np.array([1.0]))
+    assert sharing_with_the_rest(study, state, others, gains) == taken_back
+    if taken_back is not None:
+        alone = stub(**vars(state) | {"effects": effects[1:], "prefixes": {effects[1].prefix}, "without": {}})
+        assert sharing_with_the_rest(study, alone, others, {}) is None

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 
+from greybox_torch.diagnosis.describe import without_a_name
 from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest, Remains
-from greybox_torch.diagnosis.describe.without_a_name import is_missing
+from greybox_torch.diagnosis.describe.without_a_name import error_without_a_name, is_missing
 from greybox_torch.diagnosis.pipeline import diagnose
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
@@ -55,3 +59,26 @@ def test_a_random_load_on_a_complete_model_is_no_missing_physics(motor_data, mot
     assert not verdict.mismatch and verdict.effects == ()
     assert verdict.confidence < 0.8 and verdict.left is not None and verdict.left.times_noise > 3.0
     assert any("disturbance that nobody measured" in line for line in verdict.evidence)
+
+
+@pytest.mark.parametrize("shown", [True, False])
+def test_what_one_validation_experiment_shows_over_windows_is_missing(
+    dead_zone_search, stub, monkeypatch, shown
+) -> None:
+    """Seen: an end stop that one validation experiment reached, a fit of 6 % there: "nothing is missing" (0.95).
+
+    Where the recordings tell no more than an upper bound of the noise, a mismatch that anybody sees counts, wherever it shows.
+    """
+    search = dead_zone_search
+    small = tuple(replace(f, mean_square=1e-8) for f in search.plain.fits)
+    state: Any = stub(plain=replace(search.plain, fits=small))
+    large = search.plain.fits if shown else small
+    times = np.array([1.0, 500.0 if shown else 1.0])
+    others: Any = stub(
+        fits=lambda hypothesis: large, times_noise=lambda hypothesis: times, problem=search.study.problem
+    )
+    judged: Any = stub(mismatch_share=0.9, times_noise=times)
+    monkeypatch.setattr(without_a_name, "floor_known", lambda problem, settings: False)
+    error = error_without_a_name(search.study, state, others, judged)
+    assert error == (500.0 if shown else None)
+    assert is_missing(error, 1.0, [], True, SETTINGS) is shown

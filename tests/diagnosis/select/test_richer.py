@@ -11,10 +11,10 @@ import pytest
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.refit.rank import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
-from greybox_torch.diagnosis.select.richer import _forms, _pays, richer_instead, with_richer_form
+from greybox_torch.diagnosis.select.richer import _forms, _pays, _preferred, richer_instead, with_richer_form
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
-from greybox_torch.mechanisms.actuator import InputGain
+from greybox_torch.mechanisms.actuator import InputDelay, InputGain, InputLag
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.friction import CoulombFriction
@@ -141,6 +141,19 @@ def test_a_filter_of_second_order_is_found_behind_a_delay_or_a_lag(data_set, mot
         assert not list(_forms(effect, both)), "there is a lag at the sensor already"
     dry = attach(motor, "sensor", SensorBias())
     assert not list(_forms(dry, found(search, dry, {f"{dry.prefix}.bias": 0.0})))
+
+
+@pytest.mark.parametrize(("left", "taken"), [(0.85, False), (0.4, True)])
+def test_under_another_name_a_form_has_to_leave_less_than_half(motor_data, motor, begun, left, taken) -> None:
+    """Seen: a delay of 1.2 samples, told as a lag of second order that left 15 % less, and then as both."""
+    search, delay = begun(motor_data(), motor), attach(motor, "actuator", InputDelay())
+    before, lag = found(search, delay, {f"{delay.prefix}.T": STEP}).current, attach(motor, "actuator", InputLag(True))
+    there = found(search, lag, {f"{lag.prefix}.T": STEP, f"{lag.prefix}.damping": 1.0}).current
+    pairs = zip(there.fits, before.fits, strict=True)
+    after = replace(there, fits=tuple(replace(f, mean_square=left * b.mean_square) for f, b in pairs))
+    ranked = replace(judged(Candidate(lag, (), 0.5), before, after, search.study.settings), significance=9.0)
+    assert ranked.gain == pytest.approx(-np.log(left), abs=1e-3)
+    assert _preferred(search.study, before, delay, ranked) is taken
 
 
 def test_friction_along_a_turn_that_never_reverses_is_asked_as_a_ripple_with_harmonics(data_set, motor, begun) -> None:

@@ -145,6 +145,17 @@ def test_of_laws_that_differ_by_next_to_nothing_the_one_with_fewer_parameters_is
     assert told is sized[1 if first == "size" else 0]
 
 
+def test_laws_that_the_likelihood_tells_apart_are_not_the_same(ranked) -> None:
+    """Seen: one more mode of an arm, 54 nats likelier than a motor's gain, told as the gain."""
+    spread = np.random.default_rng(0).uniform(0.9, 1.1, WINDOWS)
+    plain, gain = ranked(ViscousFriction(), 1e3 * spread), ranked(ConstantBias(), 1.0001 * spread)
+    mode = ranked(StribeckFriction(), 1.0 * spread)
+    sized = [replace(r, fitted=replace(r.fitted, fits=with_free(r, n))) for r, n in ((mode, 3), (gain, 1))]
+    weighed = [replace(r, cost=cost) for r, cost in zip(sized, (-12452.9, -12398.9), strict=True)]
+    assert simplest(sized, plain.fitted, DiagnosisSettings()) is sized[1]
+    assert simplest(weighed, plain.fitted, DiagnosisSettings()) is weighed[0]
+
+
 def with_free(ranked: RankedCandidate, count: int) -> tuple[Any, ...]:
     """The fits of a ranked hypothesis, as if its effect had so many free parameters."""
     own = tuple(f"{ranked.candidate.attachment.prefix}.{k}" for k in range(count))
