@@ -8,7 +8,7 @@ from functools import partial
 from greybox_torch.diagnosis.hypothesis.above_noise import only_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import negligible
 from greybox_torch.diagnosis.hypothesis.significance import window_significance
-from greybox_torch.diagnosis.select.choice import alone_at_noise
+from greybox_torch.diagnosis.select.choice import alone_at_noise, chosen, least_gain
 from greybox_torch.diagnosis.select.flexed import flexed
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
 from greybox_torch.diagnosis.select.memory import completed_by_memory
@@ -78,6 +78,9 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
         two = yield from only_if(second_step(study, first), partial(_as_far, study, with_curve))
         if _as_far(study, with_curve, two):
             return replace(two, found_before=start.found_before)
+    name = _name_before_fine_curve(study, start, with_curve)
+    if name is not None and _as_far(study, with_curve, name):
+        return name
     branch = yield from only_if(_without_curves(study, start, with_curve), partial(_as_far, study, with_curve))
     if _as_far(study, with_curve, branch):
         return branch
@@ -85,6 +88,20 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     if standing is None or len(standing.effects) <= len(done.parent.effects):
         return replace(with_curve, plain=branch.plain)
     return replace(with_curve, plain=branch.plain, named=replace(standing, named=None))
+
+
+def _name_before_fine_curve(study: Study, start: SearchState, with_curve: SearchState) -> SearchState | None:
+    """``start`` with the best name of the step before the one that took a curve; None where that step took an effect, or had no name.
+
+    Of a few windows no name may be sure by itself. Fine curves are offered then, and if one is sure, something is there beyond chance.
+    """
+    before, done = with_curve.steps[-2:] if len(with_curve.steps) > 1 else (None, with_curve.steps[-1])
+    if before is None or before.taken is not None or before.parent.effects != done.parent.effects:
+        return None
+    name = chosen([r for r in before.ranked if not r.unknown], start.plain, study.settings)
+    if name is None or name.gain < least_gain(name.fitted, study.settings):
+        return None
+    return replace(start.at(name.fitted), steps=(*start.steps, replace(before, taken=name)))
 
 
 def _first_name(start: SearchState, branch: SearchState) -> SearchState | None:

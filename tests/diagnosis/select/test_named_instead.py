@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from greybox_torch.diagnosis.select import forward
-from greybox_torch.diagnosis.select.forward import _first_name, _in_pieces, _without_curves
-from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.select.forward import _first_name, _in_pieces, _name_before_fine_curve, _without_curves
+from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import result_of
 
@@ -89,3 +91,29 @@ def test_of_names_that_are_pieces_of_a_curve_the_first_is_asked_where_the_curve_
     assert found is not None and found.current is dry and found.steps == (started, first)
     assert _first_name(start, SearchState(none, none, steps=(started, nothing))) is None
     assert _first_name(start, start) is None
+
+
+@pytest.mark.parametrize(
+    ("taken", "beside", "gain", "named"),
+    [(False, (), 0.2, True), (True, (), 0.2, False), (False, ("law",), 0.2, False), (False, (), 0.001, False)],
+    ids=["nothing was sure", "something was taken", "of another hypothesis", "no gain"],
+)
+def test_a_name_that_few_windows_leave_open_is_asked_once_a_fine_curve_is_sure(
+    monkeypatch, stub, taken, beside, gain, named
+) -> None:
+    """Seen: a bias of 3.5 times the floor, 2 standard errors from chance over 14 windows, told as unknown (0.97) by a curve of 40 bumps."""
+    plain = stub(effects=())
+    bias = stub(unknown=False, gain=gain, fitted=stub(effects=("bias",), problem=None))
+    curve = stub(unknown=True, gain=0.25, fitted=stub(effects=("curve",)))
+    step = SelectionStep((), stub(effects=beside), (curve, bias), bias if taken else None)
+    with_curve = SearchState(plain, curve.fitted, (step, SelectionStep((), plain, (curve,), curve)))
+    monkeypatch.setattr(forward, "chosen", lambda ranked, *_: next(iter(ranked), None))
+    monkeypatch.setattr(forward, "least_gain", lambda *_: 0.01)
+    start, study = SearchState(plain, plain), stub(settings=DiagnosisSettings())
+    found = _name_before_fine_curve(study, start, with_curve)
+    assert (found is not None) is named
+    if found is not None:
+        assert found.current is bias.fitted and found.steps[-1].taken is bias
+        assert found.steps[-1].ranked == step.ranked
+    alone = replace(with_curve, steps=with_curve.steps[-1:])
+    assert _name_before_fine_curve(study, start, alone) is None
