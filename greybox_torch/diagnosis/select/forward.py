@@ -95,8 +95,10 @@ def _name_before_fine_curve(study: Study, start: SearchState, with_curve: Search
 
     Of a few windows no name may be sure by itself. Fine curves are offered then, and if one is sure, something is there beyond chance.
     """
-    before, done = with_curve.steps[-2:] if len(with_curve.steps) > 1 else (None, with_curve.steps[-1])
-    if before is None or before.taken is not None or before.parent.effects != done.parent.effects:
+    if len(with_curve.steps) < 2:
+        return None
+    before, done = with_curve.steps[-2:]
+    if before.taken is not None or before.parent.effects != done.parent.effects:
         return None
     name = chosen([r for r in before.ranked if not r.unknown], start.plain, study.settings)
     if name is None or name.gain < least_gain(name.fitted, study.settings):

@@ -97,11 +97,15 @@ def _in_form(
 def _preferred(study: Study, before: Hypothesis, effect: Attachment, ranked: RankedCandidate) -> bool:
     """Whether a form takes the place of the effect. One under another name is a rival of it, which has to leave less than half.
 
-    Where the time is hardly resolved, a lag of second order and a dead time differ by what each lacks to be the machine's.
+    Where the time is hardly resolved, a lag of second order and a dead time differ by what each lacks to be the machine's, and what is
+    beyond the noise counts only where the recordings tell how much noise there is.
     """
     if ranked.candidate.attachment.named == effect.named:
         return _pays(study, before, ranked)
-    return _takes_up(study, before, ranked, study.settings.most_of_the_mismatch) and _improves(study, ranked)
+    half = study.settings.most_of_the_mismatch
+    known = floor_known(before.problem, study.settings)
+    far = _takes_up(study, before, ranked, half) if known else _removes(ranked, half)
+    return far and _improves(study, ranked)
 
 
 def _pays(study: Study, before: Hypothesis, ranked: RankedCandidate) -> bool:
@@ -117,16 +121,20 @@ def _takes_up(study: Study, before: Hypothesis, ranked: RankedCandidate, share: 
     Of the squared error over all window lengths, or of what is beyond the noise over those that show it best: over short windows the plain
     form may leave noise alone.
     """
-    everywhere = ranked.gain > -float(np.log1p(-share))
-    return everywhere or _left_where_it_shows(before, ranked.fitted, study.settings) < 1 - share
+    return _removes(ranked, share) or _left_where_it_shows(before, ranked.fitted, study.settings) < 1 - share
+
+
+def _removes(ranked: RankedCandidate, share: float) -> bool:
+    """Whether a form removes such a share of the squared error over all window lengths."""
+    return ranked.gain > -float(np.log1p(-share))
 
 
 def _left_where_it_shows(before: Hypothesis, after: Hypothesis, settings: DiagnosisSettings) -> float:
     """The share of the squared error beyond the noise that a form leaves, over the windows in which the plain one leaves most of it.
 
-    All of it where the plain one leaves hardly more than noise, or nobody knows how much of it there is.
+    All of it where the plain one leaves hardly more than noise.
     """
-    if completes(before, settings) or not floor_known(before.problem, settings):
+    if completes(before, settings):
         return 1.0
     plain, form = max(zip(before.fits, after.fits, strict=True), key=lambda pair: pair[0].mean_square)
     floor = noise_floor(plain.problem, settings)
