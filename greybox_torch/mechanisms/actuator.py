@@ -25,6 +25,7 @@ class InputLag(Lag):
     name = "input_lag"
     kinds = ("actuator",)
     needs = ("input",)
+    akin = ("sensor_lag",)
     explanation = "The input acts through a lag (current loop, valve)."
     experiment = "a step or a chirp of the input, to tell a lag from a delay"
     looks = (2, 6, 20, 60)

@@ -59,6 +59,8 @@ class Mechanism:
     """Of these the ones whose whole force is a part of its own: beside it they would name the same friction twice."""
     twins: ClassVar[tuple[str, ...]] = ()
     """Mechanisms elsewhere that no recording of one input and one output tells from this one, however well it is fitted."""
+    akin: ClassVar[tuple[str, ...]] = ()
+    """Mechanisms elsewhere with the same parameters that do nearly the same: what one came to is a good start for the other."""
     essential: ClassVar[tuple[str, ...]] = ()
     """Amplitudes without which this would be another law; by default it is absent only where all are zero."""
     natural: ClassVar[tuple[str, ...]] = ()

@@ -18,6 +18,7 @@ class SensorLag(Lag):
     name = "sensor_lag"
     kinds = ("sensor",)
     needs = ("output",)
+    akin = ("input_lag",)
     explanation = "The output is recorded through a lag (filter, sensor dynamics)."
     experiment = "a second sensor, or a known motion"
     looks = (2, 6, 20)

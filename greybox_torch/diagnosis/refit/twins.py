@@ -1,8 +1,9 @@
-"""Start values that a law takes over from its twin.
+"""Start values that a law takes over from its twin, or from one akin to it.
 
 A dead time is found from where the screen puts it, and of steps and reversals the error has a valley for every corner that a wrong delay
 brings near another one. Two laws that do nearly the same, such as a delay of the input and one of the output, are screened apart, and one
-may begin in the right valley and the other not: then they would be compared by where they began.
+may begin in the right valley and the other not: then they would be compared by where they began. So it is with a lag of the input and one
+of the output, which nonlinear friction tells apart.
 """
 
 from __future__ import annotations
@@ -16,14 +17,14 @@ Tried = tuple[Candidate, Hypothesis | None]
 
 
 def from_twin(candidate: Candidate, reached: Hypothesis | None, tried: Sequence[Tried], tie: float) -> dict[str, float]:
-    """The values that a twin of a candidate came to in its trial, as start values of the candidate; none where it is not clearly better.
+    """The values that a law akin to a candidate came to in its trial, as start values of that; none where it is not clearly better.
 
     Args:
         reached: what the candidate came to itself, None where it could not be fitted.
         tried: candidates with what they came to.
         tie: difference of scores up to which two tie.
     """
-    twins = candidate.attachment.mechanism.twins
+    twins = {*candidate.attachment.mechanism.twins, *candidate.attachment.mechanism.akin}
     better = [
         (fitted.score, other, fitted.values())
         for other, fitted in tried

@@ -8,7 +8,7 @@ from greybox_torch.diagnosis.refit.twins import from_twin
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.mechanisms.actuator import InputDelay, InputLag
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.sensor import OutputDelay
+from greybox_torch.mechanisms.sensor import OutputDelay, SensorLag
 
 EARLY, LATE, LAG = (
     Candidate(Attachment(port, law), (), 0.5)
@@ -38,3 +38,14 @@ def test_twins_that_tie_are_left_alone(reached) -> None:
     one, other = reached(-5.0), reached(-5.02, **{"sensor.output_delay.T": 0.04})
     assert from_twin(EARLY, one, [(EARLY, one), (LATE, other)], 0.03) == {}
     assert from_twin(EARLY, one, [(EARLY, one), (LATE, None)], 0.03) == {}
+
+
+def test_a_lag_begins_where_that_of_the_other_end_came_to(reached) -> None:
+    """Seen: an arm's input lag that its trial lost in a valley of the friction; one of the sensor was named in its place (0.97)."""
+    late_lag = Candidate(Attachment("sensor", SensorLag()), (), 0.5)
+    stuck = reached(-1.3, **{"J": 0.3, "actuator.input_lag.T": 0.002})
+    found = reached(-5.3, **{"J": 0.2, "sensor.sensor_lag.T": 0.009})
+    tried = [(LAG, stuck), (late_lag, found)]
+    assert from_twin(LAG, stuck, tried, 0.03) == {"J": 0.2, "actuator.input_lag.T": 0.009}
+    assert from_twin(late_lag, found, tried, 0.03) == {}
+    assert not set(InputLag.twins) & {"sensor_lag"}, "well fitted, nonlinear friction tells them apart"
