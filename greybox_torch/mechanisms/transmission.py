@@ -162,7 +162,8 @@ class HystereticSpring(Mechanism):
         return longer_than_the_travel("z_0", values["z_0"], around, "deflection")
 
     def _smallest(self, around: Surroundings) -> float:
-        return around.ranges["rate"].reach * around.sample_time
+        """What the deflection changes by in a sample, as usual: the peaks are those of a model without what takes up the vibration."""
+        return around.ranges["rate"].rms * around.sample_time
 
 
 class NonlinearDamping(Mechanism):

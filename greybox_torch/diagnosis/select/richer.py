@@ -38,7 +38,7 @@ def with_richer_form(study: Study, state: SearchState) -> Stage[SearchState]:
     best = min(paying, key=lambda r: r.fitted.score, default=None)
     if best is None:
         return state
-    state = widened(state, done, best, best.fitted)
+    state = widened(state, done, _beside_rivals(taken, best), best.fitted)
     yield state
     return state
 
@@ -61,8 +61,14 @@ def richer_instead(study: Study, before: SearchState, after: SearchState) -> Sea
         for law, start in _forms(effect, before):
             found = _in_form(study, before, done.taken, law, start)
             if found is not None and priced_score(found.fitted, study.settings) <= to_reach and _improves(study, found):
-                return replace(widened(before, done, found, found.fitted), plain=after.plain)
+                in_step = _beside_rivals(done.taken, found)
+                return replace(widened(before, done, in_step, found.fitted), plain=after.plain)
     return None
+
+
+def _beside_rivals(plain: RankedCandidate, form: RankedCandidate) -> RankedCandidate:
+    """A form as its step has its rivals: with what it gains on the hypothesis that these build on, not on the plain form alone."""
+    return replace(form, gain=plain.gain + form.gain, significance=max(plain.significance, form.significance))
 
 
 def _improves(study: Study, found: RankedCandidate) -> bool:

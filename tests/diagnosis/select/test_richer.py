@@ -49,6 +49,7 @@ def test_harmonics_join_the_ripple_whichever_is_the_strongest(motor_data, motor,
         assert np.hypot(values[f"a{which}"], values[f"b{which}"]) == pytest.approx(f, rel=0.1)
     (step,) = state.steps
     assert step.taken is not None and step.taken.candidate.attachment == effect and step.taken.fitted is state.current
+    assert step.taken.gain == pytest.approx(search.plain.score - state.current.score), "as its rivals' gains are"
 
 
 def test_what_has_no_richer_form_or_leaves_noise_alone_stays_as_it_is(motor_data, motor, begun) -> None:
