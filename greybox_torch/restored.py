@@ -143,7 +143,7 @@ def _with_effects(path: Path, base: GreyBoxModel, checkpoint: Checkpoint) -> Gre
         return restored_model(base, checkpoint.effects)
     except UserError as error:
         raise UserError(f"checkpoint {path}: {error}") from None
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError) as error:
         raise UserError(f'checkpoint {path}: "effects" are damaged: {type(error).__name__}: {error}') from None
 
 

@@ -20,7 +20,10 @@ TINY = 1e-12
 
 
 class InputLag(Lag):
-    """The input acts through a lag of first or second order, see :class:`Lag`."""
+    """w acts in the place of the input u: T dw/dt = u − w; with ``second_order`` (T/2ζ)² d²w/dt² + T dw/dt = u − w.
+
+    See :class:`Lag`; ζ is the damping ratio, and T in both forms the mean delay.
+    """
 
     name = "input_lag"
     kinds = ("actuator",)

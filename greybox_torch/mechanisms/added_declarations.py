@@ -15,7 +15,8 @@ from greybox_torch.model import Body, GreyBoxModel, Input, Parameter, State
 
 
 def added_states(local: LocalSignals) -> list[State]:
-    """Positions and time where mechanisms need them, then the mechanisms' memory."""
+    """Positions and time where mechanisms need them and a layer before has none, then the mechanisms' memory."""
+    there = {s.name for s in local.base.states} - {s.name for s in local.base.plain.states}
     positions = [
         State(f"{n}.position", position_unit(local.base, local.body(n)), 0.0, fixed=True)
         for n in local.integrated_bodies()
@@ -26,7 +27,7 @@ def added_states(local: LocalSignals) -> list[State]:
         for a in local.attachments
         for s in a.mechanism.states(local.surroundings[a.port])
     ]
-    return [*positions, *time, *memory]
+    return [*(s for s in (*positions, *time) if s.name not in there), *memory]
 
 
 def added_inputs(attachments: Sequence[Attachment]) -> list[Input]:

@@ -10,13 +10,14 @@ from greybox_torch.model.ports import Actuator
 
 
 def attached(model: GreyBoxModel) -> tuple[GreyBoxModel, list[Attachment], dict[str, Surroundings]]:
-    """The model without effects, its effects in the order in which one layer does what the layers do, and what they know of their ports.
+    """The model without effects, all its effects, and what they know of their ports.
 
-    What is attached to a model with effects acts on an input before these do, and on an output after them.
+    In one layer the effects do what they do in several: what is attached to a model with effects acts on an input before these do, and on
+    an output after them.
     """
     attachments: list[Attachment] = []
     surroundings: dict[str, Surroundings] = {}
-    actuators = {port.name for port in model.all_ports if isinstance(port, Actuator)}
+    actuators = {port.name for port in model.plain.all_ports if isinstance(port, Actuator)}
     while isinstance(model, AugmentedModel):
         inner = model.attachments
         before = [a for a in attachments if a.port in actuators]

@@ -32,7 +32,7 @@ class Attachment:
         return self.port, self.mechanism.name
 
 
-def attach(model: GreyBoxModel, port: str, mechanism: Mechanism, shifted: str = "") -> Attachment:
+def attach(model: GreyBoxModel, port: str, mechanism: Mechanism, shifted: str = "", label: str = "") -> Attachment:
     """The attachment of ``mechanism`` at ``port``, with the body that its position belongs to.
 
     Labelled where the model has an effect of this kind there already, as one that was diagnosed before may have.
@@ -44,5 +44,5 @@ def attach(model: GreyBoxModel, port: str, mechanism: Mechanism, shifted: str = 
         position = body.name if body is not None else ""
     made = Attachment(port, mechanism, position=position, shifted_state=shifted)
     there = {p.name.rpartition(".")[0] for p in model.declared_parameters}
-    labels = chain([""], (f"_{k}" for k in count(2)))
-    return next(a for label in labels if (a := replace(made, label=label)).prefix not in there)
+    labels = chain([label], (f"{label}_{k}" for k in count(2)))
+    return next(a for one in labels if (a := replace(made, label=one)).prefix not in there)

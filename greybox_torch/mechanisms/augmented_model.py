@@ -15,10 +15,11 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.delayed_input import after, delayed
 from greybox_torch.mechanisms.local_signals import LocalSignals
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
+from greybox_torch.mechanisms.memories_begun import memories_begun
 from greybox_torch.mechanisms.signal_paths import SignalPaths
 from greybox_torch.mechanisms.start_positions import position_trials
 from greybox_torch.model import GreyBoxModel, Signals
-from greybox_torch.model.ports import Actuator, Sensor, value_of
+from greybox_torch.model.ports import Actuator, Port, Sensor, value_of
 
 
 class AugmentedModel(GreyBoxModel):
@@ -72,6 +73,11 @@ class AugmentedModel(GreyBoxModel):
     def plain(self) -> GreyBoxModel:
         return self.base.plain
 
+    @property
+    def all_ports(self) -> tuple[Port, ...]:
+        """Those of the model without effects: the channels of a delayed input are no inputs of the machine."""
+        return self.local.base.all_ports
+
     def parameter_name(self, attachment: Attachment, parameter: str) -> str:
         return f"{attachment.prefix}.{parameter}"
 
@@ -104,7 +110,7 @@ class AugmentedModel(GreyBoxModel):
         forces = self._forces(self._seen_states(x, u, p), reaching, acting, p, port)
         return dict(self.base.outputs_with(x, acting, p, forces))
 
-    def _shown_forces(self, seen: Any, reaching: Any, acting: Any, p: Any, port: Any) -> Signals | None:
+    def shown_forces(self, seen: Any, reaching: Any, acting: Any, p: Any, port: Any) -> Signals | None:
         """:meth:`_forces` where an output shows them; else no law asks for them, and evaluating every law would take long."""
         return self._forces(seen, reaching, acting, p, port) if self.base.shows_forces else None
 
@@ -150,23 +156,7 @@ class AugmentedModel(GreyBoxModel):
 
     def begun(self, states: np.ndarray, records: Any, samples: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Start states (W, n_x) with the memories that begin as their surroundings say."""
-        names = [s.name for s in self.states]
-        x, u = self.named_signals(torch.as_tensor(states.T), torch.as_tensor(records.u[:, samples]))
-        pairs = zip(self.declared_parameters, values, strict=True)
-        p = Signals("parameter", {q.name: torch.tensor(float(v), dtype=torch.float64) for q, v in pairs})
-        own = len(self.base.states), len(self.base.declared_parameters)
-        result = states.copy()
-        result[:, : own[0]] = self.base.begun(states[:, : own[0]], records, samples, values[: own[1]])
-        forces = self._shown_forces(x, {}, u, p, self.local.no_forces())
-        at = self._signals(x, u, p, forces)
-        for a in (a for a in self.attachments if a.mechanism.states(self.surroundings[a.port])):
-            begun = a.mechanism.starts(at(a))
-            for name, value in begun.items():
-                result[:, names.index(f"{a.prefix}.{name}")] = np.asarray(value)
-            if a.prefix not in self.probed:  # what it passes on begins where its memory does
-                x = x.replaced(**{f"{a.prefix}.{name}": torch.as_tensor(value) for name, value in begun.items()})
-                at = self._signals(x, u, p, forces)
-        return result
+        return memories_begun(self, states, records, samples, values)
 
     def _shown(self, seen: Signals, x: Signals, acting: Signals, p: Signals, forces: Any) -> dict[str, Any]:
         """What reaches every law at a sensor, by prefix; nothing where no law stands before another."""
@@ -175,7 +165,7 @@ class AugmentedModel(GreyBoxModel):
             return {}
         return self.paths.outputs(self.base.outputs_with(seen, acting, p, forces), x, p)[1]
 
-    def _signals(self, x: Signals, u: Signals, p: Signals, forces: Signals | None) -> Callable[[Attachment], Signals]:
+    def signals_at(self, x: Signals, u: Signals, p: Signals, forces: Signals | None) -> Callable[[Attachment], Signals]:
         """The signals at the port of a law, with what the laws before it at an actuator or a sensor pass on."""
         acting, reaching = self.paths.inputs(x, u, p)
         shown = self._shown(x, x, acting, p, forces or self.local.no_forces())
@@ -215,8 +205,8 @@ class AugmentedModel(GreyBoxModel):
         """The signals that an attached mechanism sees."""
         seen = self._seen_states(x, u, p)
         acting, reaching = self.paths.inputs(x, u, p)
-        forces = self._shown_forces(seen, reaching, acting, p, self.local.no_forces())
-        return self._signals(seen, u, p, forces)(attachment)
+        forces = self.shown_forces(seen, reaching, acting, p, self.local.no_forces())
+        return self.signals_at(seen, u, p, forces)(attachment)
 
     def _seen_states(self, x: Signals, u: Any, p: Any) -> Signals:
         """States with the deflections changed by kinematic mechanisms."""

@@ -16,7 +16,8 @@ from greybox_torch.model import Parameter, Signals, State
 class Lag(Mechanism):
     """T dw/dt = s − w of a signal s; with ``second_order`` (T/2ζ)² d²w/dt² + T dw/dt = s − w, with the damping ratio ζ.
 
-    In both forms T is the mean delay. A damping of 1 is two equal time constants T/2, one of 0.7 a Butterworth filter.
+    In both forms T is the mean delay. A damping of 1 is two equal time constants T/2, one of 0.7 a Butterworth filter. Lags shorter than a
+    few samples are followed no faster than the sampling shows: there the damping says nothing.
     """
 
     fades = True
@@ -52,6 +53,7 @@ class Lag(Mechanism):
             return {"lagged": lag_rate(signal, z.lagged, p.T, s.sample_time)}
         shortest = SHORTEST * s.sample_time
         time = torch.clamp(p.T, min=shortest)
+        # Shorter than a few samples it is no faster than the integrator follows: there the damping no longer counts.
         square = torch.maximum((0.5 * time / p.damping) ** 2, shortest * time)
         return {"lagged": z.slope, "slope": (signal - z.lagged - time * z.slope) / square}
 

@@ -13,7 +13,10 @@ from greybox_torch.model import Parameter, Signals, State
 
 
 class SensorLag(Lag):
-    """The output is recorded through a lag of first or second order, see :class:`Lag`."""
+    """w is recorded in the place of the output y: T dw/dt = y − w; with ``second_order`` (T/2ζ)² d²w/dt² + T dw/dt = y − w.
+
+    See :class:`Lag`; ζ is the damping ratio, and T in both forms the mean delay.
+    """
 
     name = "sensor_lag"
     kinds = ("sensor",)

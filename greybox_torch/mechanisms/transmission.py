@@ -163,7 +163,7 @@ class HystereticSpring(Mechanism):
 
     def _smallest(self, around: Surroundings) -> float:
         """What the deflection changes by in a sample, as usual: the peaks are those of a model without what takes up the vibration."""
-        return around.ranges["rate"].rms * around.sample_time
+        return max(around.ranges["rate"].rms, 1e-12) * around.sample_time
 
 
 class NonlinearDamping(Mechanism):

@@ -68,9 +68,8 @@ class PositionDependentFriction(Mechanism):
         return not_seen_to_repeat(values["order"], around)
 
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
-        """A ripple of this order with harmonics: where the body always turns forward it is one, with the signs changed."""
-        begun = {"a": -values["a"], "b": -values["b"], "order": values["order"]}
-        return ((TorqueRipple(values["order"], HARMONICS), begun),)
+        """A ripple of this order with harmonics: where the speed hardly changes its sign the friction is one without."""
+        return ((TorqueRipple(values["order"], HARMONICS), {n: values[n] for n in ("a", "b", "order")}),)
 
 
 class FrictionWarmup(Mechanism):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.actuator import InputDelay
@@ -70,7 +69,7 @@ def chain_candidates(model: GreyBoxModel, surroundings: Mapping[str, Surrounding
         for port in model.ports
         if isinstance(port, Body) and port.position is not None and _is_angle(surroundings[port.name])
     ]
-    return [replace(attach(model, links[0], Gravity(links)), label="_of_chain")] if len(links) > 1 else []
+    return [attach(model, links[0], Gravity(links), label="_of_chain")] if len(links) > 1 else []
 
 
 def common_delays(model: GreyBoxModel) -> list[Attachment]:
@@ -79,7 +78,7 @@ def common_delays(model: GreyBoxModel) -> list[Attachment]:
     if not rest:
         return []
     late = InputDelay([port.input for port in rest])
-    return [replace(attach(model, first.name, late), label="_of_all")]
+    return [attach(model, first.name, late, label="_of_all")]
 
 
 def periodic_candidates(

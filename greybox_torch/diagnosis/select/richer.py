@@ -79,13 +79,17 @@ def _improves(study: Study, found: RankedCandidate) -> bool:
 
 
 def _forms(effect: Attachment, state: SearchState) -> Iterator[tuple[Attachment, dict[str, float]]]:
-    """The richer forms of an effect that are not there already under their own name, and all parameters to begin with."""
+    """The richer forms of an effect that are not there already under their own name, and all parameters to begin with.
+
+    Neither among what was found nor among what the model was given with.
+    """
+    given = {p.name.rpartition(".")[0] for p in state.plain.model.declared_parameters}
     start, values = f"{effect.prefix}.", state.current.values()
     own = {n.removeprefix(start): v for n, v in values.items() if n.startswith(start)}
     others = {n: v for n, v in values.items() if not n.startswith(start)}
     for mechanism, begun in effect.mechanism.richer(own):
         law = replace(effect, mechanism=mechanism)
-        if law.prefix not in state.prefixes - {effect.prefix}:
+        if law.prefix not in (state.prefixes | given) - {effect.prefix}:
             yield law, {**others, **{f"{law.prefix}.{n}": v for n, v in begun.items()}}
 
 
