@@ -11,6 +11,7 @@ from greybox_torch.diagnosis.progress import Journal
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.reconstruction import Motion
+from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.simulator import DEFAULT, SimulationOptions
@@ -25,9 +26,10 @@ class Study:
     """The estimation experiments with the model as it stands, and how it is looked for what they lack.
 
     ``options`` are those of every simulation. ``surroundings`` and ``shifts`` are what mechanisms need to know of the ports: where signals
-    moved, and which state carries the deflection of a coupling; both are known once the model as it stands is fitted. ``motion``: what the
-    outputs show of the states, or why they do not. ``recorded``: all samples of the estimation experiments, where ``problem`` has some of
-    them. ``beliefs``: what is known beforehand. ``report`` is told what is being done, ``journal`` which candidates are tried.
+    moved, and which state carries the deflection of a coupling; both are known once the model as it stands is fitted. ``at_card``: windows
+    with the card's parameter values, where that fit is bent. ``motion``: what the outputs show of the states, or why they do not.
+    ``recorded``: all samples of the estimation experiments, where ``problem`` has some of them. ``beliefs``: what is known beforehand.
+    ``report`` is told what is being done, ``journal`` which candidates are tried.
     """
 
     problem: Problem
@@ -35,6 +37,7 @@ class Study:
     surroundings: Mapping[str, Surroundings] = field(default_factory=dict)
     shifts: Mapping[str, str] = field(default_factory=dict)
     motion: Motion | str | None = None
+    at_card: tuple[WindowFit, ...] = ()
     recorded: Records | None = None
     settings: DiagnosisSettings = field(default_factory=DiagnosisSettings)
     budget: SearchBudget = field(default_factory=SearchBudget)

@@ -144,12 +144,13 @@ def _with_ties(study: Study, ranked: Sequence[ScreenScore]) -> list[ScreenScore]
 
 
 def with_motion(found: Sequence[Candidate], from_motion: Sequence[Candidate]) -> list[Candidate]:
-    """Candidates of the screen, with the start values that the measured motion gives some of them, and what it adds to them."""
+    """Candidates of the screen, with further start values that the measured motion gives some of them, and what it adds to them."""
     added = {identity_of(c.attachment): c for c in from_motion}
-    both = [
-        replace(c, from_motion=added.pop(identity_of(c.attachment)).starts) if identity_of(c.attachment) in added else c
-        for c in found
-    ]
+    both = []
+    for candidate in found:
+        further = added.pop(identity_of(candidate.attachment), None)
+        starts = () if further is None else further.starts
+        both.append(replace(candidate, from_motion=(*candidate.from_motion, *starts)))
     return [*both, *added.values()]
 
 

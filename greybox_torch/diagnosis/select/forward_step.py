@@ -16,7 +16,7 @@ from greybox_torch.diagnosis.select.choice import chosen, least_gain
 from greybox_torch.diagnosis.select.compare import compare
 from greybox_torch.diagnosis.select.finer_curve import with_finer_curve
 from greybox_torch.diagnosis.select.found_before import with_found_before
-from greybox_torch.diagnosis.select.offered import from_motion, screen_scores
+from greybox_torch.diagnosis.select.offered import from_card, from_motion, screen_scores
 from greybox_torch.diagnosis.select.posterior import believed
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
@@ -46,6 +46,7 @@ def forward_step(
     screened = screen_scores(study, state, curves=curves and not state.has_curve, fine=fine)
     found = _worth_a_refit(study, state, screened, fine)
     if not fine:
+        found = with_motion(found, from_card(study, state))
         found = with_motion(found, from_motion(study, state))
         found = with_found_before(study, state, found, curves=curves)
     if found and not state.effects:

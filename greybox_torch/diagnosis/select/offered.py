@@ -10,9 +10,10 @@ from greybox_torch.diagnosis.screen.candidates import candidates, memory_candida
 from greybox_torch.diagnosis.screen.from_motion import candidates_from_motion
 from greybox_torch.diagnosis.screen.periodic_orders import distinct_orders, scan_orders
 from greybox_torch.diagnosis.screen.score_test import Screen, ScreenScore
-from greybox_torch.diagnosis.screen.shortlist import Candidate
+from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulation.side_by_side import side_by_side
@@ -27,21 +28,33 @@ def screen_scores(study: Study, state: SearchState, *, curves: bool, fine: bool)
     """
     study.working_on("screening fine curves" if fine else "screening every port and mechanism")
     every = _fine_curves(study) if fine else _offered(study, state, curves)
-    return _scored(study, state, every)
+    return _scored(study, state, every, state.current.fits)
+
+
+def from_card(study: Study, state: SearchState) -> list[Candidate]:
+    """What the screen around the card's values suggests to join the model as it stands, where the fit of that is bent."""
+    if state.effects or not study.at_card:
+        return []
+    study.working_on("screening around the card's values")
+    every = candidates(study.problem.model, study.shifts, study.surroundings, flexible=False)
+    return shortlist(study, _scored(study, state, every, study.at_card), study.at_card)
 
 
 def memory_scores(study: Study, state: SearchState, knots: int = 0) -> tuple[tuple[ScreenScore, ...], ...]:
     """By window length, the scores of residuals with memory at every port; with ``knots``, of those with a curve in front."""
     study.working_on("screening residuals with memory")
-    return _scored(study, state, memory_candidates(study.problem.model, study.surroundings, knots))
+    every = memory_candidates(study.problem.model, study.surroundings, knots)
+    return _scored(study, state, every, state.current.fits)
 
 
-def _scored(study: Study, state: SearchState, every: Sequence[Attachment]) -> tuple[tuple[ScreenScore, ...], ...]:
-    """By window length, the scores of those that are not there yet, nor excluded."""
+def _scored(
+    study: Study, state: SearchState, every: Sequence[Attachment], fits: Sequence[WindowFit]
+) -> tuple[tuple[ScreenScore, ...], ...]:
+    """By window length, the scores of those that are not there yet, nor excluded, around ``fits`` of the effects that are."""
     model, at = study.problem.model, state.current
     offered = [a for a in every if not (_is_there(a, at.effects) or study.beliefs.exclude(a))]
     if not offered:
-        return tuple(() for _ in at.fits)
+        return tuple(() for _ in fits)
     screen = Screen.of(
         model,
         at.effects,
@@ -50,7 +63,7 @@ def _scored(study: Study, state: SearchState, every: Sequence[Attachment]) -> tu
         at.problem.free_names,
         study.options,
     )
-    return tuple(tuple(scores) for scores in side_by_side(partial(screen.scores, fit) for fit in at.fits))
+    return tuple(tuple(scores) for scores in side_by_side(partial(screen.scores, fit) for fit in fits))
 
 
 def from_motion(study: Study, state: SearchState) -> list[Candidate]:

@@ -9,6 +9,7 @@ import numpy as np
 from greybox_torch.diagnosis.hypothesis.window_errors import window_errors
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.screen.views import views_of
+from greybox_torch.diagnosis.select.bent_model import from_the_card, narrowed
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.errors import NumericalError
@@ -36,11 +37,14 @@ def fit_plain_model(study: Study) -> tuple[Study, SearchState]:
         )
     # Over windows, not along the free run: that runs through a stop that the model lacks, and away with a bias.
     over = plain.fits[min(1, len(plain.fits) - 1)]
-    visited = states_along(over, plain.simulator)
+    around = surroundings_along(model, over.problem, states_along(over, plain.simulator))
+    at_card, ranges = from_the_card(study, plain)
+    narrower = around if ranges is None else narrowed(around, ranges, study.settings.bent_travel)
     study = replace(
         study,
         shifts=shifted_states(model, plain.problem),
-        surroundings=surroundings_along(model, over.problem, visited),
+        surroundings=narrower,
+        at_card=at_card if narrower != around else (),
     )
     return study, SearchState(plain, plain)
 

@@ -98,6 +98,13 @@ class ScreenSettings:
         "Part of what a free curve has to remove that it must promise in the screen to be refitted.",
         unit="share of least_curve_share",
     )
+    bent_travel: float = ratio(
+        3.0,
+        "How many times as far as with the card's values the fitted model has to move a signal for its fit to be taken as bent: then the "
+        "screen looks around the card's values, too.",
+        unit="ratio of the largest magnitudes",
+        chosen_by="start values of a card are right within tens of per cent",
+    )
     least_periods: float = number(
         5.0, "Periods within the travel from which an effect is seen to repeat.", unit="periods"
     )

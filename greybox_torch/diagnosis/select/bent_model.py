@@ -1,0 +1,48 @@
+"""A fit of the model as it stands that moves some signal much farther than the model with the card's values: bent, not the machine.
+
+What is missing may be made up for by parameters that no machine has: a drill string's spring a fortieth as stiff, behind which a bit
+that nobody measures rings at fifteen times the speed of the drive. Around such a fit the screen sees nothing of the bit's friction, and the
+ranges that bound its law are wrong. So both are taken from where the user began, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.study import Study
+from greybox_torch.estimate.surroundings import surroundings_along
+from greybox_torch.estimate.window_fit import WindowFit, fit_windows, states_along
+from greybox_torch.mechanisms.mechanism import Range, Surroundings
+
+Ranges = Mapping[str, Surroundings]
+
+
+def from_the_card(study: Study, plain: Hypothesis) -> tuple[tuple[WindowFit, ...], Ranges | None]:
+    """The windows of ``plain`` with the card's parameter values, start states estimated, and the ranges of the signals there.
+
+    No windows, and no ranges, where the simulation overflows.
+    """
+    fits: list[WindowFit] = []
+    for fitted in plain.fits:
+        limits = study.budget.first_iterations
+        found = fit_windows(study.problem.fixed, plain.simulator, fitted.windows.steps, settings=limits)
+        if found is None:
+            return (), None
+        fits.append(replace(found, problem=replace(found.problem, free=fitted.problem.free)))
+    over = fits[min(1, len(fits) - 1)]
+    return tuple(fits), surroundings_along(study.problem.model, over.problem, states_along(over, plain.simulator))
+
+
+def narrowed(found: Ranges, at_card: Ranges, farther: float) -> dict[str, Surroundings]:
+    """``found`` with the card's range for every signal that moves so many times ``farther`` than there."""
+
+    def of(name: str, range_: Range, there: Surroundings) -> Range:
+        other = there.ranges[name]
+        return other if range_.reach > farther * other.reach and other.rms > 0 else range_
+
+    return {
+        port: replace(around, ranges={n: of(n, r, at_card[port]) for n, r in around.ranges.items()})
+        for port, around in found.items()
+    }
