@@ -12,10 +12,8 @@ from greybox_torch.mechanisms.degenerate import beyond, not_a_frequency_of_the_r
 from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.order_of_curve import order_of_curve
+from greybox_torch.mechanisms.waves import HARMONICS, amplitudes, amplitudes_up_to, wave_parameters, waves
 from greybox_torch.model import Parameter, Signals, State
-
-HARMONICS = 3
-"""Of a ripple whose order is known, the order itself included."""
 
 KNOWN_PLACE = 0.01
 """Share of the travel within which a stop has to be known to stand."""
@@ -54,33 +52,20 @@ class TorqueRipple(Mechanism):
         self.order, self.harmonics = order, harmonics
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
-        waves = [(n, k) for k in range(1, self.harmonics + 1) for n in _amplitudes(k)]
-        told = {"a": "cosine amplitude", "b": "sine amplitude"}
-        low, high = 0.8 * self.order, 1.25 * self.order
-        return [
-            *(
-                Parameter(n, 0.0, around.force_unit, description=f"{told[n[0]]}{f' at {k} orders' if k > 1 else ''}")
-                for n, k in waves
-            ),
-            Parameter("order", self.order, "", lower=low, upper=high, description="periods per turn"),
-        ]
+        return wave_parameters(around, self.order, self.harmonics)
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        total = 0.0
-        for k in range(1, self.harmonics + 1):
-            angle, (cosine, sine) = k * p.order * s.position, _amplitudes(k)
-            total = total + p[cosine] * torch.cos(angle) + p[sine] * torch.sin(angle)
-        return total
+        return waves(s.position, p, self.harmonics)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(tuple(n for k in range(1, self.harmonics + 1) for n in _amplitudes(k)), {"order": self.order})]
+        return [Probe(amplitudes_up_to(self.harmonics), {"order": self.order})]
 
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
         """With harmonics of the order found, and as the second harmonic of half of it."""
         if self.harmonics > 1:
             return ()
         half = values["order"] / 2
-        as_second = {"order": half, **dict(zip(_amplitudes(2), (values["a"], values["b"]), strict=True))}
+        as_second = {"order": half, **dict(zip(amplitudes(2), (values["a"], values["b"]), strict=True))}
         return (TorqueRipple(values["order"], HARMONICS), dict(values)), (TorqueRipple(half, 2 * HARMONICS), as_second)
 
     def nearest(
@@ -91,11 +76,6 @@ class TorqueRipple(Mechanism):
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return not_seen_to_repeat(values["order"], around)
-
-
-def _amplitudes(k: int) -> tuple[str, str]:
-    """The names of the amplitudes of the k-th harmonic."""
-    return ("a", "b") if k == 1 else (f"a_{k}", f"b_{k}")
 
 
 class EndStop(Mechanism):

@@ -8,10 +8,11 @@ from typing import Any
 import torch
 
 from greybox_torch.mechanisms.degenerate import not_a_time_of_the_record, not_seen_to_repeat
-from greybox_torch.mechanisms.forces import HARMONICS, TorqueRipple
+from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.linear_law import Of
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.sign_change import DryLaw, smooth_sign, width_parameter, widths
+from greybox_torch.mechanisms.waves import HARMONICS, amplitudes_up_to, wave_parameters, waves
 from greybox_torch.model import Parameter, Signals
 
 
@@ -32,7 +33,7 @@ class LoadDependentFriction(DryLaw):
 
 
 class PositionDependentFriction(Mechanism):
-    """−(a cos nθ + b sin nθ) tanh(v / v_0)."""
+    """−(a cos nθ + b sin nθ) tanh(v / v_0) with an order n, and ``harmonics`` of it: a_k cos knθ + b_k sin knθ."""
 
     name = "position_dependent_friction"
     kinds = ("body",)
@@ -44,32 +45,27 @@ class PositionDependentFriction(Mechanism):
     source = "M. R. Popović, A. A. Goldenberg, IEEE Trans. Robotics and Automation 14(1), 1998"
     experiment = "the same positions passed in both directions"
 
-    def __init__(self, order: float = 1.0) -> None:
-        self.order = order
+    def __init__(self, order: float = 1.0, harmonics: int = 1) -> None:
+        self.order, self.harmonics = order, harmonics
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
-        return [
-            Parameter("a", 0.0, around.force_unit, description="cosine amplitude"),
-            Parameter("b", 0.0, around.force_unit, description="sine amplitude"),
-            Parameter(
-                "order", self.order, "", lower=0.8 * self.order, upper=1.25 * self.order, description="periods per turn"
-            ),
-            width_parameter(around),
-        ]
+        return [*wave_parameters(around, self.order, self.harmonics), width_parameter(around)]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        angle = p.order * s.position
-        return -(p.a * torch.cos(angle) + p.b * torch.sin(angle)) * smooth_sign(s.speed, p.v_0)
+        return -waves(s.position, p, self.harmonics) * smooth_sign(s.speed, p.v_0)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(("a", "b"), {"order": self.order, "v_0": widths(around)[1]})]
+        return [Probe(amplitudes_up_to(self.harmonics), {"order": self.order, "v_0": widths(around)[1]})]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return not_seen_to_repeat(values["order"], around)
 
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
-        """A ripple of this order with harmonics: where the speed hardly changes its sign the friction is one without."""
-        return ((TorqueRipple(values["order"], HARMONICS), {n: values[n] for n in ("a", "b", "order")}),)
+        """With harmonics; and as a ripple with harmonics: where the speed hardly changes its sign the friction is one without."""
+        if self.harmonics > 1:
+            return ()
+        order, wave = values["order"], {n: values[n] for n in ("a", "b", "order")}
+        return (PositionDependentFriction(order, HARMONICS), dict(values)), (TorqueRipple(order, HARMONICS), wave)
 
 
 class FrictionWarmup(Mechanism):

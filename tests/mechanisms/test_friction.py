@@ -97,6 +97,25 @@ def test_position_dependence_is_periodic(law) -> None:
     assert np.ptp(force) == pytest.approx(2 * np.hypot(0.4, 0.2), rel=0.01)
 
 
+def test_richer_forms_of_position_dependence_begin_as_it_was_found(law) -> None:
+    values, angle = {"a": 0.4, "b": -0.2, "order": 3.0, "v_0": 0.1}, np.linspace(0.0, 2.0, 50)
+    there = {"speed": np.full(50, -5.0), "position": angle}
+    (harmonics, begun), (ripple, wave) = PositionDependentFriction(3.0).richer(values)
+    assert harmonics.options() == ripple.options() == {"order": 3.0, "harmonics": 3}
+    plain = law(PositionDependentFriction(3.0), values, **there)
+    np.testing.assert_allclose(law(harmonics, begun, **there), plain, atol=1e-14)
+    np.testing.assert_allclose(law(ripple, wave, position=angle), plain, atol=1e-14)
+    assert harmonics.richer(begun) == ()
+
+
+def test_harmonics_of_position_dependence_rub(law) -> None:
+    angle, speed = np.linspace(0.0, 7.0, 60), np.repeat([4.0, -4.0], 30)
+    values = {"b": 0.1, "a_2": 0.2, "b_3": 0.3, "order": 2.0, "v_0": 0.1}
+    force = law(PositionDependentFriction(2.0, 3), values, speed=speed, position=angle)
+    level = 0.1 * np.sin(2 * angle) + 0.2 * np.cos(4 * angle) + 0.3 * np.sin(6 * angle)
+    np.testing.assert_allclose(force, -level * np.sign(speed), atol=1e-14)
+
+
 @given(v=speeds, c=levels, F_c=levels, F_s=levels, v_s=widths, v_0=widths, load=speeds, t=st.floats(0.0, 100.0))
 def test_friction_never_drives(law, v, c, F_c, F_s, v_s, v_0, load, t) -> None:
     v, load, t = np.array(v), np.array(load), np.array(t)

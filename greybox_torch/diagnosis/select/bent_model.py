@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, window_lengths
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.surroundings import surroundings_along
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows, states_along
@@ -25,9 +25,9 @@ def from_the_card(study: Study, plain: Hypothesis) -> tuple[tuple[WindowFit, ...
     No windows, and no ranges, where the simulation overflows.
     """
     fits: list[WindowFit] = []
-    for fitted in plain.fits:
+    for length, fitted in zip(window_lengths(study.problem, study.budget), plain.fits, strict=True):
         limits = study.budget.first_iterations
-        found = fit_windows(study.problem.fixed, plain.simulator, fitted.windows.steps, settings=limits)
+        found = fit_windows(study.problem.fixed, plain.simulator, length, settings=limits)
         if found is None:
             return (), None
         fits.append(replace(found, problem=replace(found.problem, free=fitted.problem.free)))

@@ -169,3 +169,22 @@ def test_friction_along_a_turn_that_never_reverses_is_asked_as_a_ripple_with_har
     (law,) = result_of(with_richer_form(search.study, before)).effects
     assert law.named == ("rotor", "torque_ripple")
     assert isinstance(law.mechanism, TorqueRipple) and law.mechanism.harmonics == 3
+
+
+def test_friction_along_a_turn_that_reverses_is_asked_with_harmonics(motor_data, motor, begun) -> None:
+    """Seen: bumps of a press cylinder's friction, told as friction that depends on position at three bodies (orders 1, 2 and 3)."""
+
+    def rubbing(q: float, v: float) -> float:
+        return -(0.06 * np.sin(2.5 * q) + 0.04 * np.cos(5.0 * q) + 0.03 * np.sin(7.5 * q)) * np.tanh(v / 0.2)
+
+    search = begun(motor_data(torque=rubbing), motor)
+    effect = attach(motor, "rotor", PositionDependentFriction(2.5))
+    before = found(search, effect, {f"{effect.prefix}.b": 0.06})
+    state = result_of(with_richer_form(search.study, before))
+    (law,) = state.effects
+    assert law.named == ("rotor", "position_dependent_friction")
+    assert law.mechanism.options()["harmonics"] == 3
+    values = {n.removeprefix(f"{law.prefix}."): v for n, v in state.current.values().items()}
+    assert values["order"] == pytest.approx(2.5, rel=0.01)
+    for k, size in {"": 0.06, "_2": 0.04, "_3": 0.03}.items():
+        assert np.hypot(values[f"a{k}"], values[f"b{k}"]) == pytest.approx(size, rel=0.15)

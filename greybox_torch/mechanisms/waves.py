@@ -1,0 +1,45 @@
+"""Sums of waves over a position: an order, and harmonics of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import torch
+
+from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.model import Parameter, Signals
+
+HARMONICS = 3
+"""Of a wave whose order is known, the order itself included."""
+
+
+def amplitudes(k: int) -> tuple[str, str]:
+    """The names of the cosine's and the sine's amplitude of the k-th harmonic."""
+    return ("a", "b") if k == 1 else (f"a_{k}", f"b_{k}")
+
+
+def amplitudes_up_to(harmonics: int) -> tuple[str, ...]:
+    """The names of all amplitudes."""
+    return tuple(name for k in range(1, harmonics + 1) for name in amplitudes(k))
+
+
+def wave_parameters(around: Surroundings, order: float, harmonics: int) -> list[Parameter]:
+    """Amplitudes, zero to begin with, and the order: periods per turn."""
+    told = {"a": "cosine amplitude", "b": "sine amplitude"}
+    waves = [(n, k) for k in range(1, harmonics + 1) for n in amplitudes(k)]
+    return [
+        *(
+            Parameter(n, 0.0, around.force_unit, description=f"{told[n[0]]}{f' at {k} orders' if k > 1 else ''}")
+            for n, k in waves
+        ),
+        Parameter("order", order, "", lower=0.8 * order, upper=1.25 * order, description="periods per turn"),
+    ]
+
+
+def waves(position: Any, p: Signals, harmonics: int) -> Any:
+    """a cos nθ + b sin nθ + Σ a_k cos knθ + b_k sin knθ."""
+    total = 0.0
+    for k in range(1, harmonics + 1):
+        angle, (cosine, sine) = k * p.order * position, amplitudes(k)
+        total = total + p[cosine] * torch.cos(angle) + p[sine] * torch.sin(angle)
+    return total
