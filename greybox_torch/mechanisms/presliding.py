@@ -9,6 +9,7 @@ import torch
 
 from greybox_torch.mechanisms.degenerate import longer_than_the_travel
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
+from greybox_torch.mechanisms.slip import slip_share
 from greybox_torch.model import Parameter, Signals, State
 
 
@@ -41,7 +42,7 @@ class PreslidingHysteresis(Mechanism):
         return [State("bristle", around.units.get("speed", "").replace("/s", ""))]
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
-        return {"bristle": s.speed - torch.abs(s.speed) * z.bristle / p.z_0}
+        return {"bristle": s.speed - torch.abs(s.speed) * slip_share(z.bristle, p.z_0)}
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         return -p.F * z.bristle / p.z_0

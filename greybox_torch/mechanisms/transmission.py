@@ -9,6 +9,7 @@ import torch
 
 from greybox_torch.mechanisms.degenerate import longer_than_the_travel
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
+from greybox_torch.mechanisms.slip import slip_share
 from greybox_torch.model import Parameter, Signals, State
 
 ROUNDING = 1e-9
@@ -149,7 +150,7 @@ class HystereticSpring(Mechanism):
         return [State("slip", around.units.get("deflection", ""))]
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
-        share = z.slip / p.z_0
+        share = slip_share(z.slip, p.z_0)
         return {"slip": s.rate - torch.abs(s.rate) * share * (1.0 - p.sharpness + p.sharpness * torch.abs(share))}
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:

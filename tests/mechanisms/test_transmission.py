@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from greybox_torch.mechanisms.mechanism import Range
+from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.transmission import Backlash, HystereticSpring, NonlinearDamping, NonlinearStiffness
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 
@@ -107,3 +108,30 @@ def test_how_soon_it_may_slip_is_told_by_the_usual_rate(around) -> None:
     places = (around, replace(around, ranges={**around.ranges, "rate": peaked}))
     least = [p.lower for place in places for p in HystereticSpring().parameters(place) if p.name == "z_0"]
     assert least == [pytest.approx(0.5 * around.ranges["rate"].rms * around.sample_time)] * 2
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "speed", "memory"),
+    [(HystereticSpring(), "rate", "slip"), (PreslidingHysteresis(), "speed", "bristle")],
+)
+def test_what_slips_stays_finite_where_a_step_is_too_long_for_it(rates, mechanism, speed, memory) -> None:
+    """Seen: start states before a dead time had passed, so fast that no refit with a hysteretic spring could be simulated."""
+    z_0, step = 0.01, 0.002
+    values = {"z_0": z_0, **({"sharpness": 0.5} if memory == "slip" else {})}
+
+    def stepped(slip: float, fast: float) -> float:
+        def of(z: float) -> float:
+            return float(rates(mechanism, values, {memory: np.array(z)}, **{speed: np.array(fast)})[0])
+
+        k1 = of(slip)
+        k2 = of(slip + 0.5 * step * k1)
+        k3 = of(slip + 0.5 * step * k2)
+        return slip + step / 6 * (k1 + 2 * (k2 + k3) + of(slip + step * k3))
+
+    slip = 0.0
+    for _ in range(20):
+        slip = stepped(slip, 200.0)  # forty times what the steps resolve
+        assert abs(slip) < 200 * z_0
+    for _ in range(200):
+        slip = stepped(slip, 1.0)
+    assert slip == pytest.approx(z_0, rel=1e-6)
