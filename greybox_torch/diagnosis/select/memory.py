@@ -7,6 +7,7 @@ left, a curve may stand in front: that follows, in part, whatever rubs.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
@@ -15,7 +16,7 @@ from greybox_torch.diagnosis.refit.rank import rank
 from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
 from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.forward_step import little_is_left, take_best
-from greybox_torch.diagnosis.select.offered import memory_scores
+from greybox_torch.diagnosis.select.offered import Place, memory_scores, place
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage, result_of
@@ -91,17 +92,30 @@ def _curved_if_farther(study: Study, linear: SearchState, standing: SearchState)
     before = linear.at(linear.steps[-1].parent)
     if linear.took_one and not far_above_noise(linear.current, study.settings):
         return linear
-    curved = result_of(_step(study, replace(before, steps=before.steps[:-1]), standing, study.budget.knots))
+    among = _leading(study, linear)
+    curved = result_of(_step(study, replace(before, steps=before.steps[:-1]), standing, study.budget.knots, among))
     least = study.settings.curve_margin if linear.took_one else 0.0
     return curved if curved.took_one and curved.current.score < linear.current.score - least else linear
 
 
-def _step(study: Study, state: SearchState, standing: SearchState, knots: int = 0) -> Stage[SearchState]:
-    """A step in which nothing but residuals with memory are offered; with ``knots``, those with a curve in front.
+def _leading(study: Study, linear: SearchState) -> set[Place]:
+    """The ports and signals of the linear residuals that explain most in the screen at some window length."""
+    some, best = study.budget.curves_with_memory, set()
+    for at in linear.steps[-1].screened:
+        first = sorted(at, key=lambda score: -score.explained)
+        places = dict.fromkeys(place(score.attachment) for score in first)
+        best |= set(list(places)[:some])
+    return best
+
+
+def _step(
+    study: Study, state: SearchState, standing: SearchState, knots: int = 0, among: Collection[Place] | None = None
+) -> Stage[SearchState]:
+    """A step in which nothing but residuals with memory are offered; with ``knots``, those with a curve in front ``among`` some.
 
     Only the few are refitted that by the screen may come as far as what stands: their refits are slow.
     """
-    screened = memory_scores(study, state, knots)
+    screened = memory_scores(study, state, knots, among)
     found: list[Candidate] = []
     for modes in (1, 2):
         of_kind = [[s for s in at if getattr(s.attachment.mechanism, "modes", 0) == modes] for at in screened]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import partial
 
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
@@ -17,6 +17,9 @@ from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulation.side_by_side import side_by_side
+
+Place = tuple[str, str]
+"""A port and a signal there."""
 
 
 def screen_scores(study: Study, state: SearchState, *, curves: bool, fine: bool) -> tuple[tuple[ScreenScore, ...], ...]:
@@ -40,11 +43,23 @@ def from_card(study: Study, state: SearchState) -> list[Candidate]:
     return shortlist(study, _scored(study, state, every, study.at_card), study.at_card)
 
 
-def memory_scores(study: Study, state: SearchState, knots: int = 0) -> tuple[tuple[ScreenScore, ...], ...]:
-    """By window length, the scores of residuals with memory at every port; with ``knots``, of those with a curve in front."""
+def place(attachment: Attachment) -> Place:
+    """The port and the signal of a free curve or response."""
+    return attachment.port, getattr(attachment.mechanism, "signal", "")
+
+
+def memory_scores(
+    study: Study, state: SearchState, knots: int = 0, among: Collection[Place] | None = None
+) -> tuple[tuple[ScreenScore, ...], ...]:
+    """By window length, the scores of residuals with memory at every port; with ``knots``, of those with a curve in front.
+
+    Args:
+        among: the ports and signals asked; by default all.
+    """
     study.working_on("screening residuals with memory")
     every = memory_candidates(study.problem.model, study.surroundings, knots)
-    return _scored(study, state, every, state.current.fits)
+    asked = [a for a in every if among is None or place(a) in among]
+    return _scored(study, state, asked, state.current.fits)
 
 
 def _scored(

@@ -136,6 +136,11 @@ class SearchBudget:
     curves_per_length: int = count(
         1, "Free curves that the screen passes on, by window length.", chosen_by=TIME, least=0
     )
+    curves_with_memory: int = count(
+        2,
+        "Residuals with memory that are screened with a curve in front, by window length: those that explain most without.",
+        chosen_by=TIME,
+    )
     most_screen_ties: int = count(8, "Named candidates that it passes on where they tie.", chosen_by=TIME)
     order_peaks: int = count(
         2, "Orders of a periodic effect that the scan follows, by window length and family.", chosen_by=TIME
