@@ -15,7 +15,7 @@ from greybox_torch.codegen.lower import Equations
 from greybox_torch.simulation.packed_normals import PackedNormals
 from greybox_torch.simulation.passes import Pass, Run
 from greybox_torch.simulation.records import Records
-from greybox_torch.simulation.side_by_side import cores
+from greybox_torch.simulation.side_by_side import threads
 
 _LONG, _POINTER = ctypes.c_long, ctypes.c_void_p
 
@@ -141,7 +141,7 @@ class NativeStepper:
 
 def _threads(groups: int, work: int) -> int:
     """How many threads a pass over ``groups`` of so much work each is worth: waking them costs as much as a short one."""
-    return max(1, min(groups, cores(), groups * work // WORTH_A_THREAD))
+    return max(1, min(groups, threads(), groups * work // WORTH_A_THREAD))
 
 
 def _signals(records: Records, real: type) -> dict[str, np.ndarray]:

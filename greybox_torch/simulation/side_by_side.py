@@ -11,7 +11,7 @@ import threading
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import copy_context
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import TypeVar
 
 from greybox_torch.deadline import check_time, until
@@ -21,9 +21,31 @@ Result = TypeVar("Result")
 _here = threading.local()
 
 
+class _Team:
+    """Tasks beside one another, and the cores that they share."""
+
+    def __init__(self, tasks: int, cores: int) -> None:
+        self._unfinished, self._cores, self._lock = tasks, cores, threading.Lock()
+
+    def finish_one(self) -> None:
+        with self._lock:
+            self._unfinished -= 1
+
+    @property
+    def share(self) -> int:
+        """Cores for each task: one, until fewer are unfinished than there are cores."""
+        return max(1, self._cores // max(1, self._unfinished))
+
+
+def threads() -> int:
+    """Threads that a single pass may use: all cores, within :func:`side_by_side` those that no other task needs any more."""
+    team: _Team | None = getattr(_here, "team", None)
+    return cores() if team is None else team.share
+
+
 def cores() -> int:
     """Cores that the present thread may use: one within :func:`side_by_side`, else all (or what OMP_NUM_THREADS says)."""
-    if getattr(_here, "beside_others", False):
+    if getattr(_here, "team", None) is not None:
         return 1
     first = os.environ.get("OMP_NUM_THREADS", "").split(",")[0].strip()  # of nested threads, the outer ones
     return int(first) if first.isdecimal() and int(first) else _of_the_machine()
@@ -40,11 +62,12 @@ def side_by_side(tasks: Iterable[Callable[[], Result]]) -> list[Result]:
 
     Where one raises, or Ctrl-C interrupts, what has not begun is left undone, what has ends at its next pass, and the exception goes on.
     """
-    tasks = list(tasks)
-    workers = min(cores(), len(tasks))
+    tasks, available = list(tasks), cores()
+    workers = min(available, len(tasks))
     if workers < 2:
         return [task() for task in tasks]
-    pool, given_up = ThreadPoolExecutor(workers, initializer=_begin), threading.Event()
+    team, given_up = _Team(len(tasks), available), threading.Event()
+    pool = ThreadPoolExecutor(workers, initializer=partial(_join, team))
 
     def begun(task: Callable[[], Result]) -> Result:
         check_time()  # before it says that it has begun
@@ -53,6 +76,8 @@ def side_by_side(tasks: Iterable[Callable[[], Result]]) -> list[Result]:
         except BaseException:
             given_up.set()  # here: the thread that waits for results may be slower than the next task
             raise
+        finally:
+            team.finish_one()
 
     try:
         with until(given_up.is_set):  # a context of its own for each, with the deadlines of the present one
@@ -65,5 +90,5 @@ def side_by_side(tasks: Iterable[Callable[[], Result]]) -> list[Result]:
         pool.shutdown(cancel_futures=True)
 
 
-def _begin() -> None:
-    _here.beside_others = True
+def _join(team: _Team) -> None:
+    _here.team = team

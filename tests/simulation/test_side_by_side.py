@@ -7,7 +7,7 @@ import threading
 
 import pytest
 
-from greybox_torch.simulation.side_by_side import cores, side_by_side
+from greybox_torch.simulation.side_by_side import cores, side_by_side, threads
 
 
 @pytest.mark.parametrize("threads", ["1", "3"])
@@ -23,6 +23,28 @@ def test_work_within_work_has_one_core(monkeypatch: pytest.MonkeyPatch) -> None:
     assert side_by_side([cores, cores]) == [1, 1]
     names = side_by_side([lambda: side_by_side([threading.current_thread] * 3)] * 2)
     assert all(len({t.name for t in inner}) == 1 for inner in names), "no threads within threads"
+
+
+def test_the_last_task_has_the_cores_that_the_others_had(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "4")
+    both, over = threading.Barrier(2), threading.Event()
+
+    def short() -> list[int]:
+        both.wait(10)
+        found = [threads(), cores()]
+        both.wait(10)
+        threading.Timer(0.2, over.set).start()
+        return found
+
+    def long() -> list[int]:
+        both.wait(10)
+        found = [threads(), cores()]
+        both.wait(10)
+        assert over.wait(10)
+        return [*found, threads(), cores()]
+
+    assert threads() == 4
+    assert side_by_side([long, short]) == [[2, 1, 4, 1], [2, 1]], "for passes; tasks within tasks have one core"
 
 
 @pytest.mark.parametrize(
