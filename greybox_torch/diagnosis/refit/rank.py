@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -24,6 +24,9 @@ from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import cut
+
+Shown = tuple[float, Hypothesis, int]
+"""How far a trial is from the hypothesis before it (negative: better), the trial, and the length of its windows in samples."""
 
 
 @dataclass(frozen=True)
@@ -95,22 +98,29 @@ def rank(
         starts = starts or candidate.first_starts(budget.trial_starts)
         return refit(effects, starts, at=[length], limits=budget.trial_iterations, simulator=simulator)
 
-    def compared(trial: Hypothesis | None, length: int) -> list[tuple[float, Hypothesis]]:
+    def compared(trial: Hypothesis | None, length: int) -> list[Shown]:
         """How far a trial is from the hypothesis before it (negative: better), where it is not hopeless."""
         before, standing = (_score_over(h, steps[length]) for h in (current, to_beat or current))
         hopeless = trial is None or trial.score >= standing + allowance
-        return [] if trial is None or hopeless else [(trial.score - before, trial)]
+        return [] if trial is None or hopeless else [(trial.score - before, trial, length)]
 
-    def where_it_shows(
-        candidate: Candidate, simulator: Simulator, own: Hypothesis | None
-    ) -> tuple[float, Hypothesis] | None:
+    def over_promised(candidate: Candidate, simulator: Simulator, lengths: Iterable[int]) -> list[Shown]:
+        """Its trials over those windows of ``lengths`` where the screen promises much of it."""
+        promised = candidate.explained >= study.settings.trial_promise
+        there = [n for n in lengths if promised and n != middle and steps[n] == candidate.steps]
+        return [shown for n in there for shown in compared(tried(candidate, simulator, length=n), n)]
+
+    def where_it_shows(candidate: Candidate, simulator: Simulator, own: Hypothesis | None) -> Shown | None:
         """Its trial over windows of middle length, or over those where the screen promises much of it if it does not show there."""
         found = compared(own, middle)
-        promised = candidate.explained >= study.settings.trial_promise
-        if promised and not (found and found[0][0] < -allowance):
-            for length in (n for n in at if n != middle and steps[n] == candidate.steps):
-                found += compared(tried(candidate, simulator, length=length), length)
-        return min(found, key=lambda pair: pair[0], default=None)
+        if not (found and found[0][0] < -allowance):
+            found += over_promised(candidate, simulator, at)
+        return min(found, key=lambda shown: shown[0], default=None)
+
+    def where_others_show(candidate: Candidate, simulator: Simulator, own: Shown | None) -> Shown | None:
+        """Its trial where it shows or, where others are compared over longer windows, also there: those have more to remove."""
+        found = [] if own is None else [own, *(over_promised(candidate, simulator, others) if own[2] == middle else ())]
+        return min(found, key=lambda shown: shown[0], default=None)
 
     def in_full(candidate: Candidate, before: Hypothesis, simulator: Simulator) -> RankedCandidate | None:
         study.working_on(f"refitting {candidate.attachment.prefix} in full")
@@ -141,6 +151,8 @@ def rank(
 
     reached = side_by_side(partial(tried_again, *pair, own) for pair, own in zip(pairs, reached, strict=True))
     shown = side_by_side(partial(where_it_shows, *pair, own) for pair, own in zip(pairs, reached, strict=True))
+    if others := {one[2] for one in shown if one is not None} - {middle}:
+        shown = side_by_side(partial(where_others_show, *pair, own) for pair, own in zip(pairs, shown, strict=True))
     first = [
         (trial[0], candidate, trial[1], simulator)
         for trial, (candidate, simulator) in zip(shown, pairs, strict=True)

@@ -99,6 +99,38 @@ def test_what_does_not_show_over_middle_windows_is_tried_where_the_screen_saw_it
     assert tried == [window_lengths(study.problem)[1], "in full"]
 
 
+def test_trials_are_compared_over_the_same_windows(dead_zone_search, monkeypatch) -> None:
+    """Seen: a stop that removed all but the noise over middle windows, behind three laws that removed a third over the longest."""
+    found, tried = dead_zone_search, []
+    study, current = found.study, found.state.current
+    _, middle, longest = window_lengths(study.problem)
+    steps = current.fits[2].windows.steps
+    offered = shortlist(study, screen_scores(study, found.state, curves=False, fine=False), current.fits)
+    stop, other = (replace(c, steps=steps, explained=e) for c, e in zip(offered[:2], (0.86, 0.43), strict=True))
+    names = {"stop": stop.attachment.named, "other": other.attachment.named}
+    left = {("stop", middle): 0.8, ("stop", longest): 0.1, ("other", middle): 1.0, ("other", longest): 0.6}
+
+    def fit(study: Any, effects: Any, starts: Any, *, at: Any = None, **how: Any) -> Any:
+        one = "stop" if names["stop"] in [e.named for e in effects] else "other"
+        tried.append((one, *(at or ["in full"])))
+        which = [k for k, length in enumerate(window_lengths(study.problem)) if at in (None, [length])]
+        share = left.get((one, *(at or ())), 0.5)
+        return replace(
+            current,
+            fits=tuple(replace(current.fits[k], mean_square=share * current.fits[k].mean_square) for k in which),
+        )
+
+    monkeypatch.setattr("greybox_torch.diagnosis.refit.rank.fit", fit)
+    monkeypatch.setattr("greybox_torch.diagnosis.refit.rank._pays", lambda study, ranked: True)
+    alone = replace(study, budget=replace(study.budget, finalists=1, most_tied=1))
+    (first,) = rank(alone, current, [other, stop])
+    assert first.candidate == stop, "by what it removes over the longest windows"
+    assert ("stop", longest) in tried
+    tried.clear()
+    rank(alone, current, [stop])
+    assert [where for _, where in tried] == [middle, "in full"], "nothing else is compared there"
+
+
 def test_beside_one_at_the_noise_none_is_refitted_that_is_behind_it(dead_zone_search) -> None:
     """However little of its gain a rival would have to bring."""
     assert refitted_in_full(dead_zone_search, finalist_share=0.0) == ["refitting actuator.actuator_deadzone in full"]
