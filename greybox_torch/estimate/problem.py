@@ -66,6 +66,11 @@ class Problem:
         return self.model.prepared(self.records, self.values)
 
     @property
+    def window_records(self) -> Records:
+        """The driving records as windows are compared with them: without what outputs show that was before the beginning."""
+        return self.model.settled(self.driving_records, self.values)
+
+    @property
     def fixed(self) -> Problem:
         """With every parameter as it is, none estimated."""
         return replace(self, free=np.zeros_like(self.free))

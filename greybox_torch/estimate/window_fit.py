@@ -20,6 +20,7 @@ from greybox_torch.estimate.rival import Rival
 from greybox_torch.estimate.rough_starts import rough_starts
 from greybox_torch.estimate.window_step import Hold, WindowModel, held, stepped
 from greybox_torch.simulation.passes import Pass, Restarts
+from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import Windows, cut
 
@@ -218,10 +219,9 @@ def evaluate(
     n_p = int(problem.free.sum())
     open_states = np.flatnonzero(~problem.carried)
     eye = np.broadcast_to(np.eye(n_x)[open_states], (count, len(open_states), n_x))
-    run = simulator.run(
-        problem.driving_records,
-        Pass(windows, problem.values, states, tangents=n_p > 0, start_directions=eye, weights=problem.weights),
-    )
+    records = problem.window_records
+    asked = Pass(windows, problem.values, states, tangents=n_p > 0, start_directions=eye, weights=problem.weights)
+    run = simulator.run(records, asked)
     assert run.normal is not None
     if not np.isfinite(run.normal).all():
         return None
@@ -234,7 +234,7 @@ def evaluate(
         hss=h[:, n_p:, n_p:],
         hsp=h[:, n_p:, :n_p],
         gs=g[:, n_p:],
-        mean_square=float(energies.sum()) / max(_weighted_samples(problem, windows), 1),
+        mean_square=float(energies.sum()) / max(_weighted_samples(records, windows), 1),
         energies=energies,
         open_states=open_states,
         away=states[:, open_states],
@@ -243,8 +243,8 @@ def evaluate(
     return found if hold is None else held(found, hold)
 
 
-def _weighted_samples(problem: Problem, windows: Windows) -> int:
+def _weighted_samples(records: Records, windows: Windows) -> int:
     """How many samples the windows compare, missing ones not counted."""
-    known = np.concatenate([[0], np.cumsum((~np.isnan(problem.records.y)).sum(axis=0))])
+    known = np.concatenate([[0], np.cumsum((~np.isnan(records.y)).sum(axis=0))])
     ends = np.minimum(windows.start + windows.steps, windows.last + 1)
     return int((known[ends] - known[windows.start]).sum())

@@ -13,13 +13,14 @@ from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.added_declarations import added_inputs, added_parameters, added_states, started_at
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.delayed_input import after, delayed
+from greybox_torch.mechanisms.late_outputs import without_what_was_before
 from greybox_torch.mechanisms.local_signals import LocalSignals
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
 from greybox_torch.mechanisms.memories_begun import memories_begun
 from greybox_torch.mechanisms.signal_paths import SignalPaths
 from greybox_torch.mechanisms.start_positions import position_trials
 from greybox_torch.model import GreyBoxModel, Signals
-from greybox_torch.model.ports import Actuator, Port, Sensor, value_of
+from greybox_torch.model.ports import Actuator, Port, Sensor, sensors, value_of
 
 
 class AugmentedModel(GreyBoxModel):
@@ -153,6 +154,13 @@ class AugmentedModel(GreyBoxModel):
             if a.prefix not in self.probed:  # a look at a long delay must not hide records from the other looks
                 y = np.where(after(records, delay), y, np.nan)
         return records if not rows else replace(records, u=np.concatenate([records.u, np.array(rows)]), y=y)
+
+    def settled(self, records: Any, values: Any) -> Any:
+        names = [p.name for p in self.declared_parameters]
+        rows = {site.name: i for i, site in enumerate(sensors(tuple(o.name for o in self.base.outputs)))}
+        own = [a for a in self.attachments if a.mechanism.settling > 0 and a.prefix not in self.probed]
+        late = [(a, float(values[names.index(f"{a.prefix}.T")])) for a in own]
+        return without_what_was_before(self.base.settled(records, values), rows, late)
 
     def begun(self, states: np.ndarray, records: Any, samples: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Start states (W, n_x) with the memories that begin as their surroundings say."""

@@ -49,6 +49,8 @@ class Mechanism:
     """Whether the law changes a coupling's deflection (:meth:`deflection`) instead of adding a force."""
     fades: ClassVar[bool] = False
     """Whether the memory is gone after a few samples, so that a window may begin with any."""
+    settling: ClassVar[float] = 0.0
+    """How many of its times T a window's errors do not count from where a record begins: what an output shows so far is from before it."""
     free: ClassVar[bool] = False
     """Whether it is no law but the answer `unknown`: whatever curve or response the recordings ask for."""
     linear: ClassVar[bool] = False

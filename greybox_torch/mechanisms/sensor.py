@@ -33,6 +33,8 @@ class SensorLag(Lag):
 class OutputDelay(Mechanism):
     """The output is recorded later by a dead time T, as its second-order Padé approximation (1 − sT/2 + s²T²/12)/(1 + sT/2 + s²T²/12).
 
+    What it shows first is what was before the record, which nobody knows: windows do not count that, for two dead times.
+
     Its two states are carried from window to window, short as their memory is: free in every one they would take up a tenth of the noise
     in windows of 20 samples, and a delay of the output would look likelier than one of the input, or a lag.
     """
@@ -40,6 +42,7 @@ class OutputDelay(Mechanism):
     name = "output_delay"
     kinds = ("sensor",)
     needs = ("output",)
+    settling = 2.0
     linear = True
     twins = ("input_delay",)
     natural = ("T.lower",)

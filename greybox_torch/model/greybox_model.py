@@ -84,6 +84,10 @@ class GreyBoxModel(torch.nn.Module):
         """The records that drives the model at parameter ``values`` (n_p,): the recorded one, unless an effect shifts signals in time."""
         return records
 
+    def settled(self, records: Any, values: Any) -> Any:
+        """The records without what outputs show that was before their beginning: that tells nothing of a window that begins there."""
+        return records
+
     def start_trials(self, values: Any) -> list[dict[str, float]]:
         """Start states to be tried one by one, where the data determine them only up to several possibilities."""
         return []

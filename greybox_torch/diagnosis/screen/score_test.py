@@ -124,7 +124,7 @@ class Screen:
         free = self._places(fitted)[~fitted.problem.carried]
         eye = np.broadcast_to(np.eye(starts.shape[1])[free], (len(windows.start), len(free), starts.shape[1]))
         run = self.simulator.run(
-            self.model.prepared(problem.records, values),
+            self.model.settled(self.model.prepared(problem.records, values), values),
             Pass(
                 windows,
                 values,
