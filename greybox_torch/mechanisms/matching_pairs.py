@@ -55,7 +55,7 @@ def matching_pair(
     total = _left(line, force, root)[1]
     if not total > 0.0:
         return None
-    looks = _looks(kind, around, signals, but)
+    looks = _looks(kind, around, signals, force, weight, but)
     alone = [1.0 - _left(np.hstack([line, a.columns]), force, root)[1] / total for a in looks]
     best: PairMatch | None = None
     for (a, of_a), (b, of_b) in combinations(zip(looks, alone, strict=True), 2):
@@ -73,10 +73,17 @@ def matching_pair(
     return best
 
 
-def _looks(kind: str, around: Surroundings, signals: Mapping[str, torch.Tensor], but: Collection[str]) -> list[Look]:
+def _looks(
+    kind: str,
+    around: Surroundings,
+    signals: Mapping[str, torch.Tensor],
+    force: np.ndarray,
+    weight: np.ndarray,
+    but: Collection[str],
+) -> list[Look]:
     """Every law without memory that is linear in its sizes and depends on no other signals, with every shape it is looked for with."""
     found: list[Look] = []
-    for law in laws_of(kind, around, signals, but):
+    for law in (one.nearest(around, signals, force, weight) for one in laws_of(kind, around, signals, but)):
         probes = law.probes(around)
         if set(but) & set(law.generalises) or any(SHARE in probe.directions for probe in probes):
             continue

@@ -54,6 +54,18 @@ def test_none_where_one_is_enough_or_no_two_come_near(around, force) -> None:
     assert matching_pair("body", around, {"speed": SPEED}, force, WEIGHT) is None
 
 
+def test_the_order_of_a_ripple_beside_a_bias_is_the_curves(around) -> None:
+    """Seen: a pendulum's bias and ripple of order 7.3, told as unknown since pairs had ripples of the usual orders alone."""
+    position = torch.linspace(-3.0, 5.0, 400, dtype=torch.float64)
+    force = 0.4 + 0.3 * np.cos(7.3 * position.numpy()) - 0.2 * np.sin(7.3 * position.numpy())
+    found = matching_pair("body", around, {"position": position}, force, np.ones(400))
+    assert found is not None and found.share > 0.97
+    told = {law.name: values for law, values in zip(found.laws, found.values, strict=True)}
+    assert set(told) == {"constant_bias", "torque_ripple"}
+    assert told["torque_ripple"]["order"] == pytest.approx(7.3, rel=0.02)
+    assert told["constant_bias"]["bias"] == pytest.approx(0.4, rel=0.05)
+
+
 def test_a_law_that_is_there_already_is_no_part_of_it(around) -> None:
     force = dry(1.75) + uneven(0.85)
     found = matching_pair("body", around, {"speed": SPEED}, force, WEIGHT, but={"coulomb_asymmetry"})
