@@ -48,7 +48,7 @@ def revise(study: Study, state: SearchState) -> Stage[SearchState]:
     price = partial(priced_score, settings=study.settings)
     newest = state.newest
     for effect in (e for e in state.effects if e.prefix != newest):
-        if beyond_doubt(study, state, effect):
+        if beyond_doubt(study, state, effect) and not lost_an_amplitude(study, state, effect):
             continue
         study.working_on(f"choosing {effect.prefix} once more")
         other = result_of(forward_step(study, state.at(state.without[effect.prefix])))
@@ -66,3 +66,13 @@ def beyond_doubt(study: Study, state: SearchState, effect: Attachment) -> bool:
     if done is None or done.taken is None:
         return False
     return shared(done.taken, done.ranked, study.settings, study.beliefs, done.led)[0] > study.settings.beyond_doubt
+
+
+def lost_an_amplitude(study: Study, state: SearchState, effect: Attachment) -> bool:
+    """Whether later effects have taken over what one of a law's amplitudes stood for: then the law may have been theirs in part."""
+    done = state.step_of(effect.prefix)
+    if done is None or done.taken is None or effect.mechanism.free:
+        return False
+    names = [f"{effect.prefix}.{a}" for a in effect.mechanism.amplitudes(study.surroundings[effect.port])]
+    once, now = done.taken.fitted.values(), state.current.values()
+    return any(abs(now[n]) < study.settings.lost_amplitude * abs(once[n]) for n in names if n in once and n in now)

@@ -128,9 +128,7 @@ class ComparisonSettings:
         0.02, "Scatter of the windows' errors below which differences between windows mean nothing.", unit=LOG_ERROR
     )
     parameter_price: float = number(
-        0.003,
-        "Improvement that a further parameter has to bring where more than noise is left.",
-        unit=LOG_ERROR,
+        0.003, "Improvement that a further parameter has to bring where more than noise is left.", unit=LOG_ERROR
     )
     score_tie: float = number(0.03, "Difference up to which named hypotheses tie.", unit=LOG_ERROR)
     trial_allowance: float = number(
@@ -243,7 +241,10 @@ class SelectionSettings:
         0.9, "Share from which a law that it contains is followed instead.", unit="share of what the best explains"
     )
     beyond_doubt: float = share(
-        0.95,
-        "Probability from which an effect is not chosen once more when others have been found.",
-        unit="probability",
+        0.95, "Probability from which an effect is not chosen once more beside later ones.", unit="probability"
+    )
+    lost_amplitude: float = share(
+        0.1,
+        "Share of what it was to which one of an effect's amplitudes has gone beside later effects for it to be chosen once more.",
+        unit="share of the amplitude when it was taken",
     )

@@ -17,7 +17,7 @@ from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.compare import compare
 from greybox_torch.diagnosis.select.forward_step import forward_step
 from greybox_torch.diagnosis.select.offered import orders_before, screen_scores
-from greybox_torch.diagnosis.select.search import beyond_doubt, revise
+from greybox_torch.diagnosis.select.search import beyond_doubt, lost_an_amplitude, revise
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import result_of
@@ -76,6 +76,26 @@ def test_what_stands_is_left_where_the_choice_is_the_same(two_lacking, motor) ->
         bias.prefix: search.refitted((drag,), search.plain),
     }
     assert result_of(revise(search.study, search.at(whole, without=without).state)).current is whole
+
+
+def test_a_law_of_which_an_amplitude_is_gone_was_another_one_in_part(two_lacking, motor) -> None:
+    """Seen: another gain and a bias, told as gravity with a phase; beside the bias the phase went to zero."""
+    search, effect = two_lacking, attach(motor, "rotor", TorqueRipple(3.0))
+    taken = search.refitted((effect,), search.plain)
+    step = SelectionStep((), search.plain, (), judged(Candidate(effect, (), 0.5), search.plain, taken, SETTINGS))
+    a, b = (f"{effect.prefix}.{name}" for name in "ab")
+    assert abs(taken.values()[a]) > 0 and abs(taken.values()[b]) > 0
+
+    def lost(**changes: float) -> bool:
+        values = {**taken.values(), **changes}
+        numbers = np.array([values[n] for n in taken.problem.names])
+        longest = replace(taken.fits[-1], problem=taken.problem.with_values(numbers))
+        now = replace(taken, fits=(*taken.fits[:-1], longest))
+        return lost_an_amplitude(search.study, replace(search.state, current=now, steps=(step,)), effect)
+
+    assert not lost() and not lost(**{a: 0.2 * taken.values()[a]})
+    assert lost(**{a: 0.05 * taken.values()[a]}) and lost(**{b: 0.0})
+    assert not lost_an_amplitude(search.study, search.state, effect), "nobody knows what it was when it was taken"
 
 
 def test_hypotheses_keep_their_fits_where_the_order_is_not_that_of_the_gains(motor_data, motor, begun) -> None:
