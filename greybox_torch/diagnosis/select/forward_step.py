@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist, with_motion
 from greybox_torch.diagnosis.select.choice import chosen, least_gain
-from greybox_torch.diagnosis.select.compare import compare
+from greybox_torch.diagnosis.select.compare import Comparison, compare
 from greybox_torch.diagnosis.select.finer_curve import with_finer_curve
 from greybox_torch.diagnosis.select.found_before import with_found_before
 from greybox_torch.diagnosis.select.offered import from_card, from_motion, screen_scores
@@ -34,6 +34,7 @@ def forward_step(
     curves: bool = True,
     fine: bool = False,
     known: Sequence[RankedCandidate] = (),
+    again: bool = True,
 ) -> Stage[SearchState]:
     """Screen, refit the shortlist, take the best if it pays; the state's last step says whether one was taken.
 
@@ -42,6 +43,7 @@ def forward_step(
             what is left.
         fine: offer curves with many knots, and nothing else.
         known: refits on top of the state's hypothesis that were made before.
+        again: repeat the step, once, from a far better fit of the state's hypothesis where refits have led to one.
     """
     screened = screen_scores(study, state, curves=curves and not state.has_curve, fine=fine)
     found = _worth_a_refit(study, state, screened, fine)
@@ -54,15 +56,31 @@ def forward_step(
         study.journal.pointed_at(first.attachment.named, first.explained)
     ranked = rank(study, state.current, found)
     further = rank(study, state.current, _at_other_ports(study, state, screened, found, ranked))
-    return (yield from take_best(study, state, screened, in_order([*known, *ranked, *further], study.settings)))
+    compared = compare(study, state.current, screened, in_order([*known, *ranked, *further], study.settings))
+    if again and _in_another_valley(study, state, compared):
+        there = with_better_fit(state, compared.parent)
+        return (yield from forward_step(study, there, curves=curves, fine=fine, known=known, again=False))
+    return (yield from _take(study, state, screened, compared))
 
 
 def take_best(
     study: Study, state: SearchState, screened: Screened, ranked: Sequence[RankedCandidate]
 ) -> Stage[SearchState]:
     """End a step: compare what was refitted, and take the best if it pays; a free curve is then drawn more finely."""
+    return (yield from _take(study, state, screened, compare(study, state.current, screened, ranked)))
+
+
+def _in_another_valley(study: Study, state: SearchState, compared: Comparison) -> bool:
+    """Whether a free curve leads and the refits have shown a far better fit of the hypothesis so far: what was screened and tried around
+    the worse one tells little of which law it is that lacks.
+    """
+    far_better = compared.parent.score < state.current.score - study.settings.curve_margin
+    return far_better and bool(compared.ranked) and compared.ranked[0].unknown
+
+
+def _take(study: Study, state: SearchState, screened: Screened, compared: Comparison) -> Stage[SearchState]:
+    """Take the best of the compared candidates if it pays."""
     settings = study.settings
-    compared = compare(study, state.current, screened, ranked)
     state = with_better_fit(state, compared.parent)
     in_turn = rank_by_likelihood([r for r in compared.ranked if sound(study, r)], settings, study.budget)
     cost_before = cache(partial(cost_of, compared.parent))
