@@ -77,4 +77,5 @@ def _beside_the_longest(problem: Problem, simulator: Simulator, length: int, bud
     fitted = fit_windows(alone, simulator, length, settings=budget.first_iterations)
     if fitted is None:
         return None
-    return placed(problem.with_values(fitted.problem.values).fixed, simulator, length, budget, nearer=False)
+    begun = problem.with_values(fitted.problem.values).fixed
+    return placed(begun, simulator, length, budget, nearer=False, kept=longest)

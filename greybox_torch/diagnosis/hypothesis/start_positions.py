@@ -31,6 +31,7 @@ def placed(
     *,
     everywhere: bool = True,
     nearer: bool = True,
+    kept: int | None = None,
 ) -> WindowFit | None:
     """A fit of the window start states alone, positions beginning where each experiment fits best; None where even windows overflow.
 
@@ -42,6 +43,7 @@ def placed(
         shorter: where the shorter windows placed it.
         everywhere: along the whole travel, not only near where ``problem`` has it.
         nearer: nearer to the best than one trial along the travel is to the next.
+        kept: an experiment that begins where ``problem`` has it: the parameters are of a fit to it.
     """
     fit = fit_windows(problem, simulator, length, shorter=shorter, settings=budget.position_iterations)
     trials = problem.model.start_trials(problem.values)
@@ -52,13 +54,15 @@ def placed(
     grid = np.array([[t[n] for n in names] for t in trials])
     experiments = problem.records.experiments(fit.windows.start)
     step = np.ptp(grid, axis=0) / max(len(grid) - 1, 1)
-    best = np.zeros((len(problem.records.first), len(places))) if everywhere else problem.initial[:, places]
-    known = [problem.initial[:, places]]
+    own = problem.initial[:, places]
+    best, known = np.zeros_like(own) if everywhere else own, [own]
     closer = (np.outer(FINER, step), np.outer(FINER, step), np.outer(FINER, 0.2 * step))
     for moves in (*((grid,) if everywhere else ()), *(closer if nearer else ())):
         best = _best_of(
             fit, places, [*known, best, *(best + move for move in moves)], experiments, simulator, length, budget
         )
+        if kept is not None:
+            best[kept] = own[kept]
         known = []
         there = _moved(fit, places, best, experiments, simulator, length, budget)
         if there is not None:  # with the trajectories there, the next trial is nearer to the truth

@@ -105,9 +105,10 @@ def rank(
         return [] if trial is None or hopeless else [(trial.score - before, trial, length)]
 
     def over_promised(candidate: Candidate, simulator: Simulator, lengths: Iterable[int]) -> list[Shown]:
-        """Its trials over those windows of ``lengths`` where the screen promises much of it."""
+        """Its trials over those windows of ``lengths`` where the screen promises much of it; over all where it was found before."""
         promised = candidate.explained >= study.settings.trial_promise
-        there = [n for n in lengths if promised and n != middle and steps[n] == candidate.steps]
+        shows = [n for n in lengths if candidate.found_before or (promised and steps[n] == candidate.steps)]
+        there = [n for n in shows if n != middle]
         return [shown for n in there for shown in compared(tried(candidate, simulator, length=n), n)]
 
     def where_it_shows(candidate: Candidate, simulator: Simulator, own: Hypothesis | None) -> Shown | None:

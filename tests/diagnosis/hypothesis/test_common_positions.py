@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.hypothesis.common_positions import with_common_positions
+from greybox_torch.diagnosis.hypothesis.start_positions import placed
 from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.estimate.problem import problem_for
 from greybox_torch.mechanisms.attachment import attach
@@ -70,6 +71,22 @@ def test_a_place_that_a_poorer_law_had_is_looked_for_along_the_whole_period(moto
     simulator = Simulator.of(right.problem.model, right.problem.free_names)
     ((problem,), _) = with_common_positions([right.problem], [], simulator, 62, [wrong], SearchBudget(), False)
     assert apart(problem.initial[:, 1]).max() < 0.03
+
+
+def test_the_experiment_that_the_law_was_fitted_to_begins_where_it_did(motor, search) -> None:
+    """Its place and the law's say the same: moved by what short windows leave, it would take the law along to a wrong place."""
+    ripple = attach(motor, "rotor", TorqueRipple(ORDER))
+    start = search.plain.values() | {f"{ripple.prefix}.a": SIZE, f"{ripple.prefix}.b": 0.0}
+    found = search.refitted((ripple,), search.plain, [start])
+    problem = found.fits[0].problem.fixed
+    turned = problem.initial.copy()
+    turned[:, 1] = [0.3 * PERIOD, 0.0, 0.0]
+    problem = replace(problem, initial=turned)
+    for kept in range(len(BEGINS)):
+        fit = placed(problem, found.simulator, 62, SearchBudget(), kept=kept)
+        assert fit is not None and fit.problem.initial[kept, 1] == turned[kept, 1]
+    free = placed(problem, found.simulator, 62, SearchBudget())
+    assert free is not None and free.problem.initial[0, 1] != turned[0, 1]
 
 
 def test_where_every_position_is_shown_or_none_matters_nothing_changes(motor, search) -> None:

@@ -99,6 +99,31 @@ def test_what_does_not_show_over_middle_windows_is_tried_where_the_screen_saw_it
     assert tried == [window_lengths(study.problem)[1], "in full"]
 
 
+def test_what_was_found_before_is_tried_over_all_windows(dead_zone_search, monkeypatch) -> None:
+    """Seen: an arm's stop, found with one experiment; with a second one the screen promised 3 % of it over middle windows, it was not
+    refitted where it shows, and the stop was told at the gearbox (0.97).
+    """
+    found, tried = dead_zone_search, []
+    study, current = found.study, found.state.current
+    shortest, middle, longest = window_lengths(study.problem)
+    (one, *_) = shortlist(study, screen_scores(study, found.state, curves=False, fine=False), current.fits)
+
+    def fit(*given: Any, at: Any = None, **how: Any) -> Any:
+        tried.extend(at or ["in full"])
+        own = [f for f, n in zip(current.fits, window_lengths(study.problem), strict=True) if at in (None, [n])]
+        better = 0.5 if at in (None, [longest]) else 1.0
+        return replace(current, fits=tuple(replace(f, mean_square=better * f.mean_square) for f in own))
+
+    monkeypatch.setattr("greybox_torch.diagnosis.refit.rank.fit", fit)
+    monkeypatch.setattr("greybox_torch.diagnosis.refit.rank._pays", lambda study, ranked: True)
+    little = replace(one, steps=current.fits[1].windows.steps, explained=0.03)
+    rank(study, current, [replace(little, found_before=({"size": 1.0},))])
+    assert tried == [middle, shortest, longest, "in full"]
+    tried.clear()
+    rank(study, current, [little])
+    assert tried == [middle, "in full"]
+
+
 def test_trials_are_compared_over_the_same_windows(dead_zone_search, monkeypatch) -> None:
     """Seen: a stop that removed all but the noise over middle windows, behind three laws that removed a third over the longest."""
     found, tried = dead_zone_search, []
