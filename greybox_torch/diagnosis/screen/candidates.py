@@ -16,6 +16,7 @@ from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Port
+from greybox_torch.model.joined_bodies import joined_bodies
 from greybox_torch.model.ports import Actuator, driving_body
 
 ANGLES = ("rad", "deg", "rev", "turn")
@@ -63,12 +64,12 @@ def candidates(
 
 
 def chain_candidates(model: GreyBoxModel, surroundings: Mapping[str, Surroundings]) -> list[Attachment]:
-    """The weight of a chain of links, where two bodies or more have an angle: one law that acts at all of their joints."""
-    links = [
-        port.name
-        for port in model.ports
-        if isinstance(port, Body) and port.position is not None and _is_angle(surroundings[port.name])
-    ]
+    """The weight of a chain of links, where two bodies or more have an angle: one law that acts at all of their joints.
+
+    Of bodies that a spring joins the last one is a link: they turn about the same axis.
+    """
+    with_angle = (b for *_, b in joined_bodies(model) if b.position is not None and _is_angle(surroundings[b.name]))
+    links = [body.name for body in with_angle]
     return [attach(model, links[0], Gravity(links), label="_of_chain")] if len(links) > 1 else []
 
 

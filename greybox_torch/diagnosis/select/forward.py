@@ -18,6 +18,7 @@ from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.select.two_laws import second_step, with_first_of_two
 from greybox_torch.diagnosis.stopping import Stage, only_if
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.model.joined_bodies import joined_bodies
 
 
 def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> Stage[SearchState]:
@@ -132,20 +133,29 @@ def _gains(with_curve: SearchState, branch: SearchState) -> tuple[float, float]:
 def _in_pieces(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
     """Whether named effects at the curve's port are pieces of it, and none is the machine's.
 
-    True where there are more than ``most_names_for_curve`` of them. Also true where two depend on the curve's own signal, which can draw
-    any smooth curve between them, and the curve still removes, beyond chance, some of what they leave.
+    True where there are more than ``most_names_for_curve`` of them. Also true where two, there or at a body that springs join with it,
+    depend on the curve's own signal, which can draw any smooth curve between them, and the curve still removes, beyond chance, some of
+    what they leave.
     """
     done, settings = with_curve.steps[-1], study.settings
     curve = None if done.taken is None else done.taken.candidate.attachment
     if curve is None:
         return False
-    added = [e for e in branch.effects if e not in done.parent.effects and e.port == curve.port]
-    if len(added) > settings.most_names_for_curve:
+    added = [e for e in branch.effects if e not in done.parent.effects]
+    if sum(e.port == curve.port for e in added) > settings.most_names_for_curve:
         return True
+    near = _joined_with(study, curve.port)
+    added = [e for e in added if e.port in near]
     if len(added) < 2 or not all(getattr(curve.mechanism, "signal", None) in e.mechanism.needs for e in added):
         return False
     further = partial(window_significance, branch.current, with_curve.current, settings)
     return with_curve.current.score < branch.current.score and further() > settings.least_significance
+
+
+def _joined_with(study: Study, port: str) -> set[str]:
+    """A port and, where it is a body, the bodies that springs join with it: at either end of a spring a force does nearly the same."""
+    groups = ({body.name for body in group} for group in joined_bodies(study.problem.model))
+    return next((group for group in groups if port in group), {port})
 
 
 def _as_far(study: Study, with_curve: SearchState, branch: SearchState) -> bool:

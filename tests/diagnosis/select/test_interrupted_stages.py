@@ -89,7 +89,10 @@ def test_among_names_in_the_place_of_a_curve_the_curve_stands_until_they_come_as
     monkeypatch.setattr(advancing, "take_effects", yielding(then=KeyboardInterrupt))
     monkeypatch.setattr(advancing, "alone_at_noise", lambda *args: False)
     monkeypatch.setattr(advancing, "with_first_of_two", lambda *args: None)
-    best, ended = best_so_far(advancing._named_instead(stub(settings=SETTINGS), before, with_curve), with_curve)
+    monkeypatch.setattr(advancing, "joined_bodies", lambda model: [])
+    best, ended = best_so_far(
+        advancing._named_instead(stub(settings=SETTINGS, problem=stub(model=None)), before, with_curve), with_curve
+    )
     assert not ended and best is (names if names_stand else with_curve)
 
 

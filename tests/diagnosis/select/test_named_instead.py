@@ -17,8 +17,9 @@ from greybox_torch.diagnosis.stopping import result_of
     ("ports", "pieces"),
     [(["pivot", "pivot"], False), (["pivot", "pivot", "arm"], False), (["pivot", "pivot", "pivot"], True)],
 )
-def test_more_than_two_names_at_the_place_of_a_curve_are_pieces_of_it(stub, ports, pieces) -> None:
+def test_more_than_two_names_at_the_place_of_a_curve_are_pieces_of_it(monkeypatch, stub, ports, pieces) -> None:
     """Seen: a slack spring, outside the library, told as gravity, a stop, a bias and a ripple at the pivot."""
+    monkeypatch.setattr(forward, "_joined_with", lambda study, port: {port})
     law = stub(needs=())
     before, added = stub(port="pivot", mechanism=law), [stub(port=port, mechanism=law) for port in ports]
     taken = stub(candidate=stub(attachment=stub(port="pivot", mechanism=stub(signal="deflection"))))
@@ -41,6 +42,7 @@ def test_two_names_of_the_curves_own_signal_stand_only_where_the_curve_takes_up_
 ) -> None:
     """Seen: the transpiration of plants, outside the library, told as a leak and a flow above a threshold (0.97 each)."""
     monkeypatch.setattr(forward, "window_significance", lambda before, after, settings: further)
+    monkeypatch.setattr(forward, "_joined_with", lambda study, port: {port})
     curve = stub(port="air", mechanism=stub(signal="level"))
     taken = stub(candidate=stub(attachment=curve))
     with_curve = stub(steps=(stub(parent=stub(effects=()), taken=taken),), current=stub(score=-2.2))
@@ -50,6 +52,18 @@ def test_two_names_of_the_curves_own_signal_stand_only_where_the_curve_takes_up_
     assert _in_pieces(study, with_curve, branch) is pieces  # type: ignore[arg-type]
     better = stub(effects=added, current=stub(score=-2.3))
     assert _in_pieces(study, with_curve, better) is False  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("joined", "pieces"), [({"camera", "rotor"}, True), ({"camera"}, False)])
+def test_names_at_both_ends_of_a_spring_are_pieces_of_a_curve_at_one(monkeypatch, stub, joined, pieces) -> None:
+    """Seen: a cable harness on a camera, told as gravity at the camera and a stop at the motor that turns it by a spring (0.97 each)."""
+    monkeypatch.setattr(forward, "window_significance", lambda before, after, settings: 5.0)
+    monkeypatch.setattr(forward, "joined_bodies", lambda model: [[stub(name=name) for name in joined]])
+    taken = stub(candidate=stub(attachment=stub(port="camera", mechanism=stub(signal="position"))))
+    with_curve = stub(steps=(stub(parent=stub(effects=()), taken=taken),), current=stub(score=-2.2))
+    added = tuple(stub(port=port, mechanism=stub(needs=("position",))) for port in ("camera", "rotor"))
+    study = stub(settings=DiagnosisSettings(), problem=stub(model=None))
+    assert _in_pieces(study, with_curve, stub(effects=added, current=stub(score=-2.1))) is pieces  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("gain", "followed"), [(0.05, False), (0.2, True)])

@@ -1,0 +1,34 @@
+"""Which bodies of a model couplings join: they turn about one axis, or move along one line."""
+
+from __future__ import annotations
+
+import torch
+
+from greybox_torch.model.greybox_model import GreyBoxModel
+from greybox_torch.model.ports import Body, Coupling
+from greybox_torch.model.random_points import random_points
+
+
+def joined_bodies(model: GreyBoxModel) -> list[list[Body]]:
+    """The bodies in groups that couplings join, both as they are declared; a body that none joins is a group of its own.
+
+    A coupling joins the bodies whose speeds its rate depends on. Speeds that are no states, and rates that are, tell nothing.
+    """
+    bodies = [port for port in model.ports if isinstance(port, Body)]
+    groups = [[body] for body in bodies]
+    *points, p = random_points(model)
+    x, u = model.named_signals(*points)
+
+    def joins(coupling: Coupling, body: Body) -> bool:
+        if isinstance(coupling.rate, str) or not isinstance(body.speed, str):
+            return False
+        faster = x.replaced(**{body.speed: x[body.speed] + 1.0})
+        return bool(torch.as_tensor(coupling.rate(faster, u, p) != coupling.rate(x, u, p)).any())
+
+    for coupling in (port for port in model.ports if isinstance(port, Coupling)):
+        joined = {body.name for body in bodies if joins(coupling, body)}
+        together = [group for group in groups if joined & {body.name for body in group}]
+        if len(together) > 1:
+            one = [body for body in bodies if any(body in group for group in together)]
+            groups = [one if group is together[0] else group for group in groups if group not in together[1:]]
+    return groups
