@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+
+import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, size, timelines
 from greybox_torch.diagnosis.confirm.second_choice import second_choice
@@ -68,12 +70,34 @@ def _names_for_curve(study: Study, state: SearchState, others: HeldOut) -> Stage
     """The named effects that were found in the place of a free curve, where that goes no farther on held-out experiments."""
     if state.named is None:
         return state
-    named, curve = (others.fits(h) for h in (state.named.current, state.current))
-    if gain(named, curve).errors_away >= study.settings.held_out_beyond_chance:
+    plain, named, curve = (others.fits(h) for h in (state.plain, state.named.current, state.current))
+    farther = gain(named, curve).errors_away >= study.settings.held_out_beyond_chance
+    if farther or goes_farther_in_most_windows(plain, named, curve, study.settings):
         return state
     named_state = replace(state.named.at(state.named.current), plain=state.plain, named=None)
     yield named_state
     return (yield from drop_superfluous(study, named_state))
+
+
+def goes_farther_in_most_windows(
+    plain: Sequence[WindowFit], named: Sequence[WindowFit], curve: Sequence[WindowFit], settings: DiagnosisSettings
+) -> bool:
+    """Whether names reach less than ``named_share`` of what a curve does in the median held-out window, and the curve goes farther by the
+    margin in four of five, at every length: at one at least with enough windows.
+
+    Beyond the range that it was learned over a curve says nothing: one window that goes there must not decide against it.
+    """
+    most = 0
+    for before, by_name, by_curve in zip(plain, named, curve, strict=False):
+        energies = [fit.energies for fit in (before, by_name, by_curve)]
+        if len({len(e) for e in energies}) > 1:
+            return False
+        start, reached, ceiling = (np.log(e + np.finfo(float).tiny) for e in energies)
+        in_part = np.median(start - reached) < settings.named_share * np.median(start - ceiling)
+        if not in_part or np.quantile(reached - ceiling, 0.2) < settings.curve_margin:
+            return False
+        most = max(most, len(start))
+    return most >= settings.fewest_windows
 
 
 def _to_take_back(study: Study, state: SearchState, gains: Mapping[str, Gain], others: HeldOut) -> str | None:
