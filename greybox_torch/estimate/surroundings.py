@@ -11,6 +11,8 @@ from greybox_torch.mechanisms.added_declarations import position_unit
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
+from greybox_torch.model.random_points import random_points
+from greybox_torch.model.sensed_states import sensed_states
 from greybox_torch.simulation.simulator import Simulator
 
 
@@ -55,7 +57,22 @@ def _around(
         units,
         _force_unit(port, units),
         float(np.median(problem.records.dt)),
+        frozenset(
+            n for n, signal in port.signals.items() if isinstance(port, Coupling) and not _is_measured(model, signal)
+        ),
     )
+
+
+def _is_measured(model: GreyBoxModel, signal: Signal) -> bool:
+    """Whether a signal depends on states alone that outputs show."""
+    shown = sensed_states(model)
+    if isinstance(signal, str):
+        return signal in shown
+    *points, p = random_points(model)
+    x, u = model.named_signals(*points)
+    hidden = (s.name for s in model.states if s.name not in shown)
+    moved = (x.replaced(**{name: x[name] + 1.0}) for name in hidden)
+    return not any(torch.as_tensor(signal(other, u, p) != signal(x, u, p)).any() for other in moved)
 
 
 def _turns_with(coupling: Coupling, body: Body, x: Signals, u: Signals, p: Signals) -> bool:

@@ -30,6 +30,7 @@ def attachment_json(attachment: Attachment, around: Surroundings) -> dict[str, A
         "shifted_state": attachment.shifted_state,
         "surroundings": {
             "ranges": {name: asdict(r) for name, r in around.ranges.items()},
+            "unmeasured": sorted(around.unmeasured),
             "units": dict(around.units),
             "force_unit": around.force_unit,
             "sample_time": around.sample_time,
@@ -84,7 +85,13 @@ def _with_layer(base: GreyBoxModel, attachments: Sequence[Mapping[str, Any]]) ->
         )
         around = entry["surroundings"]
         ranges = {name: Range(**values) for name, values in around["ranges"].items()}
-        surroundings[entry["port"]] = Surroundings(ranges, around["units"], around["force_unit"], around["sample_time"])
+        surroundings[entry["port"]] = Surroundings(
+            ranges,
+            around["units"],
+            around["force_unit"],
+            around["sample_time"],
+            frozenset(around.get("unmeasured", ())),
+        )
     return AugmentedModel(base, restored, surroundings)
 
 

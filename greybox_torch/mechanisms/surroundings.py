@@ -30,13 +30,15 @@ class Surroundings:
     """What a mechanism may know of the place it is attached to, to choose sensible ranges.
 
     ``ranges`` and ``units`` by signal name (``speed``, ``position``, ``load``, ``time``, ``deflection``, ``rate``, ``level``, ``input``,
-    ``output``); ``force_unit`` of the port; ``sample_time`` in s.
+    ``output``); ``force_unit`` of the port; ``sample_time`` in s. ``unmeasured``: signals whose range is that of a model which lacks what
+    is looked for, as no sensor shows them.
     """
 
     ranges: Mapping[str, Range]
     units: Mapping[str, str]
     force_unit: str
     sample_time: float
+    unmeasured: frozenset[str] = frozenset()
 
     def per(self, signal: str, power: int = 1) -> str:
         """The unit of force per signal to a power."""

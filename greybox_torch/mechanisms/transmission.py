@@ -12,6 +12,11 @@ from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surround
 from greybox_torch.mechanisms.slip import slip_share
 from greybox_torch.model import Parameter, Signals, State
 
+HIDDEN_GAP = 30.0
+"""How many times as wide as the model without it deflects half a gap may be where nobody measures the deflection: that model damps what the
+machine plays.
+"""
+
 ROUNDING = 1e-9
 """Share of a gap that is nothing."""
 
@@ -45,7 +50,8 @@ class Backlash(Mechanism):
     def parameters(self, around: Surroundings) -> list[Parameter]:
         reach, unit = around.ranges["deflection"].reach, around.units.get("deflection", "")
         wide = 0.1 * reach if self.as_force else 0.0
-        found = [Parameter("half_gap", wide, unit, lower=0.0, upper=reach, description="half the gap")]
+        most = HIDDEN_GAP * reach if "deflection" in around.unmeasured else reach
+        found = [Parameter("half_gap", wide, unit, lower=0.0, upper=most, description="half the gap")]
         if self.as_force:
             stiffness = "stiffness of the coupling's spring"
             found.append(Parameter("stiffness", 0.0, around.per("deflection"), lower=0.0, description=stiffness))

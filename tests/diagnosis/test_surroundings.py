@@ -3,19 +3,36 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import greybox_torch as gt
 from greybox_torch.estimate.problem import make_problem
-from greybox_torch.estimate.surroundings import surroundings_along, survey
+from greybox_torch.estimate.surroundings import _is_measured, surroundings_along, survey
 from greybox_torch.model.ports import driving_body
 from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import whole_records
 from greybox_torch.systems import RobotArm
 from greybox_torch.systems.load import load_model
+
+
+class TwoMasses(gt.GreyBoxModel):
+    """Two positions that sensors show, and two speeds."""
+
+    states = [gt.State(f"{kind}_{n}", unit) for n in (1, 2) for kind, unit in (("q", "m"), ("w", "m/s"))]
+    inputs = [gt.Input("force", "N")]
+    outputs = [gt.Output("first", "m"), gt.Output("second", "m")]
+    parameters = [gt.Parameter("m", 1.0, "kg")]
+    ports = []
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return {"q_1": x.w_1, "q_2": x.w_2, "w_1": u.force / p.m, "w_2": -u.force / p.m}
+
+    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+        return {"first": x.q_1, "second": x.q_2}
 
 
 @pytest.fixture(scope="module")
@@ -54,6 +71,18 @@ def test_signals_by_port(arm_search) -> None:
         "actuator": {"input", "speed", "time"},
         "sensor": {"output", "time"},
     }
+
+
+def test_what_no_sensor_shows_is_known_only_as_a_model_without_effects_moves_it(arm_search) -> None:
+    found = {port: around.unmeasured for port, around in arm_search.surroundings.items()}
+    springs = {"gear_spring": {"deflection", "rate"}, "arm_spring": {"deflection", "rate"}}
+    assert found == dict.fromkeys(found, frozenset()) | springs, "the speed of the motor alone is measured"
+
+
+def test_a_difference_of_measured_states_is_measured() -> None:
+    model = TwoMasses()
+    assert _is_measured(model, lambda x, u, p: x.q_1 - x.q_2) and _is_measured(model, "q_1")
+    assert not _is_measured(model, lambda x, u, p: x.w_1 - x.w_2) and not _is_measured(model, "w_2")
 
 
 def test_functions_integrals_and_recorded_signals(arm_search, states) -> None:

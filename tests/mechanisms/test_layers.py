@@ -14,11 +14,14 @@ from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Mechanism, Range, Surroundings
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorGain, SensorLag
 from greybox_torch.mechanisms.stored import in_layers, restored_model, stored_effects
+from greybox_torch.mechanisms.transmission import Backlash
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.mechanisms.varying_friction import FrictionWarmup
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.systems import RobotArm
 from tests.mechanisms.attaching import ARM, ARM_START, STEP, Tank, at, free_run, records_of, starts
 
+GAP = "gear_spring.backlash.half_gap"
 VALUES = {
     "torque_saturation.limit": 1.2,
     "input_lag.T": 8 * STEP,
@@ -95,6 +98,17 @@ def test_effects_without_layers_are_kept_as_before(around) -> None:
     assert "layer" not in entry
     assert in_layers([], [entry]) == [entry]
     assert [e.get("layer", 0) for e in in_layers(in_layers([entry], [entry]), [entry])] == [0, 1, 2]
+
+
+def test_a_gap_that_is_wider_than_what_was_measured_is_restored(around) -> None:
+    place = replace(around, unmeasured=frozenset({"deflection"}))
+    wide = 5.0 * around.ranges["deflection"].reach
+    model = AugmentedModel(
+        RobotArm(), [at("gear_spring", Backlash(as_force=True))], {"gear_spring": place}, start={GAP: wide}
+    )
+    again = restored_model(RobotArm(), stored_effects(model))
+    upper = [next(p.upper for p in m.declared_parameters if p.name == GAP) for m in (model, again)]
+    assert upper[0] == upper[1] > wide
 
 
 def test_an_effect_of_a_kind_that_is_there_already_has_a_name_of_its_own(around) -> None:

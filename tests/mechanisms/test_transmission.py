@@ -11,7 +11,13 @@ from hypothesis import strategies as st
 
 from greybox_torch.mechanisms.mechanism import Range
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
-from greybox_torch.mechanisms.transmission import Backlash, HystereticSpring, NonlinearDamping, NonlinearStiffness
+from greybox_torch.mechanisms.transmission import (
+    HIDDEN_GAP,
+    Backlash,
+    HystereticSpring,
+    NonlinearDamping,
+    NonlinearStiffness,
+)
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 
 TWIST = np.linspace(-0.06, 0.06, 241)
@@ -25,6 +31,15 @@ def test_dead_zone_is_zero_inside_and_has_slope_one_outside(law) -> None:
     outside = TWIST > 0.021
     np.testing.assert_allclose(np.diff(seen[outside]) / np.diff(TWIST[outside]), 1.0)
     assert seen[-1] == pytest.approx(0.04)
+
+
+@pytest.mark.parametrize(("unmeasured", "times"), [((), 1.0), (("deflection",), HIDDEN_GAP), (("rate",), 1.0)])
+def test_a_gap_is_no_wider_than_what_was_deflected_unless_nobody_measured_that(around, unmeasured, times) -> None:
+    """Seen: the gap of a press's gears, 14 mrad, told as a spring that stiffens: the model without it plays within 2 mrad, and damps."""
+    place = replace(around, unmeasured=frozenset(unmeasured))
+    for law in (Backlash(), Backlash(as_force=True)):
+        (gap,) = (p for p in law.parameters(place) if p.name == "half_gap")
+        assert gap.upper == pytest.approx(times * around.ranges["deflection"].reach)
 
 
 def test_stiffening(law) -> None:
