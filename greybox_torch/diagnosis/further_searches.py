@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.longer_windows import longer_windows, sentence, stands
 from greybox_torch.diagnosis.confirm.promotion import Promotion, promote_unstable, promote_validation, replaces
 from greybox_torch.diagnosis.findings import Findings, judge
+from greybox_torch.diagnosis.hypothesis.start_positions import NOWHERE, Places
 from greybox_torch.diagnosis.selection import MakeStudy, Selection, find
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.model import GreyBoxModel
@@ -70,7 +71,7 @@ def _selected(
                 names = _chosen_with(more.dataset)
                 if names not in known:
                     last.study.working_on(f"searching again, {more.taken} among the experiments to choose with")
-                    found = search(more.dataset, found_before=last.searched)
+                    found = search(more.dataset, found_before=last.searched, places=_places(last, last.others))
                     found = replace(found, more=(*last.more, more.sentence()))
                     known[names] = found if judged is None else judged(found)
                 last = known[names]
@@ -87,6 +88,20 @@ def _promotion(found: Selection, others: HeldOut) -> Promotion | None:
     """The data set with one more experiment to choose with: one that cannot score, or that shows what the others do not."""
     cannot_score = promote_unstable(found.dataset, _unstable(found))
     return cannot_score or promote_validation(found.study, found.dataset, found.state, others)
+
+
+def _places(last: Selection, others: HeldOut) -> Places:
+    """Where positions that no sensor shows begin beside what was searched: in its own experiments, and in those held out as windows say.
+
+    A search that placed all of them anew would at times bend a law until it fits the wrong places.
+    """
+    found = last.searched
+    trials = found.model.start_trials(found.problem.values)
+    if not trials or not others.fits(found):
+        return NOWHERE
+    columns = {name: [s.name for s in found.model.states].index(name) for name in trials[0]}
+    rows = zip(found.problem.records.names, found.problem.initial, strict=True)
+    return {**others.places(found), **{e: {n: float(row[k]) for n, k in columns.items()} for e, row in rows}}
 
 
 def _unstable(found: Selection) -> frozenset[str]:

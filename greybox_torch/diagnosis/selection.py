@@ -19,6 +19,7 @@ from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
 from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains
 from greybox_torch.diagnosis.excerpts import excerpts
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.start_positions import NOWHERE, Places
 from greybox_torch.diagnosis.schedule import Schedule
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.plain_model import fit_plain_model, weighted_by_noise
@@ -67,6 +68,7 @@ def find(
     clock: Stopwatch,
     end: Deadline = Deadline(),
     found_before: Hypothesis | None = None,
+    places: Places = NOWHERE,
 ) -> Selection:
     """Search on the estimation experiments, and let windows of the others confirm what was found or take it back.
 
@@ -74,6 +76,7 @@ def find(
         make_study: :class:`Study` with everything but the problem and how it is simulated.
         end: when the answer has to stand.
         found_before: what a search with fewer experiments came to.
+        places: where positions begin beside it, in all experiments.
     """
     study = make_study(_problem(dataset, model))
     used = excerpts(dataset, study.budget.most_samples)
@@ -82,7 +85,7 @@ def find(
     simulator, problem_of = simulator_for(study.problem, study.options), partial(_problem, model=model)
     some = coarser(used.dataset, study.problem, simulator, problem_of, study.settings, study.budget)
     recorded = None if some.problem is study.problem else study.problem.records
-    study = replace(study, problem=some.problem, recorded=recorded, options=simulator.options)
+    study = replace(study, places=places, problem=some.problem, recorded=recorded, options=simulator.options)
     free_runs = FreeRuns(study, dataset)
     clock.lap("preparing")
     study, state = fit_plain_model(study)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from greybox_torch.deadline import check_time
 from greybox_torch.diagnosis.beliefs import Beliefs
+from greybox_torch.diagnosis.hypothesis.start_positions import Places
 from greybox_torch.diagnosis.progress import Journal
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.problem import Problem
@@ -28,7 +29,8 @@ class Study:
     ``options`` are those of every simulation. ``surroundings`` and ``shifts`` are what mechanisms need to know of the ports: where signals
     moved, and which state carries the deflection of a coupling; both are known once the model as it stands is fitted. ``at_card``: windows
     with the card's parameter values, where that fit is bent. ``motion``: what the outputs show of the states, or why they do not.
-    ``recorded``: all samples of the estimation experiments, where ``problem`` has some of them. ``beliefs``: what is known beforehand.
+    ``recorded``: all samples of the estimation experiments, where ``problem`` has some of them. ``places``: where positions begin that no
+    sensor shows, as a search with fewer experiments left them. ``beliefs``: what is known beforehand.
     ``report`` is told what is being done, ``journal`` which candidates are tried.
     """
 
@@ -39,6 +41,7 @@ class Study:
     motion: Motion | str | None = None
     at_card: tuple[WindowFit, ...] = ()
     recorded: Records | None = None
+    places: Places = field(default_factory=dict)
     settings: DiagnosisSettings = field(default_factory=DiagnosisSettings)
     budget: SearchBudget = field(default_factory=SearchBudget)
     beliefs: Beliefs = field(default_factory=Beliefs)

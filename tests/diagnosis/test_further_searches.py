@@ -6,6 +6,7 @@ from dataclasses import fields, replace
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from greybox_torch.deadline import Deadline, TimeIsUp
@@ -15,6 +16,13 @@ from greybox_torch.diagnosis.further_searches import find_with_more
 from greybox_torch.diagnosis.schedule import Schedule
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.selection import Selection
+
+PLACES = further_searches._places
+
+
+@pytest.fixture(autouse=True)
+def no_unseen_positions(monkeypatch) -> None:
+    monkeypatch.setattr(further_searches, "_places", lambda last, others: {})
 
 
 @pytest.fixture
@@ -141,6 +149,24 @@ def test_what_free_runs_take_back_is_selected_once_more_with_that_known(monkeypa
     for name, step in steps.items():
         monkeypatch.setattr(further_searches, name, step)
     assert find_with_more(begun, stub(), stub(), stub()).state is again.state
+
+
+def test_positions_begin_where_the_search_and_the_held_out_windows_have_them(stub) -> None:
+    names = ("angle", "arm.position")
+    model = stub(states=[stub(name=n) for n in names], start_trials=lambda values: [{"arm.position": 0.0}])
+    records = stub(names=("run 1",))
+    found = stub(model=model, problem=stub(values=None, records=records, initial=np.array([[0.3, 2.5]])))
+    others = stub(fits=lambda h: (h,), places=lambda h: {"run 2": {"arm.position": 1.5}})
+    last: Any = stub(searched=found)
+    told = {"run 1": {"arm.position": 2.5}, "run 2": {"arm.position": 1.5}}
+    assert PLACES(last, others) == told  # type: ignore[arg-type]
+    assert PLACES(last, stub(fits=lambda h: ())) == {}, "no window could be simulated"  # type: ignore[arg-type]
+    seen = replace_model(stub, found, lambda values: [])
+    assert PLACES(stub(searched=seen), others) == {}, "sensors show every position"  # type: ignore[arg-type]
+
+
+def replace_model(stub: Any, found: Any, trials: Any) -> Any:
+    return stub(model=stub(states=found.model.states, start_trials=trials), problem=found.problem)
 
 
 def test_one_more_search_begins_from_all_that_was_found_before(monkeypatch, stub, first, more) -> None:

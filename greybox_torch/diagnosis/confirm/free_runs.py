@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -11,14 +11,12 @@ import numpy as np
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.unstable import parted
 from greybox_torch.diagnosis.hypothesis.final import Final
+from greybox_torch.diagnosis.hypothesis.start_positions import NOWHERE, Places
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.simulation.simulator import Simulator
-
-Places = Mapping[str, Mapping[str, float]]
-NOWHERE: Places = {}
 
 
 class FreeRuns:

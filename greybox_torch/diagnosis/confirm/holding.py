@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from functools import partial
 
 from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
-from greybox_torch.diagnosis.confirm.free_runs import NOWHERE, Places
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified
@@ -15,6 +14,7 @@ from greybox_torch.diagnosis.confirm.take_back import held_out_gains, take_back_
 from greybox_torch.diagnosis.confirm.undone import not_undone
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.final import Final, as_windows_have_it, finish
+from greybox_torch.diagnosis.hypothesis.start_positions import NOWHERE, Places
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings

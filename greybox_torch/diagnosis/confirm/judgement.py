@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.data import Recording
-from greybox_torch.diagnosis.confirm.free_runs import NOWHERE, FreeRuns, Places
+from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
 from greybox_torch.diagnosis.contradictions import worse_than_refit
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.hypothesis.noise import output_floors
+from greybox_torch.diagnosis.hypothesis.start_positions import NOWHERE, Places
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.verdict import Estimate, InputTrace, Trace
 from greybox_torch.estimate.comparison import Comparison, fit_rows, mean_fit

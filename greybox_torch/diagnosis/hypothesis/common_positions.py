@@ -10,8 +10,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from greybox_torch.diagnosis.hypothesis.start_positions import placed
+from greybox_torch.diagnosis.hypothesis.start_positions import NOWHERE, Places, placed
 from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.estimate.initial import beginning
 from greybox_torch.estimate.problem import Problem
@@ -27,11 +28,12 @@ def with_common_positions(
     known: Sequence[WindowFit],
     budget: SearchBudget,
     rough: bool,
+    places: Places = NOWHERE,
 ) -> tuple[list[Problem], list[Problem]]:
     """``problems`` and ``early``, of one model, with every experiment beginning where its positions begin beside the others.
 
-    As one of the fits ``known`` has it, else from a fit to the longest experiment alone, beside which the others are placed. Positions
-    that a sensor shows, and a single experiment, need nothing of this.
+    As one of the fits ``known`` has it, or ``places`` do, else from a fit to the longest experiment alone, beside which the others are
+    placed. Positions that a sensor shows, and a single experiment, need nothing of this.
 
     Args:
         length: of the windows, in samples.
@@ -42,7 +44,10 @@ def with_common_positions(
     if not trials:
         return list(problems), list(early)
     names = list(trials[0])
+    told = [[places.get(e, {}).get(name, np.nan) for name in names] for e in problems[0].records.names]
     fit = next((f for f in known if _has(f, names, count)), None)
+    if fit is None and np.isfinite(told).all():
+        return [_placed_at(p, told, names) for p in problems], [_placed_at(p, told, names) for p in early]
     if fit is None:
         fit = _beside_the_longest(problems[0], simulator, length, budget)
     elif not rough:
@@ -54,8 +59,13 @@ def with_common_positions(
 
 def _begun(problem: Problem, fit: WindowFit, names: Sequence[str]) -> Problem:
     """``problem`` with the states ``names`` beginning where they do in ``fit``."""
+    return _placed_at(problem, fit.problem.initial[:, _columns(fit.problem, names)], names)
+
+
+def _placed_at(problem: Problem, rows: ArrayLike, names: Sequence[str]) -> Problem:
+    """``problem`` with the states ``names`` beginning at ``rows`` (E, k)."""
     initial = problem.initial.copy()
-    initial[:, _columns(problem, names)] = fit.problem.initial[:, _columns(fit.problem, names)]
+    initial[:, _columns(problem, names)] = rows
     return replace(problem, initial=initial)
 
 

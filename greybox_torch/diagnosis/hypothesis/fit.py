@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.hypothesis.common_positions import with_common_posi
 from greybox_torch.diagnosis.hypothesis.continued import continued
 from greybox_torch.diagnosis.hypothesis.local_minima import no_worse_than_longer
 from greybox_torch.diagnosis.hypothesis.noise import at_floor, floor_known, reaches_noise
+from greybox_torch.diagnosis.hypothesis.start_positions import NOWHERE, Places
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for
@@ -86,6 +87,7 @@ def hypothesis(
     early: Sequence[Mapping[str, float]] = (),
     before: Hypothesis | None = None,
     rough: bool = False,
+    places: Places = NOWHERE,
 ) -> Hypothesis | None:
     """Fit ``base`` with ``effects`` attached, on windows of every length, from each of several start values; None where none simulates.
 
@@ -102,6 +104,7 @@ def hypothesis(
         simulator: one made for this model and these ``frozen`` parameters before.
         frozen: parameters that are to keep their start values.
         rough: whether the fit only chooses what is fitted further.
+        places: where positions begin, where no fit knows it.
     """
     model = augmented(base, effects, surroundings)
     problems = [without_free(problem_for(base, model, start), frozen) for start in starts]
@@ -112,7 +115,7 @@ def hypothesis(
     at_end = partial(at_floor, base, settings=settings)
     at = at or window_lengths(base, budget)
     known_places = [*(() if before is None else before.fits[:1]), *(() if shorter is None else (shorter,))]
-    problems, first = with_common_positions(problems, first, simulator, at[0], known_places, budget, rough)
+    problems, first = with_common_positions(problems, first, simulator, at[0], known_places, budget, rough, places)
     for length in at:
         known = None if before is None else _over(cut(base.records, length), before.fits)
         trials = _distinct([f.problem for f in fits[-1:]] + problems + ([] if fits else first), known)

@@ -49,5 +49,6 @@ def fit(
         limits=limits or study.budget.polish_iterations,
         settings=study.settings,
         budget=study.budget,
+        places=study.places,
         **how,
     )
