@@ -12,7 +12,7 @@ from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.longer_windows import longer_windows, sentence, stands
 from greybox_torch.diagnosis.confirm.promotion import Promotion, promote_unstable, promote_validation, replaces
 from greybox_torch.diagnosis.findings import Findings, judge
-from greybox_torch.diagnosis.hypothesis.start_positions import NOWHERE, Places
+from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.selection import MakeStudy, Selection, find
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.model import GreyBoxModel

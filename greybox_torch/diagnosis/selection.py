@@ -19,7 +19,7 @@ from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
 from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains
 from greybox_torch.diagnosis.excerpts import excerpts
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.hypothesis.start_positions import NOWHERE, Places
+from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.schedule import Schedule
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.plain_model import fit_plain_model, weighted_by_noise

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from greybox_torch.deadline import check_time
 from greybox_torch.diagnosis.beliefs import Beliefs
-from greybox_torch.diagnosis.hypothesis.start_positions import Places
+from greybox_torch.diagnosis.places import Places
 from greybox_torch.diagnosis.progress import Journal
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.problem import Problem

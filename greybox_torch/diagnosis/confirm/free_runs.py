@@ -11,7 +11,7 @@ import numpy as np
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.unstable import parted
 from greybox_torch.diagnosis.hypothesis.final import Final
-from greybox_torch.diagnosis.hypothesis.start_positions import NOWHERE, Places
+from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.initial import estimate_initial

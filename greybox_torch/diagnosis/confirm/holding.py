@@ -14,7 +14,7 @@ from greybox_torch.diagnosis.confirm.take_back import held_out_gains, take_back_
 from greybox_torch.diagnosis.confirm.undone import not_undone
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.final import Final, as_windows_have_it, finish
-from greybox_torch.diagnosis.hypothesis.start_positions import NOWHERE, Places
+from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings

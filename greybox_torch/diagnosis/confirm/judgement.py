@@ -14,7 +14,7 @@ from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
 from greybox_torch.diagnosis.contradictions import worse_than_refit
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.hypothesis.noise import output_floors
-from greybox_torch.diagnosis.hypothesis.start_positions import NOWHERE, Places
+from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.verdict import Estimate, InputTrace, Trace
 from greybox_torch.estimate.comparison import Comparison, fit_rows, mean_fit
@@ -109,8 +109,10 @@ class Judgement:
             return False
         before, after = (mean_fit(self._judged(c, but).scores) for c in (self.refit, self.with_effects))
         refit, with_effects = (self._energy(c, but) for c in (self.refit, self.with_effects))
-        least = self.settings.unexercised
-        return with_effects <= (1 + least) * refit and after >= before - 100 * least
+        return (
+            with_effects <= (1 + self.settings.unexercised) * refit
+            and after >= before - 100 * self.settings.unexercised
+        )
 
     @property
     def _rows(self) -> list[dict[str, Any]]:

@@ -12,7 +12,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from greybox_torch.diagnosis.hypothesis.start_positions import NOWHERE, Places, placed
+from greybox_torch.diagnosis.hypothesis.start_positions import placed
+from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.estimate.initial import beginning
 from greybox_torch.estimate.problem import Problem

@@ -12,7 +12,7 @@ from greybox_torch.diagnosis.hypothesis.common_positions import with_common_posi
 from greybox_torch.diagnosis.hypothesis.continued import continued
 from greybox_torch.diagnosis.hypothesis.local_minima import no_worse_than_longer
 from greybox_torch.diagnosis.hypothesis.noise import at_floor, floor_known, reaches_noise
-from greybox_torch.diagnosis.hypothesis.start_positions import NOWHERE, Places
+from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, problem_for

@@ -7,7 +7,7 @@ number for an experiment, tried along the travel, tells where it begins.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,10 +17,6 @@ from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 from greybox_torch.simulation.simulator import Simulator
-
-Places = Mapping[str, Mapping[str, float]]
-"""By experiment and state, where positions that no sensor shows begin."""
-NOWHERE: Places = {}
 
 FINER = (-0.6, -0.4, -0.2, 0.2, 0.4, 0.6)
 """Places around the best, in steps between neighbouring trials, that are looked at afterwards; in the end a fifth as wide."""
