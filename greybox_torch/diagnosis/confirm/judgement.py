@@ -51,10 +51,7 @@ class Judgement:
 
     @property
     def sums(self) -> tuple[float, float]:
-        """Sums of the mean squared errors of the refit and of the model with effects on the validation experiments that count.
-
-        Outputs in units of their spread.
-        """
+        """Mean squared errors, summed over the validation experiments that count, in units of spread: the refit's, with effects."""
         return self._energy(self.refit, self.unstable), self._energy(self.with_effects, self.unstable)
 
     @property
@@ -109,10 +106,8 @@ class Judgement:
             return False
         before, after = (mean_fit(self._judged(c, but).scores) for c in (self.refit, self.with_effects))
         refit, with_effects = (self._energy(c, but) for c in (self.refit, self.with_effects))
-        return (
-            with_effects <= (1 + self.settings.unexercised) * refit
-            and after >= before - 100 * self.settings.unexercised
-        )
+        least = self.settings.unexercised
+        return with_effects <= (1 + least) * refit and after >= before - 100 * least
 
     @property
     def _rows(self) -> list[dict[str, Any]]:
