@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.longer_windows import longer_windows, sentence, stands
 from greybox_torch.diagnosis.confirm.promotion import Promotion, promote_unstable, promote_validation, replaces
 from greybox_torch.diagnosis.findings import Findings, judge
+from greybox_torch.diagnosis.hypothesis.start_positions import places_in
 from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.selection import MakeStudy, Selection, find
 from greybox_torch.diagnosis.stopwatch import Stopwatch
@@ -96,12 +97,8 @@ def _places(last: Selection, others: HeldOut) -> Places:
     A search that placed all of them anew would at times bend a law until it fits the wrong places.
     """
     found = last.searched
-    trials = found.model.start_trials(found.problem.values)
-    if not trials or not others.fits(found):
-        return NOWHERE
-    columns = {name: [s.name for s in found.model.states].index(name) for name in trials[0]}
-    rows = zip(found.problem.records.names, found.problem.initial, strict=True)
-    return {**others.places(found), **{e: {n: float(row[k]) for n, k in columns.items()} for e, row in rows}}
+    own = places_in(found.problem)
+    return {**others.places(found), **own} if own and others.fits(found) else NOWHERE
 
 
 def _unstable(found: Selection) -> frozenset[str]:

@@ -10,6 +10,7 @@ from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.added_declarations import position_unit
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
+from greybox_torch.model.joined_bodies import turns_with
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
 from greybox_torch.model.random_points import random_points
 from greybox_torch.model.sensed_states import sensed_states
@@ -42,7 +43,7 @@ def _around(
                 values["position"] = _evaluated(body.position, x, u, p, times)
             else:
                 values["position"] = _integrated(_evaluated(body.speed, x, u, p, times), problem)
-            if body.load is not None and _turns_with(port, body, x, u, p):
+            if body.load is not None and turns_with(port, body, x, u, p):
                 values["load"] = _evaluated(body.load, x, u, p, times)
     if isinstance(port, Actuator | Coupling) and (body := driving_body(model.ports)) is not None:
         values["speed"] = _evaluated(body.speed, x, u, p, times)
@@ -73,14 +74,6 @@ def _is_measured(model: GreyBoxModel, signal: Signal) -> bool:
     hidden = (s.name for s in model.states if s.name not in shown)
     moved = (x.replaced(**{name: x[name] + 1.0}) for name in hidden)
     return not any(torch.as_tensor(signal(other, u, p) != signal(x, u, p)).any() for other in moved)
-
-
-def _turns_with(coupling: Coupling, body: Body, x: Signals, u: Signals, p: Signals) -> bool:
-    """Whether a body's speed is one of the two that make a coupling's deflection change."""
-    if not isinstance(body.speed, str) or isinstance(coupling.rate, str):
-        return False
-    faster = x.replaced(**{body.speed: x[body.speed] + 1.0})
-    return bool(torch.as_tensor(coupling.rate(faster, u, p) != coupling.rate(x, u, p)).any())
 
 
 def _evaluated(signal: Signal, x: Signals, u: Signals, p: Signals, times: np.ndarray) -> np.ndarray:

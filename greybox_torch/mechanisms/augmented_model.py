@@ -156,11 +156,14 @@ class AugmentedModel(GreyBoxModel):
         return records if not rows else replace(records, u=np.concatenate([records.u, np.array(rows)]), y=y)
 
     def settled(self, records: Any, values: Any) -> Any:
+        records = self.base.settled(records, values)
+        own = [a for a in self.attachments if a.mechanism.settling > 0 and a.prefix not in self.probed]
+        if not own:
+            return records
         names = [p.name for p in self.declared_parameters]
         rows = {site.name: i for i, site in enumerate(sensors(tuple(o.name for o in self.base.outputs)))}
-        own = [a for a in self.attachments if a.mechanism.settling > 0 and a.prefix not in self.probed]
         late = [(a, float(values[names.index(f"{a.prefix}.T")])) for a in own]
-        return without_what_was_before(self.base.settled(records, values), rows, late)
+        return without_what_was_before(records, rows, late)
 
     def begun(self, states: np.ndarray, records: Any, samples: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Start states (W, n_x) with the memories that begin as their surroundings say."""

@@ -23,4 +23,4 @@ def without_what_was_before(records: Any, rows: Mapping[str, int], late: Collect
     for law, delay in late:
         row = rows[law.port]
         y[row] = np.where(after(records, law.mechanism.settling * delay), y[row], np.nan)
-    return replace(records, y=y) if late else records
+    return replace(records, y=y)

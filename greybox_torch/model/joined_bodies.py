@@ -7,6 +7,7 @@ import torch
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.ports import Body, Coupling
 from greybox_torch.model.random_points import random_points
+from greybox_torch.model.signals import Signals
 
 
 def joined_bodies(model: GreyBoxModel) -> list[list[Body]]:
@@ -18,17 +19,18 @@ def joined_bodies(model: GreyBoxModel) -> list[list[Body]]:
     groups = [[body] for body in bodies]
     *points, p = random_points(model)
     x, u = model.named_signals(*points)
-
-    def joins(coupling: Coupling, body: Body) -> bool:
-        if isinstance(coupling.rate, str) or not isinstance(body.speed, str):
-            return False
-        faster = x.replaced(**{body.speed: x[body.speed] + 1.0})
-        return bool(torch.as_tensor(coupling.rate(faster, u, p) != coupling.rate(x, u, p)).any())
-
     for coupling in (port for port in model.ports if isinstance(port, Coupling)):
-        joined = {body.name for body in bodies if joins(coupling, body)}
+        joined = {body.name for body in bodies if turns_with(coupling, body, x, u, p)}
         together = [group for group in groups if joined & {body.name for body in group}]
         if len(together) > 1:
             one = [body for body in bodies if any(body in group for group in together)]
             groups = [one if group is together[0] else group for group in groups if group not in together[1:]]
     return groups
+
+
+def turns_with(coupling: Coupling, body: Body, x: Signals, u: Signals, p: Signals) -> bool:
+    """Whether a body's speed is one of the two that make a coupling's deflection change, seen at states ``x`` and inputs ``u``."""
+    if not isinstance(body.speed, str) or isinstance(coupling.rate, str):
+        return False
+    faster = x.replaced(**{body.speed: x[body.speed] + 1.0})
+    return bool(torch.as_tensor(coupling.rate(faster, u, p) != coupling.rate(x, u, p)).any())

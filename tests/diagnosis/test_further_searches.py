@@ -155,18 +155,14 @@ def test_positions_begin_where_the_search_and_the_held_out_windows_have_them(stu
     names = ("angle", "arm.position")
     model = stub(states=[stub(name=n) for n in names], start_trials=lambda values: [{"arm.position": 0.0}])
     records = stub(names=("run 1",))
-    found = stub(model=model, problem=stub(values=None, records=records, initial=np.array([[0.3, 2.5]])))
+    found = stub(problem=stub(model=model, values=None, records=records, initial=np.array([[0.3, 2.5]])))
     others = stub(fits=lambda h: (h,), places=lambda h: {"run 2": {"arm.position": 1.5}})
     last: Any = stub(searched=found)
     told = {"run 1": {"arm.position": 2.5}, "run 2": {"arm.position": 1.5}}
     assert PLACES(last, others) == told  # type: ignore[arg-type]
     assert PLACES(last, stub(fits=lambda h: ())) == {}, "no window could be simulated"  # type: ignore[arg-type]
-    seen = replace_model(stub, found, lambda values: [])
-    assert PLACES(stub(searched=seen), others) == {}, "sensors show every position"  # type: ignore[arg-type]
-
-
-def replace_model(stub: Any, found: Any, trials: Any) -> Any:
-    return stub(model=stub(states=found.model.states, start_trials=trials), problem=found.problem)
+    model.start_trials = lambda values: []
+    assert PLACES(last, others) == {}, "sensors show every position"  # type: ignore[arg-type]
 
 
 def test_one_more_search_begins_from_all_that_was_found_before(monkeypatch, stub, first, more) -> None:

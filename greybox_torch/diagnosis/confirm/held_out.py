@@ -13,7 +13,8 @@ from greybox_torch.diagnosis.confirm.along_free_runs import along_free_runs, fre
 from greybox_torch.diagnosis.effect import Timeline
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, window_lengths
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
-from greybox_torch.diagnosis.hypothesis.start_positions import placed
+from greybox_torch.diagnosis.hypothesis.start_positions import placed, places_in
+from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.initial import estimate_initial
@@ -61,15 +62,10 @@ class HeldOut:
             self._known[hypothesis] = self.fits_at(hypothesis, hypothesis.values())
         return self._known[hypothesis]
 
-    def places(self, hypothesis: Hypothesis) -> dict[str, dict[str, float]]:
+    def places(self, hypothesis: Hypothesis) -> Places:
         """Where positions that no sensor shows begin, by experiment and state: as the windows have them, where those were fitted."""
         fits = self._known.get(hypothesis)
-        trials = hypothesis.model.start_trials(hypothesis.problem.values)
-        if not fits or not trials:
-            return {}
-        index = {s.name: i for i, s in enumerate(hypothesis.model.states)}
-        placed = zip(fits[-1].problem.records.names, fits[-1].problem.initial, strict=True)
-        return {experiment: {n: float(row[index[n]]) for n in trials[0]} for experiment, row in placed}
+        return places_in(fits[-1].problem) if fits else NOWHERE
 
     def times_noise(self, hypothesis: Hypothesis) -> np.ndarray:
         """Root mean square errors in units of the noise, over the windows where they are largest, by experiment, shape (J,).

@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.continued import continued
+from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
@@ -68,6 +69,16 @@ def placed(
         if there is not None:  # with the trajectories there, the next trial is nearer to the truth
             fit = continued(there, simulator, length, budget.position_iterations, budget)
     return fit
+
+
+def places_in(problem: Problem) -> Places:
+    """Where positions that no sensor shows begin in ``problem``; nowhere, where sensors show all of them."""
+    trials = problem.model.start_trials(problem.values)
+    if not trials:
+        return NOWHERE
+    index = {s.name: i for i, s in enumerate(problem.model.states)}
+    begun = zip(problem.records.names, problem.initial, strict=True)
+    return {experiment: {n: float(row[index[n]]) for n in trials[0]} for experiment, row in begun}
 
 
 def _best_of(
