@@ -54,6 +54,9 @@ class CoulombFriction(DryLaw):
     def law(self, s: Signals, size: Any) -> Any:
         return -size
 
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        return ((CoulombAsymmetry(with_level=True), {**values, "delta": 0.0}),)
+
 
 class StribeckFriction(Mechanism):
     """−(F_c + F_s exp(−(v / v_s)²)) tanh(v / v_0) − c v."""
@@ -114,7 +117,10 @@ def _highest_at_a_speed(values: Mapping[str, float], around: Surroundings) -> st
 
 
 class CoulombAsymmetry(DryLaw):
-    """−ΔF tanh(v / v_0)²: the Coulomb level is larger in one direction by 2 ΔF."""
+    """−ΔF tanh(v / v_0)²: the Coulomb level is larger in one direction by 2 ΔF; ``with_level``, −F_c tanh(v / v_0) besides.
+
+    The latter is for a body whose model has no dry friction: its levels are F_c + ΔF and F_c − ΔF, neither of which can push.
+    """
 
     name = "coulomb_asymmetry"
     kinds = ("body",)
@@ -128,11 +134,32 @@ class CoulombAsymmetry(DryLaw):
     experiment = "standstill and reversals without load: a bias pushes at rest, an asymmetry does not"
     parameter, measured_in, description = "delta", Per(), "half the difference of the levels"
 
+    def __init__(self, with_level: bool = False) -> None:
+        self.with_level = with_level
+        if with_level:
+            self.generalises = self.includes = ("coulomb_friction", "constant_bias")
+            self.stands_for = ("constant_bias", "coulomb_asymmetry")
+            self.rubs = True
+
+    def beside(self, around: Surroundings) -> list[Parameter]:
+        level = Parameter("F_c", 0.0, around.force_unit, lower=0.0, description="mean Coulomb level")
+        return [level] if self.with_level else []
+
     def law(self, s: Signals, size: Any) -> Any:
         return -size
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return self.law(s, p.delta) * smooth_sign(s.speed, p.v_0) ** 2
+        sign = smooth_sign(s.speed, p.v_0)
+        uneven = self.law(s, p.delta) * sign**2
+        return uneven - p.F_c * sign if self.with_level else uneven
+
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        if not self.with_level or abs(values["delta"]) <= values["F_c"]:
+            return None
+        unit = around.force_unit
+        return (
+            f"delta = {values['delta']:.3g} {unit} is more than F_c = {values['F_c']:.3g} {unit}: friction would push"
+        )
 
 
 class QuadraticDrag(LinearLaw):

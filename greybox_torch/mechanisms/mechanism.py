@@ -55,9 +55,9 @@ class Mechanism:
     """Whether it is no law but the answer `unknown`: whatever curve or response the recordings ask for."""
     linear: ClassVar[bool] = False
     """Whether signals pass through it linearly, so that a frequency response shows what it does."""
-    generalises: ClassVar[tuple[str, ...]] = ()
+    generalises: tuple[str, ...] = ()
     """Mechanisms that this one contains: where it does no better than one of them, that one is meant."""
-    includes: ClassVar[tuple[str, ...]] = ()
+    includes: tuple[str, ...] = ()
     """Of these the ones whose whole force is a part of its own: beside it they would name the same friction twice."""
     twins: ClassVar[tuple[str, ...]] = ()
     """Mechanisms elsewhere that no recording of one input and one output tells from this one, however well it is fitted."""
@@ -69,7 +69,9 @@ class Mechanism:
     """Parameters whose bounds are ends that they may well have (``NAME``, ``NAME.lower`` or ``NAME.upper``); zero always is."""
     later: ClassVar[tuple[str, ...]] = ()
     """Parameters that the law did not have in models saved by an earlier version; they are zero there."""
-    rubs: ClassVar[bool] = False
+    stands_for: tuple[str, ...] = ()
+    """As a richer form: what a further effect at its port has to be named for this one law to be asked in the place of both."""
+    rubs: bool = False
     """Whether it is friction by the speed of its body alone: a body has one such friction, of which two laws are two parts."""
     nature: ClassVar[str] = ""
     """What it has in common with its look-alikes, as a noun, for a statement about several that cannot be told apart."""

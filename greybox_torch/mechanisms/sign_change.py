@@ -45,7 +45,11 @@ class DryLaw(LinearLaw):
     natural = ("v_0",)
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
-        return [self.size(around), width_parameter(around)]
+        return [*self.beside(around), self.size(around), width_parameter(around)]
+
+    def beside(self, around: Surroundings) -> list[Parameter]:
+        """Further levels that a form of the law has."""
+        return []
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         return self.law(s, p[self.parameter]) * smooth_sign(s.speed, p.v_0)

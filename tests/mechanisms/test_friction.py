@@ -54,6 +54,21 @@ def test_coulomb_saturates(law) -> None:
     assert law(CoulombFriction(), {"F_c": 2.0, "v_0": 0.1}, speed=np.array(0.1)) == pytest.approx(-2.0 * np.tanh(1.0))
 
 
+def test_uneven_friction_with_a_level_has_one_for_each_direction(law) -> None:
+    uneven, values = CoulombAsymmetry(with_level=True), {"F_c": 2.0, "delta": -0.5, "v_0": 0.1}
+    force = law(uneven, values, speed=SPEEDS)
+    np.testing.assert_allclose(force[SPEEDS > 1.0], -1.5, rtol=1e-8)
+    np.testing.assert_allclose(force[SPEEDS < -1.0], 2.5, rtol=1e-8)
+    assert (force * SPEEDS <= 0.0).all() and type(uneven)(**uneven.options()).options() == {"with_level": True}
+
+
+@pytest.mark.parametrize(("delta", "pushes"), [(1.9, False), (-1.9, False), (2.1, True), (-2.1, True)])
+def test_a_difference_of_levels_larger_than_friction_is_not_friction(around, delta, pushes) -> None:
+    told = CoulombAsymmetry(with_level=True).misplaced(around, {"F_c": 2.0, "delta": delta, "v_0": 0.1})
+    assert ("friction would push" in (told or "")) is pushes
+    assert CoulombAsymmetry().misplaced(around, {"delta": delta, "v_0": 0.1}) is None
+
+
 def test_drag_is_quadratic(law) -> None:
     slow, fast = law(QuadraticDrag(), {"c": 0.3}, speed=np.array([2.0, 4.0]))
     assert (slow, fast) == (pytest.approx(-1.2), pytest.approx(-4.8))

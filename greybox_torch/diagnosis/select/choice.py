@@ -33,14 +33,19 @@ def chosen(ranked: Sequence[RankedCandidate], plain: Hypothesis, settings: Diagn
     if named is None or curve is None:
         return named or curve
     much_better = curve.gain > settings.curve_gain_ratio * named.gain or alone_at_noise(
-        curve.fitted, named.fitted, settings
+        curve.fitted, named.fitted, plain, settings
     )
     return curve if curve.gain > named.gain + settings.curve_margin and much_better else named
 
 
-def alone_at_noise(curve: Hypothesis, named: Hypothesis, settings: DiagnosisSettings) -> bool:
-    """Whether a free curve leaves white noise alone and names do not: then they are not the machine's, however far they come."""
-    return white_samples(curve, settings) > 0 and not white_samples(named, settings)
+def alone_at_noise(curve: Hypothesis, named: Hypothesis, plain: Hypothesis, settings: DiagnosisSettings) -> bool:
+    """Whether a free curve leaves white noise alone, and names as much more as a finding is: then they are not the machine's.
+
+    What is less, of the mismatch of the model as it stands (``plain``), any law lacks to be the machine's.
+    """
+    if not white_samples(curve, settings) or white_samples(named, settings):
+        return False
+    return difference(plain, named, curve, settings) > settings.least_size_at_noise
 
 
 def simplest(

@@ -78,7 +78,7 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     if first is not None:
         two = yield from only_if(second_step(study, first), partial(_as_far, study, with_curve))
         if _as_far(study, with_curve, two):
-            return replace(two, found_before=start.found_before)
+            return replace(richer_instead(study, first, two) or two, found_before=start.found_before)
     name = _name_before_fine_curve(study, start, with_curve)
     if name is not None and _as_far(study, with_curve, name):
         return name
@@ -119,6 +119,8 @@ def _without_curves(study: Study, start: SearchState, with_curve: SearchState) -
     done = with_curve.steps[-1]
     names = [r for r in done.ranked if not r.unknown]
     branch = yield from take_best(study, start, done.screened, names)
+    if branch.took_one:
+        branch = yield from with_richer_form(study, branch)
     reached, ceiling = _gains(with_curve, branch)
     promises = branch.took_one and reached >= study.settings.first_name_share * ceiling
     return (yield from take_effects(study, branch, curves=False)) if promises else branch
@@ -161,7 +163,8 @@ def _joined_with(study: Study, port: str) -> set[str]:
 def _as_far(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
     """Whether the effects of ``branch`` come as far as the curve of ``with_curve``, from the hypothesis that both build on."""
     reached, ceiling = _gains(with_curve, branch)
-    share = 1.0 if alone_at_noise(with_curve.current, branch.current, study.settings) else study.settings.named_share
+    alone = alone_at_noise(with_curve.current, branch.current, with_curve.plain, study.settings)
+    share = 1.0 if alone else study.settings.named_share
     if _in_pieces(study, with_curve, branch):
         return False
     return reached >= min(ceiling - study.settings.curve_margin, share * ceiling)

@@ -78,7 +78,8 @@ def _goes_farther(study: Study, state: SearchState, alone: SearchState) -> bool:
     """Whether the residual alone is as much better than all that was found as a curve must be than a name."""
     settings = study.settings
     reached, farther = (alone.plain.score - s.current.score for s in (state, alone))
-    much = farther > settings.curve_gain_ratio * reached or alone_at_noise(alone.current, state.current, settings)
+    at_noise = alone_at_noise(alone.current, state.current, alone.plain, settings)
+    much = farther > settings.curve_gain_ratio * reached or at_noise
     return not state.effects or (much and farther > reached + settings.curve_margin)
 
 

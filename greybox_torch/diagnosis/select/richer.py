@@ -33,7 +33,8 @@ def with_richer_form(study: Study, state: SearchState) -> Stage[SearchState]:
         return state
     taken = done.taken
     effect = taken.candidate.attachment
-    tried = (_in_form(study, state, taken, law, start) for law, start in _forms(effect, state))
+    forms = ((law, start) for law, start in _forms(effect, state) if not law.mechanism.stands_for)
+    tried = (_in_form(study, state, taken, law, start) for law, start in forms)
     paying = [r for r in tried if r is not None and _preferred(study, state.current, effect, r)]
     best = min(paying, key=lambda r: r.fitted.score, default=None)
     if best is None:
@@ -53,12 +54,14 @@ def richer_instead(study: Study, before: SearchState, after: SearchState) -> Sea
     if newest is None:
         return None
     to_reach = priced_score(after.current, study.settings) + study.settings.score_tie
-    port = newest.candidate.attachment.port
+    port, name = newest.candidate.attachment.named
     for effect in (e for e in before.effects if e.port == port):
         done = before.step_of(effect.prefix)
         if done is None or done.taken is None:
             continue
         for law, start in _forms(effect, before):
+            if law.mechanism.stands_for and name not in law.mechanism.stands_for:
+                continue
             found = _in_form(study, before, done.taken, law, start)
             if found is not None and priced_score(found.fitted, study.settings) <= to_reach and _improves(study, found):
                 in_step = _beside_rivals(done.taken, found)

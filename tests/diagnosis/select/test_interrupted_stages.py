@@ -87,6 +87,7 @@ def test_among_names_in_the_place_of_a_curve_the_curve_stands_until_they_come_as
     names = state(stub, score, "rotor.drag", steps=(stub(taken=stub()),))
     monkeypatch.setattr(advancing, "take_best", yielding(names))
     monkeypatch.setattr(advancing, "take_effects", yielding(then=KeyboardInterrupt))
+    monkeypatch.setattr(advancing, "with_richer_form", yielding(names))
     monkeypatch.setattr(advancing, "alone_at_noise", lambda *args: False)
     monkeypatch.setattr(advancing, "with_first_of_two", lambda *args: None)
     monkeypatch.setattr(advancing, "joined_bodies", lambda model: [])

@@ -85,6 +85,7 @@ def test_others_are_looked_for_beside_a_name_that_brings_a_part_of_what_the_curv
         return branch
 
     monkeypatch.setattr(forward, "take_best", taken)
+    monkeypatch.setattr(forward, "with_richer_form", taken)
     monkeypatch.setattr(forward, "take_effects", beside)
     study = stub(settings=DiagnosisSettings())
     assert result_of(_without_curves(study, stub(), with_curve)) is branch  # type: ignore[arg-type]

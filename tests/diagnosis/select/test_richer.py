@@ -16,8 +16,8 @@ from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.actuator import InputDelay, InputGain, InputLag
 from greybox_torch.mechanisms.attachment import attach
-from greybox_torch.mechanisms.forces import TorqueRipple
-from greybox_torch.mechanisms.friction import CoulombFriction
+from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorLag
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 
@@ -58,6 +58,31 @@ def test_what_has_no_richer_form_or_leaves_noise_alone_stays_as_it_is(motor_data
     for effect, start in ((ripple, {f"{ripple.prefix}.b": 0.06}), (dry, {f"{dry.prefix}.F_c": 0.01})):
         before = found(search, effect, start)
         assert result_of(with_richer_form(search.study, before)) is before
+
+
+@pytest.mark.parametrize("second", [ConstantBias, CoulombAsymmetry])
+@pytest.mark.parametrize(("level", "difference"), [(0.1, 0.04), (0.04, 0.1)])
+def test_dry_friction_and_what_makes_it_uneven_are_one_law(motor_data, motor, begun, second, level, difference) -> None:
+    """Seen: a bridge's bearing, 44 N m one way and 83 the other, told as Coulomb friction and a constant force that is part of it."""
+
+    def lacking(q: float, v: float) -> float:
+        return -level * np.tanh(v / 0.05) - difference * np.tanh(v / 0.05) ** 2
+
+    search = begun(motor_data(torque=lacking), motor)
+    dry, further = attach(motor, "rotor", CoulombFriction()), attach(motor, "rotor", second())
+    before = found(search, dry, {f"{dry.prefix}.F_c": level})
+    assert result_of(with_richer_form(search.study, before)) is before, "only in the place of two"
+    both = search.refitted((dry, further), before.current)
+    taken = judged(Candidate(further, (), 0.5), before.current, both, search.study.settings)
+    step = SelectionStep((), before.current, (taken,), taken)
+    state = richer_instead(search.study, before, replace(before.at(both), steps=(*before.steps, step)))
+    if difference > level:
+        assert state is None, "friction does not push"
+        return
+    assert state is not None and state.prefixes == {"rotor.coulomb_asymmetry"}
+    values = state.current.values()
+    assert values["rotor.coulomb_asymmetry.F_c"] == pytest.approx(level, rel=0.05)
+    assert values["rotor.coulomb_asymmetry.delta"] == pytest.approx(difference, rel=0.05)
 
 
 @pytest.mark.parametrize(("plain", "left", "taken"), [(20.0, 1.05, True), (20.0, 9.0, False), (1.5, 0.9, False)])
