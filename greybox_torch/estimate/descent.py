@@ -65,12 +65,13 @@ class Descent:
 
 @dataclass(frozen=True)
 class DescentOptions:
-    """What every descent needs: how to simulate, when to stop, whom to tell."""
+    """What every descent needs: how to simulate, when to stop, whom to tell, and the mean squared error that is known to be reached."""
 
     simulator: Simulator
     settings: Settings
     progress: Progress | None = None
     seed: int = 0
+    to_beat: float = float("inf")
 
     def fine_enough(self, problem: Problem) -> Simulator:
         """The simulator with as many sub-steps as ``problem`` needs at its values."""
@@ -97,7 +98,9 @@ def or_elsewhere(
     if starts is None:
         starts = 1 if found is not None and _trusted(fits, found) else _default_starts(problem, simulator)
     if starts > 1 and problem.free.any():
-        elsewhere = look_around(problem, simulator, starts=starts, seed=options.seed, progress=options.progress)
+        elsewhere = look_around(
+            problem, simulator, starts=starts, seed=options.seed, progress=options.progress, to_beat=options.to_beat
+        )
         other = None if elsewhere is None else _whole_records(elsewhere, options, 0, BETTER_BEGUN)
         found = _better(found, other)
     return found

@@ -22,7 +22,8 @@ HELD = "with {} held at zero"
 def descend_nested(problem: Problem, options: DescentOptions, starts: int | None) -> Descent | None:
     """The best of a descent from the start values and one by way of the simpler model; as :func:`descend` where nothing starts at zero.
 
-    It never ends worse than the simpler model estimated in the same way.
+    It never ends worse than the simpler model estimated in the same way; a search of that for other valleys is given up where it is clearly
+    behind what was found.
     """
     found = descend(problem, options, starts)
     zero = problem.free & (problem.values == 0.0)
@@ -30,7 +31,8 @@ def descend_nested(problem: Problem, options: DescentOptions, starts: int | None
         return found
     simpler = replace(problem, free=problem.free & ~zero)
     names = ", ".join(name for name, is_zero in zip(problem.names, zero, strict=True) if is_zero)
-    there = descend(simpler, _told(options, simpler, HELD.format(names)), starts)
+    of_it = replace(_told(options, simpler, HELD.format(names)), to_beat=2 * _cost(found) / problem.samples)
+    there = descend(simpler, of_it, starts)
     if there is None or _cost(there) >= _cost(found):
         return found
     begin = problem.with_values(*_optimum(there))

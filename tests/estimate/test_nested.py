@@ -12,7 +12,9 @@ import greybox_torch as gt
 from greybox_torch.estimate import nested
 from greybox_torch.estimate.descent import descend
 from greybox_torch.estimate.fit import fit_records
+from greybox_torch.estimate.global_search import look_around
 from greybox_torch.estimate.problem import Problem, make_problem
+from greybox_torch.simulation.simulator import Simulator
 
 
 class Rippled(gt.GreyBoxModel):
@@ -85,3 +87,23 @@ def test_nothing_is_held_where_nothing_begins_at_zero(problem: Problem, monkeypa
     fit_records(problem, starts=1, progress=lambda stage, k, error: told.append(stage))
     assert [int(p.free.sum()) for p in seen] == [2, 3, 2]
     assert "with r held at zero: whole records" in told
+
+
+def test_the_simpler_model_is_told_what_it_has_to_beat(problem: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seen: half of the time of an arm from poor start values went into other valleys of the model without its cubic stiffness."""
+    told: list[float] = []
+
+    def asked(begin: Problem, options: Any, starts: int | None) -> Any:
+        told.append(options.to_beat)
+        return descend(begin, options, starts)
+
+    monkeypatch.setattr(nested, "descend", asked)
+    found = fit_records(problem, starts=1)
+    assert told == [float("inf"), pytest.approx(found.mse, rel=1e-6)]
+
+
+@pytest.mark.parametrize(("share", "given_up"), [(0.5, True), (2.0, False)])
+def test_a_search_that_is_clearly_behind_is_given_up(problem: Problem, share: float, given_up: bool) -> None:
+    simulator, best = Simulator.of(problem.model, problem.free_names), fit_records(problem, starts=1).mse
+    found = look_around(problem, simulator, starts=8, to_beat=share * best)
+    assert (found is None) is given_up
