@@ -61,12 +61,16 @@ class TorqueRipple(Mechanism):
         return [Probe(amplitudes_up_to(self.harmonics), {"order": self.order})]
 
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
-        """With harmonics of the order found, and as the second harmonic of half of it."""
+        """With harmonics of the order found, and as the second harmonic of half of it, or the third of a third of it."""
         if self.harmonics > 1:
             return ()
-        half = values["order"] / 2
-        as_second = {"order": half, **dict(zip(amplitudes(2), (values["a"], values["b"]), strict=True))}
-        return (TorqueRipple(values["order"], HARMONICS), dict(values)), (TorqueRipple(half, 2 * HARMONICS), as_second)
+
+        def as_harmonic(k: int) -> tuple[TorqueRipple, Mapping[str, float]]:
+            base = values["order"] / k
+            found = dict(zip(amplitudes(k), (values["a"], values["b"]), strict=True))
+            return TorqueRipple(base, 2 * HARMONICS), {"order": base, **found}
+
+        return (TorqueRipple(values["order"], HARMONICS), dict(values)), as_harmonic(2), as_harmonic(3)
 
     def nearest(
         self, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
