@@ -120,7 +120,7 @@ def find_what_is_slow(
         end: when all of it has to be known.
     """
     asked = first.complete and first.others is not None
-    budget = longer_windows(first.study, first.state, first.judged) if asked else None
+    budget = longer_windows(first.study, first.state, first.judged, first.searched) if asked else None
     if budget is None:
         return first
     try:
@@ -131,7 +131,7 @@ def find_what_is_slow(
             found = stands(last.study, *((f.state, f.gains, f.judged) for f in (first, last)))
     except (TimeIsUp, KeyboardInterrupt):
         return replace(first, complete=False, others=None, cut=(*first.cut, LONGER))
-    told = sentence(first.judged, first.state, last.state)
+    told = sentence(first.judged, first.state, first.searched, last.state)
     if found:
         return replace(last, more=(*first.more, *last.more, told))
     if not last.complete:

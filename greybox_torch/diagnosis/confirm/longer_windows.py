@@ -14,7 +14,7 @@ from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.same_everywhere import same_everywhere
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
-from greybox_torch.diagnosis.hypothesis.fit import window_lengths
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, window_lengths
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.study import Study
@@ -24,16 +24,21 @@ Judged = tuple[SearchState, Mapping[str, Gain], Judgement]
 """What a search found, what its effects gain on held-out experiments, and its free runs."""
 
 
-def longer_windows(study: Study, state: SearchState, judged: Judgement) -> SearchBudget | None:
+def longer_windows(study: Study, state: SearchState, judged: Judgement, searched: Hypothesis) -> SearchBudget | None:
     """The budget with windows twice as long beside the others.
 
     None where free runs leave little, or windows show it, or none are longer.
+
+    Args:
+        searched: what the search came to, before held-out experiments judged: where it leaves noise alone over windows, free runs may have
+            taken something of it back for what acts slowly beside it.
     """
     settings, budget = study.settings, study.budget
     share, times, _ = judged.left(bool(state.effects))
     if not (times > settings.far_above_noise and share > settings.slow_share):
         return None
-    if times_noise(study.problem, state.current, settings) > settings.above_noise:
+    by_windows = (times_noise(study.problem, h, settings) for h in (state.current, searched))
+    if min(by_windows) > settings.above_noise:
         return None
     longer = replace(budget, window_factors=(*budget.window_factors, 2 * budget.window_factors[-1]))
     more = len(window_lengths(study.problem, longer)) > len(window_lengths(study.problem, budget))
@@ -70,15 +75,20 @@ def explains_free_runs(before: Judgement, after: Judgement, settings: DiagnosisS
     return after.mismatch(True, counting) <= settings.slow_share * least
 
 
-def sentence(before: Judgement, state: SearchState, longer: SearchState) -> str:
+def sentence(before: Judgement, state: SearchState, searched: Hypothesis, longer: SearchState) -> str:
     """What the reader of a verdict has to know of it.
 
     Args:
-        state: what was found before, ``longer`` over longer windows.
+        state: what was left of what was ``searched`` before, ``longer`` over longer windows.
     """
     _, times, experiment = before.left(bool(state.effects))
-    shown, searched = (s.current.fits[-1].windows.steps for s in (state, longer))
+    shown, then = (s.current.fits[-1].windows.steps for s in (state, longer))
+    if len(searched.effects) > len(state.effects):
+        return (
+            f"Over windows of up to {shown} samples what was found first left hardly more than noise, and was taken back: what acts slowly "
+            f"beside it was looked for over windows of {then} samples, too."
+        )
     return (
         f"Free runs of what was found before leave {times:.2g} times the noise in {experiment}, which windows of up to {shown} samples "
-        f"do not show: what acts slowly was looked for over windows of {searched} samples, too."
+        f"do not show: what acts slowly was looked for over windows of {then} samples, too."
     )

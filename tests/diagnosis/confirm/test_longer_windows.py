@@ -9,7 +9,7 @@ import pytest
 
 from greybox_torch.diagnosis.confirm import longer_windows as module
 from greybox_torch.diagnosis.confirm.held_out import Gain
-from greybox_torch.diagnosis.confirm.longer_windows import explains_free_runs, longer_windows, stands
+from greybox_torch.diagnosis.confirm.longer_windows import explains_free_runs, longer_windows, sentence, stands
 from greybox_torch.diagnosis.pipeline import diagnose
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.systems.load import load_model
@@ -58,25 +58,27 @@ def judgement(stub, share: float = 1.0, times: float = 10.0, *, plain: float = 1
 
 
 @pytest.mark.parametrize(
-    ("share", "times", "by_windows", "lengths", "searched"),
+    ("share", "times", "by_windows", "before", "lengths", "searched"),
     [
-        (1.0, 10.0, 1.1, 2, True),
-        (1.0, 2.9, 1.1, 2, False),
-        (0.2, 10.0, 1.1, 2, False),
-        (1.0, 10.0, 1.4, 2, False),
-        (1.0, 10.0, 1.1, 1, False),
-        (1.0, np.nan, 1.1, 2, False),
+        (1.0, 10.0, 1.1, 1.1, 2, True),
+        (1.0, 2.9, 1.1, 1.1, 2, False),
+        (0.2, 10.0, 1.1, 1.1, 2, False),
+        (1.0, 10.0, 1.4, 1.4, 2, False),
+        (1.0, 10.0, 18.0, 1.1, 2, True),
+        (1.0, 10.0, 1.1, 1.1, 1, False),
+        (1.0, np.nan, 1.1, 1.1, 2, False),
     ],
 )
 def test_longer_windows_are_searched_where_free_runs_alone_show_more_than_noise(
-    monkeypatch, stub, share, times, by_windows, lengths, searched
+    monkeypatch, stub, share, times, by_windows, before, lengths, searched
 ) -> None:
+    """``before``: of what the search came to. Seen: a delay, right and alone at the noise, taken back for a slow weight beside it."""
     budget = SearchBudget()
     lengths_of = {budget.window_factors: [10], (*budget.window_factors, 32): [10, 20][:lengths]}
     monkeypatch.setattr(module, "window_lengths", lambda problem, budget: lengths_of[budget.window_factors])
-    monkeypatch.setattr(module, "times_noise", lambda problem, fitted, settings: by_windows)
+    monkeypatch.setattr(module, "times_noise", lambda problem, fitted, settings: fitted)
     study = stub(settings=SETTINGS, budget=budget, problem=stub())
-    longer = longer_windows(study, stub(effects=(), current=stub()), judgement(stub, share, times))
+    longer = longer_windows(study, stub(effects=(), current=by_windows), judgement(stub, share, times), before)
     assert (longer is not None) is searched
     assert longer is None or longer.window_factors == (1, 4, 16, 32)
 
@@ -121,3 +123,14 @@ def test_new_slow_effects_are_borne_out_and_the_same_everywhere(
     after = (stub(effects=(bias,), current=stub()), gains, after_runs)
     assert stands(study, before, after) is finding
     assert not stands(study, before, (stub(effects=(), current=stub()), {}, after_runs))
+
+
+@pytest.mark.parametrize(
+    ("taken_back", "told"), [(False, "which windows of up to 10"), (True, "left hardly more than noise")]
+)
+def test_what_is_said_of_longer_windows(stub, taken_back: bool, told: str) -> None:
+    def state(steps: int) -> Any:
+        return stub(effects=(), current=stub(fits=[stub(windows=stub(steps=steps))]))
+
+    said = sentence(judgement(stub), state(10), stub(effects=(stub(),) if taken_back else ()), state(20))
+    assert told in said and "over windows of 20 samples, too." in said
