@@ -38,7 +38,8 @@ TURNS, SCREENED = 2, 8
 """How often, at most, the search begins, and how many times as many draws are then simulated once to choose where to descend."""
 
 BEHIND = 1.1
-"""How many times the error of what is to be beaten the first turn may leave; on the real arm a second one has gained 1.04 at the most."""
+"""How many times the error of what is to be beaten a turn may leave. From poor starts of the real arm a second turn lowered the error by a
+factor of 1.04 at the most where it led to the best, and by 1.11 where it stayed behind all the same."""
 
 FINER, FINEST = 2, 4
 """How much finer the steps are when what does not matter is drawn anew, as that may be stiff, and how fine they are at most."""
@@ -58,7 +59,7 @@ def look_around(
 ) -> Problem | None:
     """The best of what ``starts`` descents from start values around those of ``problem`` found; None where none simulates.
 
-    None as well where the best of the first turn is clearly behind ``to_beat``, a mean squared error: a second one gains less than that.
+    None as well where the best of a turn is clearly behind ``to_beat``, a mean squared error.
 
     What does not matter at the best place found is then drawn anew, and descents begin from the best of these, as long as that pays.
     Results are rough: they are where a local estimation should begin.

@@ -162,7 +162,7 @@ def test_names_do_not_stand_for_a_curve_that_alone_leaves_nothing_but_noise(moto
 def test_what_any_law_lacks_to_be_the_machines_does_not_count_against_names(
     motor_data, motor, begun, left, alone
 ) -> None:
-    """Seen: a vehicle's dead zone, rounded and 12 % wider one way, told as a curve; its law by direction left 0.25 % of the mismatch."""
+    """Seen: a vehicle's dead zone, rounded and 14 % wider one way, told as a curve; its law by direction left 0.25 % of the mismatch."""
     search = begun(motor_data(torque=lambda q, v: 0.2, noise=0.1), motor)
     curve = search.refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
     pairs = zip(search.plain.fits, curve.fits, strict=True)
