@@ -9,6 +9,9 @@ from typing import Any
 WORSE = 1.001
 """Times the re-estimated model's error from which on a free run counts as worse: what rounding does is not meant."""
 
+BETTER_ELSEWHERE = 4.0
+"""Times that the re-estimated model is farther behind where it is behind, from which on the recommended one is not the worse of the two."""
+
 NEGLIGIBLE = 1e-5
 """Share of an output's spread below which its errors are alike: interpolation and rounding decide there."""
 
@@ -18,9 +21,11 @@ Rows = Sequence[Mapping[str, Any]]
 def worse_than_refit(fit: Rows, unstable: Collection[str] = ()) -> bool:
     """Whether the recommended model simulates the validation experiments worse than the re-estimated one.
 
-    By the root mean square over experiments and outputs, each in units of the re-estimated model's error. A free run that overflows has
-    no number (null in JSON): it is worse than any that has one. Where that of the re-estimated model overflows, there is nothing to be
-    worse than.
+    By the root mean square over experiments and outputs, each in units of the re-estimated model's error. That alone would ask every
+    experiment, also one of small motion, in which the re-estimated model leaves no more than noise: where its errors in units of the
+    recommended model's are ``BETTER_ELSEWHERE`` times as large as those the other way round, it is the worse of the two. A free run that
+    overflows has no number (null in JSON): it is worse than any that has one. Where that of the re-estimated model overflows, there is
+    nothing to be worse than.
 
     Args:
         fit: the rows ``fit`` of a verdict.
@@ -37,7 +42,8 @@ def worse_than_refit(fit: Rows, unstable: Collection[str] = ()) -> bool:
                 return True
             least = max(NEGLIGIBLE * spreads.get(row.get("output"), 0.0), 1e-300)
             ratios.append(max(after, least) / max(before, least))
-    return bool(ratios) and math.hypot(*ratios) > WORSE * math.sqrt(len(ratios))
+    behind, ahead = (math.hypot(*r) for r in (ratios, [1.0 / r for r in ratios]))
+    return behind > WORSE * math.sqrt(len(ratios)) and ahead < BETTER_ELSEWHERE * behind
 
 
 def contradictions(verdict: Mapping[str, Any]) -> list[str]:

@@ -18,6 +18,10 @@ from greybox_torch.model import Parameter, Signals, State
 KNOWN_PLACE = 0.01
 """Share of the travel within which a stop has to be known to stand."""
 
+STIFFER = (30.0, 1000.0)
+"""Times the stiffness that a refit came to with which it begins again, where it is and at the end of the travel: a soft stop that gives way
+early and a hard one both turn the body back, and none between them does as well."""
+
 MARGIN = 0.1
 """Share of the travel, as a model without a stop has it, by which the machine may have gone farther before it met one."""
 
@@ -124,6 +128,11 @@ class EndStop(Mechanism):
         return above + [
             Probe(("k",), {"where": travel.low + share * width, "side": -1.0, "c": 0.0}) for share in (0.03, 0.1, 0.25)
         ]
+
+    def begun_elsewhere(self, around: Surroundings, values: Mapping[str, float]) -> Sequence[Mapping[str, float]]:
+        travel, (stiff, hard) = around.ranges["position"], STIFFER
+        end = travel.high if values["side"] > 0 else travel.low
+        return [{"k": stiff * values["k"]}, {"k": hard * values["k"], "where": end}]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         travel, where = around.ranges["position"], values["where"]

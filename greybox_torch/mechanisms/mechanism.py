@@ -171,6 +171,10 @@ class Mechanism:
         """Forms of the law with more parameters, and where to begin, for where it was found at ``values`` and more than noise is left."""
         return ()
 
+    def begun_elsewhere(self, around: Surroundings, values: Mapping[str, float]) -> Sequence[Mapping[str, float]]:
+        """Where else a refit that came to ``values`` may begin, as its errors may have other minima; empty where nothing is known."""
+        return ()
+
     def options(self) -> dict[str, Any]:
         """What the constructor was told, by argument, so that the same mechanism can be made again."""
         return {name: vars(self)[name] for name in inspect.signature(type(self)).parameters if name in vars(self)}

@@ -43,6 +43,10 @@ def row(before: float | None, after: float | None, output: str = "speed", fit: f
         ([row(None, None), row(0.1, 0.2)], True),
         ([row(np.inf, np.inf), row(0.1, 0.2)], True),
         ([row(100.0, 50.0), row(0.1, 0.2)], True),  # the small error doubled, in its own units
+        ([row(100.0, 30.0), row(0.1, 0.2)], True),
+        ([row(100.0, 1.0), row(0.1, 0.2)], False),  # a hundredth, beside one of small motion
+        ([row(100.0, 1.0), row(0.1, 10.0)], True),
+        ([row(100.0, 1.0), row(0.0, 1e-3)], True),
         ([row(0.0, 0.0, "constant", -np.inf)], False),
         ([], False),
     ],

@@ -128,7 +128,7 @@ def rank(
         fitted = refit(
             before.effects,
             [before.values()],
-            early=candidate.first_starts(budget.trial_starts),
+            early=[*candidate.first_starts(budget.trial_starts), *_elsewhere(study, candidate, before)],
             before=before,
             limits=budget.window_iterations,
             simulator=simulator,
@@ -168,6 +168,14 @@ def rank(
         longest_first = sorted(some, key=lambda entry: not entry[1].unknown)
         final += [r for r in side_by_side(partial(in_full, *entry[1:]) for entry in longest_first) if r is not None]
     return in_order([*final, *_laws_behind_curve(study, current, final, frozen)], study.settings)
+
+
+def _elsewhere(study: Study, candidate: Candidate, trial: Hypothesis) -> list[dict[str, float]]:
+    """Where the law says that a refit may begin once more after its trial."""
+    effect, values = candidate.attachment, trial.values()
+    own = {n.rpartition(".")[2]: v for n, v in values.items() if n.startswith(f"{effect.prefix}.")}
+    others = effect.mechanism.begun_elsewhere(study.surroundings[effect.port], own)
+    return [{**values, **{f"{effect.prefix}.{n}": v for n, v in other.items()}} for other in others]
 
 
 def _score_over(fitted: Hypothesis, steps: int) -> float:

@@ -38,6 +38,12 @@ def chosen(ranked: Sequence[RankedCandidate], plain: Hypothesis, settings: Diagn
     return curve if curve.gain > named.gain + settings.curve_margin and much_better else named
 
 
+def part_of_a_curve(led: RankedCandidate, paying: Sequence[RankedCandidate], settings: DiagnosisSettings) -> bool:
+    """Whether a name removes but a part of what a free curve removes, which by itself is no finding: then it is none either."""
+    most = max((r.gain for r in paying if r.unknown), default=0.0)
+    return not led.unknown and most > settings.curve_far_ahead * led.gain
+
+
 def alone_at_noise(curve: Hypothesis, named: Hypothesis, plain: Hypothesis, settings: DiagnosisSettings) -> bool:
     """Whether a free curve leaves white noise alone, and names as much more as a finding is: then they are not the machine's.
 

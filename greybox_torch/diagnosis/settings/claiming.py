@@ -67,6 +67,12 @@ class ConfirmationSettings:
         unit="share of the plain model's held-out mismatch",
         chosen_by="cases simulated elsewhere: what a law lacks to be the machine's stays below 0.005, effects begin at 0.05",
     )
+    curve_far_ahead: float = ratio(
+        3.0,
+        "How many times what a first name gains a free curve that is no finding must gain for the name to be none either.",
+        unit="times the gain",
+        chosen_by="a soft stop told of a complete arm at one and a half times its noise: 3.6",
+    )
     least_share_kept: float = share(
         0.1,
         "What the fit of whole records has to leave of an effect's amplitudes for windows of held-out experiments to prove it.",
