@@ -13,7 +13,7 @@ from greybox_torch.linear_algebra import least_squares
 from greybox_torch.mechanisms.matching import force_columns, laws_of
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 
-LEAST_MATCH = 0.9
+LEAST_MATCH = 0.8
 """Share of what a straight line leaves of the curve that two laws must match together to be worth a refit."""
 
 LEAST_OF_EACH = 0.1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import torch
@@ -56,3 +56,7 @@ class DryLaw(LinearLaw):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((self.parameter,), {"v_0": width}) for width in widths(around)]
+
+    def begun_elsewhere(self, around: Surroundings, values: Mapping[str, float]) -> Sequence[Mapping[str, float]]:
+        """With a wide change of sign: from a sharp one no refit moves where the machine sticks and slips."""
+        return [{"v_0": widths(around)[-1]}]

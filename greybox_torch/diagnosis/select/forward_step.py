@@ -88,7 +88,7 @@ def _take(study: Study, state: SearchState, screened: Screened, compared: Compar
     if little_is_left(study, state):
         paying = [r for r in paying if completes(r.fitted, settings)]
     led = chosen([r for r in paying if not r.unknown or substantial(study, state, r)], state.plain, settings)
-    if led is not None and not state.effects and part_of_a_curve(led, paying, settings):
+    if led is not None and part_of_a_curve(led, paying, settings):
         led = None
     taken = None if led is None else believed(led, paying, settings, study.beliefs)
     step = SelectionStep(screened, state.current, tuple(in_turn), taken, None if taken is led else led)

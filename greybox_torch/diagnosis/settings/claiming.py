@@ -69,7 +69,7 @@ class ConfirmationSettings:
     )
     curve_far_ahead: float = ratio(
         3.0,
-        "How many times what a first name gains a free curve that is no finding must gain for the name to be none either.",
+        "How many times what the best name gains a free curve that is no finding must gain for the name to be none either.",
         unit="times the gain",
         chosen_by="a soft stop told of a complete arm at one and a half times its noise: 3.6",
     )
