@@ -39,6 +39,10 @@ class Gain:
         """How many standard errors the share lies above zero."""
         return self.share / max(self.error, 1e-12) if np.isfinite(self.error) else 0.0
 
+    def unexercised(self, settings: DiagnosisSettings) -> bool:
+        """Whether held-out experiments do not exercise the effect: with it and without it they come out alike."""
+        return abs(self.share) + self.error < settings.unexercised
+
     @property
     def interval(self) -> tuple[float, float]:
         """95 % interval of the share."""

@@ -67,10 +67,13 @@ def stands(study: Study, before: Judged, after: Judged) -> bool:
 def explains_free_runs(before: Judgement, after: Judgement, settings: DiagnosisSettings) -> bool:
     """Whether the effects of ``after`` leave so little of what ``before`` leaves of free runs that most of it is theirs.
 
-    By experiments that had no part in choosing either: those that judge ``after``, which may have taken one more to choose with. What the
-    model as it stands explains once it is estimated from that one, too, is none of the effects' doing.
+    By experiments that had no part in choosing either: those that judge ``after``, which may have taken one more to choose with. Where they
+    show next to nothing of what is missing (a stop that is never reached there), by the ones that were taken. What the model as it stands
+    explains once it is estimated from those, too, is none of the effects' doing.
     """
-    counting = after.judges - after.unstable
+    counting, taken = after.judges - after.unstable, before.judges - after.judges
+    if taken and before.mismatch(True, counting) < settings.least_size * before.mismatch(True, taken):
+        counting = taken
     least = min(before.mismatch(True, counting), after.mismatch(False, counting))
     return after.mismatch(True, counting) <= settings.slow_share * least
 

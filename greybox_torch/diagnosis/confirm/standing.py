@@ -27,7 +27,7 @@ def sizes(study: Study, state: SearchState, gains: Mapping[str, Gain]) -> dict[s
     found = {prefix: together / len(state.effects) for prefix in state.prefixes}
     for prefix in state.without:
         gain = gains.get(prefix)
-        if gain is None or abs(gain.share) + gain.error < study.settings.unexercised or not np.isfinite(gain.size):
+        if gain is None or gain.unexercised(study.settings) or not np.isfinite(gain.size):
             found[prefix] = size(state.plain.fits, state.without[prefix].fits, state.current.fits, study.settings)
         else:
             found[prefix] = gain.size

@@ -112,7 +112,7 @@ def _to_take_back(study: Study, state: SearchState, gains: Mapping[str, Gain], o
 
 def _borne_out(gain: Gain, least: float, settings: DiagnosisSettings) -> bool:
     """Whether held-out experiments bear an effect out by so many standard errors, or do not exercise it."""
-    return gain.errors_away > least or abs(gain.share) + gain.error < settings.unexercised
+    return gain.errors_away > least or gain.unexercised(settings)
 
 
 def _idle(state: SearchState, gains: Mapping[str, Gain], full: tuple[WindowFit, ...], others: HeldOut) -> str | None:

@@ -92,6 +92,23 @@ def test_what_longer_windows_find_has_to_explain_most_where_it_had_no_part_in_ch
     assert explains_free_runs(before, judgement(stub, run_3=0.9), SETTINGS)
 
 
+def test_what_the_others_do_not_show_is_asked_of_the_experiment_that_was_taken_to_choose_with(stub) -> None:
+    """Seen: a pendulum's stop that one of three validation experiments reaches, once; nothing was said to be missing."""
+    before = judgement(stub, run_2=10.0, run_3=0.1)
+
+    def after(run_2: float, plain: float = 1e3) -> Any:
+        left = {"run_2": run_2, "run_3": 0.1}
+        return stub(
+            judges={"run_3"},
+            unstable=frozenset(),
+            mismatch=lambda effects, among: sum(left[name] if effects else plain for name in among),
+        )
+
+    assert explains_free_runs(before, after(2.4), SETTINGS)
+    assert not explains_free_runs(before, after(2.6), SETTINGS)
+    assert not explains_free_runs(before, after(2.4, plain=9.0), SETTINGS)
+
+
 def test_experiments_that_no_free_run_follows_count_for_neither(stub) -> None:
     before, after = judgement(stub, run_2=10.0, run_3=500.0), judgement(stub, run_2=5.0, run_3=1.0)
     assert explains_free_runs(before, after, SETTINGS)
