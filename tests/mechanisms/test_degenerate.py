@@ -63,6 +63,8 @@ def test_sound_parameters_are_not_objected_to(name: str, around: Surroundings) -
         ("friction_warmup", {"T": 21.0}, "T = 21 s is far longer than the longest record, 10 s"),
         ("input_lag", {"T": 21.0}, "T = 21 s is far longer than the longest record, 10 s"),
         ("end_stop", {"where": 5.8}, "where = 5.8 lies outside of where position was, -3 to 5 rad"),
+        ("end_stop", {"where": 2.5}, "31 % of the travel lies beyond it: no stop gives way so far"),
+        ("end_stop", {"where": 1.0, "side": -1.0}, "50 % of the travel lies beyond it"),
         ("threshold_flow", {"threshold": 0.4}, "threshold = 0.4 lies outside of where level was, 0.5 to 4 m"),
         (
             "torque_ripple",

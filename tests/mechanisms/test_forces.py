@@ -53,6 +53,14 @@ def test_harmonics_of_a_ripple(law) -> None:
     )
 
 
+@pytest.mark.parametrize(("side", "end"), [(1.0, 5.0), (-1.0, -3.0)])
+def test_a_stop_is_begun_stiffer_and_hard_at_the_end_of_the_travel(side, end) -> None:
+    """Seen: a cart's stop of 9000 N/m, to which no refit came from 3 N/m."""
+    around = Surroundings({"position": Range(-3.0, 5.0, 2.0)}, {"position": "rad"}, "N m", 1e-3)
+    found = {"k": 2.0, "where": 4.0 * side, "c": 0.1, "side": side}
+    assert list(EndStop().begun_elsewhere(around, found)) == [{"k": 60.0}, {"k": 2000.0, "where": end}]
+
+
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_end_stop_pushes_back_beyond_and_is_absent_before(law, side) -> None:
     force = law(EndStop(), {"k": 10.0, "where": 1.0, "side": side}, position=ANGLES, speed=np.zeros_like(ANGLES))

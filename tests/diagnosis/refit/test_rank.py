@@ -170,3 +170,22 @@ def test_a_law_that_is_there_already_is_not_refitted_from_the_curve(dead_zone_se
     behind = partial(_laws_behind_curve, dead_zone_search.study, fitted, frozen=frozenset())
     assert [r.candidate.attachment for r in behind(ranked[:1])] == [law]
     assert behind(ranked) == []
+
+
+def test_a_refit_in_full_also_begins_where_the_law_says_after_its_trial(dead_zone_search, monkeypatch) -> None:
+    elsewhere = {"v_0": 0.5}
+    monkeypatch.setattr(CoulombFriction, "begun_elsewhere", lambda self, around, values: [elsewhere])
+    early: list[Any] = []
+
+    def recorded(*args: Any, **how: Any) -> Any:
+        early.extend(how.get("early", ()))
+        return fit(*args, **how)
+
+    fit = rank_module.fit
+    monkeypatch.setattr(rank_module, "fit", recorded)
+    search = dead_zone_search
+    friction = attach(search.problem.model, "rotor", CoulombFriction())
+    begun = {**search.plain.values(), "rotor.coulomb_friction.F_c": 0.01, "rotor.coulomb_friction.v_0": 0.1}
+    rank(search.study, search.plain, [Candidate(friction, (begun,), 0.5)])
+    assert begun in early
+    assert [e["rotor.coulomb_friction.v_0"] for e in early if e != begun] == [0.5]

@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.refit.rank import RankedCandidate
 from greybox_torch.diagnosis.screen.candidates import candidates
 from greybox_torch.diagnosis.screen.score_test import ScreenScore, _sound
 from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
-from greybox_torch.diagnosis.select.choice import chosen, simplest
+from greybox_torch.diagnosis.select.choice import chosen, part_of_a_curve, simplest
 from greybox_torch.diagnosis.select.forward_step import substantial
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
@@ -66,6 +66,20 @@ def test_a_curve_is_taken_only_where_it_goes_much_farther(ranked) -> None:
     assert chosen([little, named], named.fitted, NONE_TOO_SMALL) is named
     assert chosen([much, named], named.fitted, NONE_TOO_SMALL) is much
     assert chosen([much], named.fitted, NONE_TOO_SMALL) is much
+
+
+def test_a_name_that_is_part_of_what_a_curve_removes_is_none(ranked) -> None:
+    """Seen: a complete arm at one and a half times its noise, told to lack a soft stop where a curve gained 3.6 times as much."""
+
+    def gaining(mechanism: Any, gain: float) -> RankedCandidate:
+        return replace(ranked(mechanism, np.full(WINDOWS, 1.0)), gain=gain)
+
+    named = gaining(CoulombFriction(), 0.016)
+    for most, part in ((0.045, False), (0.058, True)):
+        curve = gaining(Unknown("speed"), most)
+        assert part_of_a_curve(named, [curve, named], SETTINGS) is part
+        assert not part_of_a_curve(curve, [curve, named], SETTINGS)
+    assert not part_of_a_curve(named, [named], SETTINGS)
 
 
 def test_a_curve_is_also_refitted_from_a_part_of_it(dead_zone_search) -> None:
