@@ -67,7 +67,7 @@ def _of_the_whole(verdict: Mapping[str, Any]) -> Iterator[str]:
     if verdict["effects"] and worse_than_refit(verdict["fit"], verdict.get("unstable", ())):
         yield "the recommended model simulates the validation experiments worse than the re-estimated one"
     judging = {row.get("experiment") for row in verdict["fit"] if row["role"] == "validation"}
-    if 2 * len(set(verdict.get("unstable", ()))) > len(judging):
+    if 2 * len(set(verdict.get("unstable", ())) - _lost(verdict["fit"])) > len(judging):
         yield "more than half of the validation experiments do not count"
     if not verdict["effects"] and any(_differ(row) for row in verdict["fit"]):
         yield "nothing is named, and the recommended model is not the re-estimated one"
@@ -92,6 +92,17 @@ def _of_an_effect(effect: Mapping[str, Any], sized: bool) -> Iterator[str]:
     for name, value in effect.get("parameters", {}).items():
         if _finite(value["value"]) is None:
             yield f"{name} has no value"
+
+
+def _lost(fit: Rows) -> set[str | None]:
+    """Experiments of which the free runs of the re-estimated model and of the recommended one overflow or are worse than a constant."""
+    kept = {row.get("experiment") for row in fit if not all(_is_lost(row[stage]) for stage in ("refit", "augmented"))}
+    return {row.get("experiment") for row in fit} - kept
+
+
+def _is_lost(score: Mapping[str, Any]) -> bool:
+    share = _finite(score.get("fit"))
+    return _finite(score["rmse"]) is None or (share is not None and share < 0.0)
 
 
 def _differ(row: Mapping[str, Any]) -> bool:

@@ -13,6 +13,7 @@ from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.confirm.standing import refinements, sizes
 from greybox_torch.diagnosis.confirm.unstable import no_free_run_follows
 from greybox_torch.diagnosis.contradictions import contradictions
+from greybox_torch.diagnosis.describe import report_data
 from greybox_torch.diagnosis.describe.effects import describe
 from greybox_torch.diagnosis.describe.evidence import sentences
 from greybox_torch.diagnosis.describe.left import what_is_left
@@ -158,7 +159,7 @@ def _as_found(
     """
     study, state, judged = found.study, found.state, found.judged
     effects, refinements = _told(found) if state.effects else ((), ())
-    traces = judged.traces(bool(effects))
+    traces = report_data.traces(judged, bool(effects))
     detected = detect(judged.problem, traces, study.settings)
     clock.lap("validation and report data")
     left = None if effects else error_without_a_name(study, state, found.others, judged)
@@ -180,19 +181,19 @@ def _as_found(
         evidence=(
             *sentences(found.dataset, study, state, effects, found.gains, detected, not found.complete),
             *(judged.augmented.sentences() if effects else ()),
-            *no_free_run_follows(unstable, study.settings),
+            *no_free_run_follows(unstable, study.settings, judged.lost),
             *((A_DISTURBANCE,) if left is not None and unexplained is None else ()),
             *found.more,
         ),
         stages=clock.stages,
         ranking=ranking(state),
         traces=traces,
-        inputs=judged.inputs(),
-        parameters=judged.parameters(bool(effects)),
+        inputs=report_data.inputs(judged),
+        parameters=report_data.parameters(judged, bool(effects)),
         complete=found.complete,
         unexplained=unexplained,
         refinements=refinements,
-        left=what_is_left(judged, detected, bool(effects)),
+        left=None if effects and judged.by_windows_alone else what_is_left(judged, detected, bool(effects)),
         unstable=unstable,
         settings=study.settings,
         budget=study.budget,
@@ -211,7 +212,7 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
     """The effects that are findings, and those that are too small for that; the latter by themselves are none of the model's."""
     study, state, judged = found.study, found.state, found.judged
     by_effect = sizes(study, state, found.gains)
-    told = describe(study, state, judged.augmented, judged.sums, found.gains, by_effect)
+    told = describe(study, state, judged.augmented, _sums(found), found.gains, by_effect)
     if not found.complete:
         told = of_a_stopped_search(told, study.settings)
     small = refinements(study, state, found.others, found.gains, by_effect)
@@ -220,3 +221,11 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
         tuple(e for attached, e in both if attached.prefix not in small),
         tuple(e for attached, e in both if attached.prefix in small),
     )
+
+
+def _sums(found: Findings) -> tuple[float, float]:
+    """Mean squared errors without the effects and with them, summed over experiments; of the longest windows where those alone judge."""
+    if not found.judged.by_windows_alone:
+        return found.judged.sums
+    state, experiments = found.state, len(found.study.problem.records.first)
+    return experiments * state.plain.fits[-1].mean_square, experiments * state.current.fits[-1].mean_square

@@ -174,7 +174,7 @@ class Verdict:
             if before.role == "validation"
         ]
         if not pairs:
-            return ""
+            return "; windows show it, as no free run follows these experiments" if self.unstable else ""
         before, after = (float(np.mean(side)) for side in zip(*pairs, strict=True))
         them = "it" if len(self.effects) == 1 else "them"
         but = f" (without {', '.join(sorted(self.unstable))}, which no free run follows)" if self.unstable else ""

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from greybox_torch.data import DataSet
-from greybox_torch.diagnosis.confirm.unstable import parted
+from greybox_torch.diagnosis.confirm.unstable import lost, parted
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.study import Study
@@ -44,9 +44,16 @@ class FreeRuns:
 
     def parted(self, final: Final, comparison: Comparison, asked: Collection[str]) -> dict[str, float]:
         """By name of ``asked``, how far free runs part that begin next to those of ``comparison``, see :func:`parted`."""
+        return parted(*self._begun_as(final, comparison), asked, self.settings)
+
+    def lost(self, final: Final, comparison: Comparison, asked: Collection[str]) -> dict[str, bool]:
+        """Of ``asked``, the experiments whose free runs are lost, and whether they fall away from an equilibrium, see :func:`lost`."""
+        return lost(*self._begun_as(final, comparison), asked, self.settings)
+
+    def _begun_as(self, final: Final, comparison: Comparison) -> tuple[Problem, Simulator]:
+        """All experiments with a model and the start states of its free runs, and its simulator."""
         problem, simulator = self._simulated_as(final.problem, final.problem.values)
-        began = problem.with_values(problem.values, np.array(comparison.initial))
-        return parted(began, simulator, asked, self.settings)
+        return problem.with_values(problem.values, np.array(comparison.initial)), simulator
 
     def _compared(self, like: Problem, values: np.ndarray, final: Final | None, places: Places = NOWHERE) -> Comparison:
         """Free runs of all experiments; start states fitted on whole estimation records where there are any, else on the first tenth."""

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import partial
 
 from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
-from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
+from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified
 from greybox_torch.diagnosis.confirm.standing import sizes
@@ -44,15 +44,15 @@ def holding(
         return NOWHERE if others is None else others.places(state.current)
 
     while state.effects:
-        empty = _empty(study, state, judged.augmented, gains)
-        if empty is None and judged.holds and not judged.unstable:
+        empty, holds = _empty(study, state, judged.augmented, gains), judged.holds and _shown(state, others, judged)
+        if empty is None and holds and not judged.unstable:
             break
         if empty is None:
             trial = partial(_better_by_windows, study, state, gains, judged, places())
-            better, whole = or_else(trial, lambda: None) if judged.holds else (trial(), True)
-            if better is not None:
+            better, whole = or_else(trial, lambda: None) if holds else (trial(), True)
+            if better is not None and _shown(state, others, better):
                 return state, gains, better, (*told, WINDOWS_STAND), True
-            if judged.holds:
+            if holds:
                 return state, gains, judged, told, whole
         if not state.compared_without:
             state = result_of(drop_superfluous(study, state))
@@ -69,13 +69,27 @@ def holding(
     return state, gains, judged, told, True
 
 
+def _shown(state: SearchState, others: HeldOut | None, judged: Judgement) -> bool:
+    """Whether free runs show the effects or, where they are lost on every experiment, windows: by most of the held-out error."""
+    if not judged.by_windows_alone:
+        return True
+    if others is None:
+        return False
+    removed = gain(others.fits(state.plain), others.fits(state.current))
+    settings = others.study.settings
+    return removed.share > settings.held_out_in_part and removed.errors_away > settings.held_out_beyond_chance
+
+
 def _better_by_windows(
     study: Study, state: SearchState, gains: Mapping[str, Gain], judged: Judgement, places: Places
 ) -> Judgement | None:
-    """The free runs with the values that windows have, where those hold better than ``judged`` and say something of the machine."""
+    """The free runs with the values that windows have, where those hold better than ``judged`` and say something of the machine.
+
+    Where every free run is lost, whole records say nothing of the values.
+    """
     by_windows = judged.having(as_windows_have_it(state.current, study.recorded), places)
-    better = by_windows.better_than(judged) and _empty(study, state, by_windows.augmented, gains) is None
-    return by_windows if better else None
+    better = by_windows.better_than(judged) or (judged.by_windows_alone and by_windows.holds)
+    return by_windows if better and _empty(study, state, by_windows.augmented, gains) is None else None
 
 
 def _without(study: Study, state: SearchState, prefix: str) -> SearchState:

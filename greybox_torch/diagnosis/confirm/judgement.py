@@ -16,7 +16,6 @@ from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.hypothesis.noise import output_floors
 from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.settings import DiagnosisSettings
-from greybox_torch.diagnosis.verdict import Estimate, InputTrace, Trace
 from greybox_torch.estimate.comparison import Comparison, fit_rows, mean_fit
 from greybox_torch.estimate.problem import Problem
 
@@ -87,14 +86,33 @@ class Judgement:
     def unstable(self) -> frozenset[str]:
         """Validation experiments that do not count, as no free run of the model with effects follows them, and it comes out worse there.
 
-        None where they were more than half of all: what is left would say too little.
+        None where they were more than half of all: what is left would say too little. That does not hold of those that are ``lost``.
         """
         if self._no_worse(frozenset()):
             return frozenset()
-        worse = {name for name in self.judges if worse_than_refit(self._rows, self.judges - {name})}
-        parted = self.free_runs.parted(self.augmented, self.with_effects, worse)
+        parted = self.free_runs.parted(self.augmented, self.with_effects, self._worse)
         found = frozenset(name for name, share in parted.items() if share >= self.settings.least_parted)
-        return found if 2 * len(found) <= len(self.judges) else frozenset()
+        return self.lost | (found if 2 * len(found) <= len(self.judges) else frozenset())
+
+    @cached_property
+    def lost(self) -> frozenset[str]:
+        """Validation experiments that the model with effects simulates worse, whose free runs are lost with the effects and without.
+
+        With the effects they fall away from an equilibrium, where no start state is known well enough. A model without them may be damped
+        by what its parameters became, and be lost more slowly.
+        """
+        with_effects = self.free_runs.lost(self.augmented, self.with_effects, self._worse) if self._worse else {}
+        falling = {name for name, falls in with_effects.items() if falls}
+        return frozenset(self.free_runs.lost(self.plain, self.refit, falling) if falling else ())
+
+    @property
+    def by_windows_alone(self) -> bool:
+        """Whether the free runs of every validation experiment are ``lost``, so that windows alone can judge."""
+        return self.judges <= self.lost
+
+    @cached_property
+    def _worse(self) -> frozenset[str]:
+        return frozenset(name for name in self.judges if worse_than_refit(self._rows, self.judges - {name}))
 
     def _no_worse(self, but: frozenset[str]) -> bool:
         """Whether the model with effects simulates the validation experiments no worse, ``but`` for some.
@@ -102,8 +120,8 @@ class Judgement:
         By the mean squared error, outputs in units of their spread, by the mean fit in %, what a user sees, and by the errors in units of
         those without effects, by which no verdict may contradict itself.
         """
-        if worse_than_refit(self._rows, but):
-            return False
+        if worse_than_refit(self._rows, but) or self.judges <= but:
+            return self.judges <= but
         before, after = (mean_fit(self._judged(c, but).scores) for c in (self.refit, self.with_effects))
         refit, with_effects = (self._energy(c, but) for c in (self.refit, self.with_effects))
         least = self.settings.unexercised
@@ -154,46 +172,6 @@ class Judgement:
     def comparisons(self, effects: bool) -> dict[str, Comparison]:
         """The models by the names that a verdict gives them; without ``effects`` the recommended one is the plain refit."""
         return {"start": self.start, "refit": self.refit, "augmented": self.with_effects if effects else self.refit}
-
-    def traces(self, effects: bool) -> tuple[Trace, ...]:
-        """Every output of every experiment over time, measured and simulated by each of the models."""
-        last = self.with_effects if effects else self.refit
-        result = []
-        for e, recording in enumerate(self.recordings):
-            for k, output in enumerate(self.problem.model.outputs):
-                simulated = [c.simulated[e][:, k] for c in (self.start, self.refit, last)]
-                measured, time_axis = (
-                    self.problem.records.y[k, self.problem.records.span(e)],
-                    self.problem.records.time(e),
-                )
-                result.append(
-                    Trace(recording.name, recording.role, output.name, output.unit, time_axis, measured, *simulated)
-                )
-        return tuple(result)
-
-    def inputs(self) -> tuple[InputTrace, ...]:
-        """The recorded inputs of all experiments."""
-        records, found = self.problem.records, []
-        for e, recording in enumerate(self.recordings):
-            for k, one in enumerate(self.problem.model.inputs):
-                values = records.u[k, records.span(e)]
-                found.append(InputTrace(recording.name, one.name, one.unit, records.time(e), values))
-        return tuple(found)
-
-    def parameters(self, effects: bool) -> tuple[Estimate, ...]:
-        """The free parameters of the model itself: as the card has them, re-estimated, and with the effects."""
-        units = {p.name: p.unit for p in self.problem.model.declared_parameters}
-        values = dict(zip(self.problem.names, map(float, self.problem.values), strict=True))
-        estimates = [(f.values(), f.deviations()) for f in (self.plain, *((self.augmented,) if effects else ()))]
-
-        def of(name: str) -> Estimate:
-            both = [
-                (found[name], std if np.isfinite(std := deviations.get(name, np.nan)) else None)
-                for found, deviations in estimates
-            ]
-            return Estimate(name, units[name], values[name], both[0], both[1] if effects else None)
-
-        return tuple(of(name) for name in self.problem.free_names)
 
     def _times_noise(self, comparison: Comparison) -> np.ndarray:
         """Root mean square errors in units of the noise, by experiment (E,), over the outputs whose noise is known; NaN where none is."""

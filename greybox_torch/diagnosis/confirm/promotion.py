@@ -36,9 +36,10 @@ class Promotion:
 def promote_unstable(dataset: DataSet, unstable: Collection[str]) -> Promotion | None:
     """The data set with a validation experiment that no free run follows, and so cannot score, among those to choose with.
 
-    None where there is none, or where no validation experiment would be left.
+    None where there is none, where no validation experiment would be left, or where none can score: another would not, either.
     """
-    if not unstable or len(dataset.validation()) < 2:
+    names = {r.name for r in dataset.validation()}
+    if not unstable or len(names) < 2 or names <= set(unstable):
         return None
     return Promotion.of(dataset, min(unstable), "no free run of the model found before follows it")
 

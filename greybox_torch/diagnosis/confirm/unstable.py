@@ -7,6 +7,7 @@ another part. A free run that is far from the measurement then says nothing of t
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -37,19 +38,52 @@ def parted(
     return {problem.records.names[e]: _parted(problem, simulator, e, settings) for e in rows}
 
 
-def no_free_run_follows(experiments: Collection[str], settings: DiagnosisSettings) -> tuple[str, ...]:
+def lost(
+    problem: Problem, simulator: Simulator, asked: Collection[str], settings: DiagnosisSettings
+) -> dict[str, bool]:
+    """The experiments whose free runs end farther from the measurement than a constant is, by name.
+
+    True of those that fall away from an equilibrium: they overflow, or a small change of the start grows, as where free runs part.
+    """
+    rows = [e for e, name in enumerate(problem.records.names) if name in asked]
+    beside = ((problem.records.names[e], _beside(problem, simulator, e, settings)) for e in rows)
+    return {name: not runs.finite or bool(runs.grown) for name, runs in beside if not runs.near}
+
+
+def no_free_run_follows(
+    experiments: Collection[str], settings: DiagnosisSettings, lost: Collection[str] = ()
+) -> tuple[str, ...]:
     """What the reader of a verdict has to know of experiments that no free run follows, in a sentence for each."""
     return tuple(
-        f"{name}: with the effects the free run is worse. It does not count: a second free run, whose start differs by "
+        f"{name}: the free runs with the effects and without them both end farther from the measurement than a constant is, as the machine "
+        "falls away from an equilibrium. Neither counts: windows, whose start states are estimated, judge."
+        if name in lost
+        else f"{name}: with the effects the free run is worse. It does not count: a second free run, whose start differs by "
         f"{100 * settings.unseen_start:.2g} % of a state's travel, departs from the first by {100 * settings.least_parted:.0f} % of its "
         "error or more, so that no free run follows this experiment."
         for name in sorted(experiments)
     )
 
 
-@np.errstate(over="ignore", invalid="ignore", divide="ignore")
 def _parted(problem: Problem, simulator: Simulator, experiment: int, settings: DiagnosisSettings) -> float:
     """How far a small change of the start state moves the outputs of one experiment, at most, in units of its error."""
+    runs = _beside(problem, simulator, experiment, settings)
+    return max(runs.grown, default=0.0) if runs.finite and runs.near else 0.0
+
+
+@dataclass(frozen=True)
+class _Beside:
+    """A free run and those that begin next to it: whether it is finite, and nearer to the measurement than a constant is; how far those
+    part from it whose distance grows, in units of its error."""
+
+    finite: bool
+    near: bool
+    grown: tuple[float, ...]
+
+
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")
+def _beside(problem: Problem, simulator: Simulator, experiment: int, settings: DiagnosisSettings) -> _Beside:
+    """The free run of one experiment and those beside it."""
     records, length = problem.records, int(problem.records.lengths[experiment])
 
     def runs(starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -62,12 +96,12 @@ def _parted(problem: Problem, simulator: Simulator, experiment: int, settings: D
     start, measured = problem.initial[experiment : experiment + 1], records.y[:, records.span(experiment)].T
     along, states = runs(start)
     error, spread = (_size(problem.weights * e) for e in (along[0] - measured, measured - np.nanmean(measured, axis=0)))
-    if not np.isfinite(states[0]).all() or not error <= spread:
-        return 0.0
+    if not np.isfinite(states[0]).all():
+        return _Beside(False, False, ())
     beside, _ = runs(start + np.diag(settings.unseen_start * np.ptp(states[0], axis=0)))
     moved = problem.weights * (beside - along)
-    shares = [_size(m) / max(error, 1e-300) for m in moved if _grew(m) >= settings.least_growth]
-    return max(shares, default=0.0)
+    shares = tuple(_size(m) / max(error, 1e-300) for m in moved if _grew(m) >= settings.least_growth)
+    return _Beside(True, bool(error <= spread), shares)
 
 
 def _grew(moved: np.ndarray) -> float:

@@ -71,9 +71,13 @@ def test_where_whole_records_lead_astray_the_values_of_the_windows_may_stand(mon
     """Seen: a ripple of order 10 along a position that nobody measures; whole records drifted to 10.1, worse on validation."""
     effect = stub(prefix="rotor.ripple")
     state = stub(effects=(effect,), current="windows", compared_without=True)
-    by_windows = stub(better_than=lambda other: windows_hold, augmented="windows")
+    by_windows = stub(better_than=lambda other: windows_hold, augmented="windows", by_windows_alone=False)
     judged = stub(
-        holds=False, augmented="records", having=lambda final, places: by_windows, without_effects=lambda: "plain"
+        by_windows_alone=False,
+        holds=False,
+        augmented="records",
+        having=lambda final, places: by_windows,
+        without_effects=lambda: "plain",
     )
     monkeypatch.setattr(holding, "as_windows_have_it", lambda hypothesis, records: hypothesis)
     monkeypatch.setattr(holding, "_empty", lambda *args: None)
@@ -93,14 +97,14 @@ def test_values_that_hold_on_some_experiments_give_way_to_better_ones_and_are_no
 ) -> None:
     """Where time is up while the values of the windows are tried, those of whole records stand."""
     state = stub(effects=(stub(prefix="rotor.ripple"),), current="windows", compared_without=True)
-    by_windows = stub(better_than=lambda other: windows, augmented="windows")
+    by_windows = stub(better_than=lambda other: windows, augmented="windows", by_windows_alone=False)
 
     def having(final: Any, places: Any) -> Any:
         if not time:
             raise TimeIsUp
         return by_windows
 
-    judged = stub(holds=True, unstable={"run 2"}, augmented="records", having=having)
+    judged = stub(holds=True, unstable={"run 2"}, augmented="records", having=having, by_windows_alone=False)
     monkeypatch.setattr(holding, "as_windows_have_it", lambda hypothesis, records: hypothesis)
     monkeypatch.setattr(holding, "_empty", lambda *args: None)
     left, gains, kept, told, whole = holding.holding(stub(settings=None, recorded=None), state, None, {}, judged)

@@ -27,8 +27,8 @@ def errors_of(*errors: float) -> Comparison:
 
 @pytest.fixture
 def judged(stub):
-    def make(parted: Mapping[str, float], *after: float) -> Judgement:
-        """The refit leaves 0.1, 0.1, 1.4, 0.3, and the model with effects ``after``."""
+    def make(parted: Mapping[str, float], *after: float, before: tuple[float, ...] = (0.1, 0.1, 1.4, 0.3)) -> Judgement:
+        """The refit leaves ``before``, and the model with effects ``after``: with them, experiments that part fall if they are lost."""
         speed = np.tile([-1.0, 1.0], 50)[None]  # of spread one
         problem: Any = stub(model=stub(outputs=[stub(name="speed")]), records=stub(y=speed))
         recordings = tuple(stub(name=n, role="estimation" if n == "first" else "validation") for n in EXPERIMENTS)
@@ -36,12 +36,28 @@ def judged(stub):
         def of(final: Any, comparison: Comparison, asked: set[str]) -> dict[str, float]:
             return {name: parted.get(name, 0.0) for name in asked}
 
-        runs: Any = stub(settings=DiagnosisSettings(), recordings=recordings, problem=problem, parted=of, start=None)
-        refit, final = errors_of(0.1, 0.1, 1.4, 0.3), stub()
+        def lost(final: Any, comparison: Comparison, asked: set[str]) -> dict[str, bool]:
+            far = {s.experiment for s in comparison.scores if s.rmse > 1.0}
+            return {name: name in parted for name in far & set(asked)}
+
+        runs: Any = stub(
+            settings=DiagnosisSettings(), recordings=recordings, problem=problem, parted=of, lost=lost, start=None
+        )
+        refit, final = errors_of(*before), stub()
         runs.start = refit
         return Judgement(runs, final, final, refit, errors_of(*after))
 
     return make
+
+
+def test_where_every_free_run_is_lost_windows_alone_judge(judged) -> None:
+    """Seen: an upright balancer. Its dead zone removes 99.9 % of the held-out error over windows; every free run falls over."""
+    falling = {"second": 0.0, "third": 0.0, "fourth": 0.0}
+    found = judged(falling, 0.1, 8.0, 9.0, 7.0, before=(0.1, 5.0, 6.0, 4.0))
+    assert found.lost == found.unstable == found.judges and found.by_windows_alone and found.holds
+    # Followed by the model as it stands, or wrong and not falling: the free runs have the last word.
+    assert not judged(falling, 0.1, 8.0, 9.0, 7.0, before=(0.1, 5.0, 0.6, 4.0)).holds
+    assert not judged({"second": 0.0, "third": 0.0}, 0.1, 8.0, 9.0, 7.0, before=(0.1, 5.0, 6.0, 4.0)).holds
 
 
 def test_a_model_that_is_better_everywhere_asks_nothing(judged) -> None:
