@@ -78,10 +78,13 @@ def distinct_orders(orders: Iterable[float], differ: float) -> list[float]:
 
 
 def _grid(around: Surroundings, fitted: WindowFit, study: Study) -> np.ndarray:
-    """Orders from a little above zero to what the sampling resolves, as fine as the travel within a window asks for."""
+    """Orders from a little above zero to what the sampling resolves, as fine as the travel within a window asks for.
+
+    At the usual speed the highest passes in three samples: it acts where the machine is slower, and slower it is for half of the time.
+    """
     position, speed = around.ranges["position"], around.ranges["speed"]
     travel = max(speed.rms * around.sample_time * fitted.windows.steps, 1e-9)
-    highest = 1.0 / max(speed.rms * around.sample_time, 1e-12)
+    highest = 2.0 / max(speed.rms * around.sample_time, 1e-12)
     one = 2 * np.pi / max(position.high - position.low, 1e-9)
     step = max(1.5 / travel, one / 2)
     return np.arange(
