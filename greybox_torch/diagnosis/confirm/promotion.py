@@ -38,8 +38,10 @@ def promote_unstable(dataset: DataSet, unstable: Collection[str]) -> Promotion |
 
     None where there is none, where no validation experiment would be left, or where none can score: another would not, either.
     """
+    if not unstable:
+        return None
     names = {r.name for r in dataset.validation()}
-    if not unstable or len(names) < 2 or names <= set(unstable):
+    if len(names) < 2 or names <= set(unstable):
         return None
     return Promotion.of(dataset, min(unstable), "no free run of the model found before follows it")
 
