@@ -7,7 +7,7 @@ from greybox_torch.diagnosis.describe.divergence import divergence
 from greybox_torch.diagnosis.describe.statement import Member, statement
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
-from greybox_torch.diagnosis.select.posterior import shares
+from greybox_torch.diagnosis.select.posterior import shares, told_of
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import Attachment
@@ -35,6 +35,7 @@ def one_of(
     if taken is None or taken.unknown:
         return None
     found = [(taken, probability)]
+    told = told_of(taken, step.ranked, settings, beliefs, step.led)
     for rival, share in shares(taken, step.ranked, settings, beliefs, step.led):
         attachment = rival.candidate.attachment
         if rival.unknown:
@@ -43,13 +44,15 @@ def one_of(
         says_the_same = contains and attachment.port == taken.candidate.attachment.port
         undecided = share >= settings.least_class_share
         if undecided or (not says_the_same and divergence(taken.fitted, rival.fitted) < settings.visible_divergence):
-            found.append((rival, share))
+            found.append((rival, told[attachment.named]))
     if len(found) == 1:
         return None
     members = tuple(_member(model, candidate, share) for candidate, share in found)
-    told = tuple(Alternative(m.port, m.mechanism, m.probability) for m in members)
+    alternatives = tuple(Alternative(m.port, m.mechanism, m.probability) for m in members)
     return OneOf(
-        statement(members), round(min(sum(m.probability for m in members), settings.highest_probability), 4), told
+        statement(members),
+        round(min(sum(m.probability for m in members), settings.highest_probability), 4),
+        alternatives,
     )
 
 

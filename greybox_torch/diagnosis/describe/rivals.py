@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.hypothesis.whole_records import from_windows
 from greybox_torch.diagnosis.refit.rank import RankedCandidate
-from greybox_torch.diagnosis.select.posterior import shares
+from greybox_torch.diagnosis.select.posterior import shares, told_of
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.estimate.start_states import starts_of
@@ -47,8 +47,10 @@ def rivals(state: SearchState, settings: DiagnosisSettings, beliefs: Beliefs = N
         ranked = shares(step.taken, step.ranked, settings, beliefs, step.led)
         named = [(r, p) for r, p in ranked if not r.unknown and r.gain > 0][:MOST]
         beside = [(r, p) for k, (r, p) in enumerate(named) if k < FEW or p >= settings.least_class_share]
-        own = settings.highest_probability - sum(p for _, p in ranked)
-        found += [_rival(effect.prefix, r, p) for r, p in [(step.taken, own), *beside]]
+        told = told_of(step.taken, step.ranked, settings, beliefs, step.led)
+        own = settings.highest_probability - sum(told.values())
+        found.append(_rival(effect.prefix, step.taken, own))
+        found += [_rival(effect.prefix, r, told[r.candidate.attachment.named]) for r, _ in beside]
     return tuple(found)
 
 

@@ -59,17 +59,29 @@ def shared(
     """The probability of the chosen hypothesis of a step, and those of its rivals.
 
     Rivals that the data cannot tell apart share it: a rival that the best one beats by z standard errors has the weight
-    exp(−(z / temperature)² / 2), times the share of the gain that it reaches, 1/e for every parameter that it has more, and the odds that
-    are believed.
+    exp(−(z / temperature)² / 2), times the share of the gain that it reaches and 1/e for every parameter that it has more, to the power
+    ``share_exponent``, and the odds that are believed.
 
     Args:
         led: the best one by the recordings alone, where it is not the chosen one.
     """
     highest = settings.highest_probability
-    rivals = shares(chosen, ranked, settings, beliefs, led)
+    rivals = shares(chosen, ranked, settings, beliefs, led, calibrated=True)
     own = round(highest - sum(p for _, p in rivals), 4)
     listed = [(r.candidate.attachment, p) for r, p in rivals if p > settings.least_alternative]
     return own, tuple(Alternative(a.port, a.mechanism.name, round(p, 4)) for a, p in listed)
+
+
+def separated(
+    chosen: RankedCandidate,
+    ranked: Sequence[RankedCandidate],
+    settings: DiagnosisSettings,
+    beliefs: Beliefs = NO_BELIEFS,
+    led: RankedCandidate | None = None,
+) -> bool:
+    """Whether no rival came near the chosen hypothesis of a step: ``beyond_doubt`` is left for it. Arguments as for :func:`shared`."""
+    rivals = shares(chosen, ranked, settings, beliefs, led)
+    return round(settings.highest_probability - sum(p for _, p in rivals), 4) > settings.beyond_doubt
 
 
 def shares(
@@ -78,22 +90,39 @@ def shares(
     settings: DiagnosisSettings,
     beliefs: Beliefs = NO_BELIEFS,
     led: RankedCandidate | None = None,
+    *,
+    calibrated: bool = False,
 ) -> list[tuple[RankedCandidate, float]]:
     """The rivals of the chosen hypothesis of a step with their probabilities, the likeliest first; of each law at a port the best one.
 
-    Arguments as for :func:`shared`.
+    Args:
+        calibrated: as they are told, and come true; otherwise as the search and classes use them, where a rival is to be excluded with
+            more care. Other arguments as for :func:`shared`.
     """
     best = chosen if led is None else led
+    exponent = settings.share_exponent if calibrated else 1.0
     weights: dict[tuple[str, str], tuple[float, RankedCandidate]] = {}
     for rival in ranked:
         if (key := rival.candidate.attachment.named) != chosen.candidate.attachment.named:
-            weight = _believed_weight(best, rival, settings, beliefs)
+            weight = _believed_weight(best, rival, settings, beliefs, exponent)
             if key not in weights or weight > weights[key][0]:
                 weights[key] = (weight, rival)
-    total = _believed_weight(best, chosen, settings, beliefs) + sum(weight for weight, _ in weights.values())
+    total = _believed_weight(best, chosen, settings, beliefs, exponent) + sum(weight for weight, _ in weights.values())
     highest = settings.highest_probability
     found = [(rival, highest * weight / total) for weight, rival in weights.values()]
     return sorted(found, key=lambda pair: (pair[1], pair[0].candidate.attachment.named), reverse=True)
+
+
+def told_of(
+    chosen: RankedCandidate,
+    ranked: Sequence[RankedCandidate],
+    settings: DiagnosisSettings,
+    beliefs: Beliefs = NO_BELIEFS,
+    led: RankedCandidate | None = None,
+) -> dict[tuple[str, str], float]:
+    """The probabilities of the rivals as they are told, by port and law. Arguments as for :func:`shared`."""
+    rivals = shares(chosen, ranked, settings, beliefs, led, calibrated=True)
+    return {r.candidate.attachment.named: p for r, p in rivals}
 
 
 def believed(
@@ -107,9 +136,9 @@ def believed(
 
 
 def _believed_weight(
-    best: RankedCandidate, rival: RankedCandidate, settings: DiagnosisSettings, beliefs: Beliefs
+    best: RankedCandidate, rival: RankedCandidate, settings: DiagnosisSettings, beliefs: Beliefs, exponent: float = 1.0
 ) -> float:
-    weight = 1.0 if rival is best else _weight(best, rival, settings)
+    weight = 1.0 if rival is best else _weight(best, rival, settings) ** exponent
     return weight * beliefs.weight(rival.candidate.attachment)
 
 

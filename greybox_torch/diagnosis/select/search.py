@@ -11,7 +11,7 @@ from greybox_torch.diagnosis.select.explore import explore
 from greybox_torch.diagnosis.select.forward import take_effects
 from greybox_torch.diagnosis.select.forward_step import forward_step
 from greybox_torch.diagnosis.select.memory import with_memory
-from greybox_torch.diagnosis.select.posterior import shared
+from greybox_torch.diagnosis.select.posterior import separated
 from greybox_torch.diagnosis.select.sparser_curve import with_sparser_curve
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage, result_of
@@ -65,7 +65,7 @@ def beyond_doubt(study: Study, state: SearchState, effect: Attachment) -> bool:
     done = state.step_of(effect.prefix)
     if done is None or done.taken is None:
         return False
-    return shared(done.taken, done.ranked, study.settings, study.beliefs, done.led)[0] > study.settings.beyond_doubt
+    return separated(done.taken, done.ranked, study.settings, study.beliefs, done.led)
 
 
 def lost_an_amplitude(study: Study, state: SearchState, effect: Attachment) -> bool:

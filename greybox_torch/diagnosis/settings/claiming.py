@@ -157,6 +157,13 @@ class ProbabilitySettings:
         unit=SIGMA,
         least=1e-3,
     )
+    share_exponent: float = number(
+        2.0,
+        "Power of the weights by which a finding and its rivals share a probability: what leads is right more often than they say.",
+        unit="",
+        least=1.0,
+        chosen_by="two blind proofs, tested on a third: the smallest squared error of the names' probabilities",
+    )
     highest_probability: float = share(
         0.97, "The most that is ever claimed.", unit="probability", chosen_by="the proof's calibration"
     )

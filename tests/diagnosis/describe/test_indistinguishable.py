@@ -31,7 +31,9 @@ def told(stub, monkeypatch):
             for port, law, _, away in hypotheses
         ]
         pairs = [(r, h[2]) for r, h in zip(ranked[1:], hypotheses[1:], strict=True)]
+        told_shares = {r.candidate.attachment.named: p for r, p in pairs}
         monkeypatch.setattr(indistinguishable, "shares", lambda *given: pairs)
+        monkeypatch.setattr(indistinguishable, "told_of", lambda *given: told_shares)
         monkeypatch.setattr(indistinguishable, "divergence", lambda one, other: other.away)
         ports = [stub(name=name, kind="body") for name in ("motor", "arm")]
         step = SelectionStep((), stub(), tuple(ranked), ranked[0])

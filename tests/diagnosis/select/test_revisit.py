@@ -196,9 +196,9 @@ def test_what_no_rival_came_near_is_not_chosen_once_more(two_lacking, monkeypatc
     first = state.effects[0]
     state = result_of(drop_superfluous(search.study, state))
     assert len(state.effects) == 2
-    monkeypatch.setattr("greybox_torch.diagnosis.select.search.shared", lambda *given: (0.96, ()))
+    monkeypatch.setattr("greybox_torch.diagnosis.select.search.separated", lambda *given: True)
     assert beyond_doubt(search.study, state, first) and result_of(revise(search.study, state)).current is state.current
-    monkeypatch.setattr("greybox_torch.diagnosis.select.search.shared", lambda *given: (0.6, ()))
+    monkeypatch.setattr("greybox_torch.diagnosis.select.search.separated", lambda *given: False)
     assert not beyond_doubt(search.study, state, first)
 
 
