@@ -120,13 +120,14 @@ def _idle(state: SearchState, gains: Mapping[str, Gain], full: tuple[WindowFit, 
 
     A disturbance of one experiment (a slow drift) bends the other parameters; what takes it up there, say a bias, frees them, and so
     predicts other experiments better though it is not in them. Left out there, all else as it is, nothing is lost. Where few windows leave
-    that open, an effect whose whole gain is beyond chance is asked for no more than any effect is.
+    that open, an effect whose whole gain is beyond chance, or is all its own, is asked for no more than any effect is.
     """
     values, settings = state.current.values(), others.study.settings
     for prefix in (p for p, found in gains.items() if found.share < settings.held_out_in_part):
         own = gain(others.fits_at(state.without[prefix], values), full)
         proven = gains[prefix].errors_away > settings.held_out_beyond_chance
-        least = settings.least_held_out if proven else settings.least_held_out_alone
+        all_its_own = own.share >= settings.held_out_in_part * gains[prefix].share
+        least = settings.least_held_out if proven or all_its_own else settings.least_held_out_alone
         if not _borne_out(own, least, settings):
             return prefix
     return None

@@ -103,12 +103,19 @@ def test_what_only_frees_the_other_parameters_is_idle_on_other_experiments(
     assert _idle(state, {effect.prefix: Gain(0.95, 0.1)}, held_out.fits(state.current), held_out) is None
 
 
-@pytest.mark.parametrize(("whole", "idle"), [(Gain(0.6, 0.1), None), (Gain(0.6, 0.3), "rotor.law")])
-def test_few_windows_alone_do_not_make_an_effect_idle_whose_gain_is_beyond_chance(stub, whole: Gain, idle) -> None:
-    """Left out, all else as it is, 2.5 standard errors are lost: less than what is beyond chance by itself."""
+@pytest.mark.parametrize(
+    ("whole", "idle"), [(Gain(0.6, 0.1), None), (Gain(0.6, 0.3), "rotor.law"), (Gain(0.4, 0.2), None)]
+)
+def test_few_windows_alone_do_not_make_an_effect_idle_whose_gain_is_beyond_chance_or_all_its_own(
+    stub, whole: Gain, idle
+) -> None:
+    """Left out, all else as it is, 0.43 of the error and 2.5 standard errors are lost: less than what is beyond chance by itself.
+
+    Seen: a notch in a stage's friction, rarely passed on held-out experiments, where all of what little was gained was its own.
+    """
     full = (stub(energies=np.ones(8)),)
     left_out = (stub(energies=np.array([5.0, 1.0, 1.0, 1.0, 1.0, 1.0, 3.0, 1.0])),)
-    assert 1.0 < gain(left_out, full).errors_away < 3.0
+    assert 1.0 < gain(left_out, full).errors_away < 3.0 and gain(left_out, full).share == pytest.approx(0.43, abs=0.01)
     state = stub(current=stub(values=dict), without={"rotor.law": None})
     others = stub(fits_at=lambda hypothesis, values: left_out, study=stub(settings=DiagnosisSettings()))
     assert _idle(state, {"rotor.law": whole}, full, others) == idle
