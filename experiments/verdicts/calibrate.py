@@ -32,7 +32,7 @@ NAMES, ANSWERS, CLASSES = "names", "answers", "classes"
 
 def collect(folders: Sequence[Path], what: str = NAMES) -> tuple[np.ndarray, np.ndarray]:
     """Claimed probabilities (n,) of names, answers or classes, over all pairs of folders, and whether each came true (n,)."""
-    findings = [f for cases, verdicts in _pairs(folders) for s in score_all(cases, verdicts) for f in s.findings]
+    findings = [f for cases, verdicts in pairs_of(folders) for s in score_all(cases, verdicts) for f in s.findings]
     told = [claim for f in findings for claim in _claims(f, what)]
     return np.array([p for p, _ in told], dtype=float), np.array([right for _, right in told], dtype=float)
 
@@ -45,7 +45,8 @@ def _claims(finding: Finding, what: str) -> Sequence[Claim]:
     return [(finding.probability, finding.right)]
 
 
-def _pairs(folders: Sequence[Path]) -> list[tuple[Path, Path]]:
+def pairs_of(folders: Sequence[Path]) -> list[tuple[Path, Path]]:
+    """Folders of cases with those of their verdicts."""
     return list(zip(folders[::2], folders[1::2], strict=True))
 
 
