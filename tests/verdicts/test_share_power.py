@@ -15,7 +15,7 @@ EFFECT = {
     "mechanism": "coulomb_friction",
     "probability": 0.6,
     "alternatives": [RIVAL],
-    "one_of": {"probability": 0.97, "members": [{**RIVAL, "probability": 0.6, "port": "motor"}, RIVAL]},
+    "one_of": {"probability": 0.97, "members": [{**RIVAL, "probability": 0.6, "port": "motor"}, dict(RIVAL)]},
 }
 
 
