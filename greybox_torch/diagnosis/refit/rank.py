@@ -15,6 +15,7 @@ from greybox_torch.diagnosis.refit.curve import laws_on_curve
 from greybox_torch.diagnosis.refit.finalists import finalists, leading_and_rest
 from greybox_torch.diagnosis.refit.order import in_better_order, in_both_orders, joined
 from greybox_torch.diagnosis.refit.refitted import fit
+from greybox_torch.diagnosis.refit.richer_forms import richer_forms
 from greybox_torch.diagnosis.refit.twins import from_twin
 from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -229,7 +230,12 @@ def _laws_behind_curve(
         law for law in laws if not study.beliefs.exclude(law.attachment) and identity_of(law.attachment) not in there
     ]
     tries = in_both_orders(study, current.effects, allowed)
-    return [r for r in side_by_side(partial(tried, law) for law in tries) if r is not None]
+    behind = [r for r in side_by_side(partial(tried, law) for law in tries) if r is not None]
+    # A law that removes a part of it would else give way to the richer form of another one, at another port.
+    in_part = [r for r in final if not r.unknown and 0.0 < r.gain < study.settings.named_share * best.gain]
+    richer = richer_forms(study, best.candidate.attachment.port, [(r.candidate, r.fitted) for r in in_part])
+    forms = side_by_side(partial(tried, law) for law in richer)
+    return [*behind, *(r for r in forms if r is not None and r.fitted.score < within)]
 
 
 def _compiled(study: Study, current: Hypothesis, found: Sequence[Candidate], frozen: frozenset[str]) -> list[Simulator]:
