@@ -14,7 +14,7 @@ from greybox_torch.diagnosis.refit.richer_forms import richer_forms
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias
-from greybox_torch.mechanisms.friction import CoulombFriction
+from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction
 from greybox_torch.mechanisms.unknown import Unknown
 
 
@@ -78,3 +78,12 @@ def test_forms_are_those_of_laws_at_the_port_that_are_not_excluded(compared) -> 
     assert richer_forms(search.study, "load", pairs) == []
     excluded = replace(search.study, beliefs=Beliefs({"rotor/coulomb_asymmetry": 0.0}))
     assert richer_forms(excluded, "rotor", pairs) == []
+
+
+def test_no_form_is_named_as_what_is_there_already(compared) -> None:
+    """Seen: a second ripple in the form with harmonics of the first; the model named its parameters twice."""
+    search, (_, law) = compared(uneven)
+    uneven_already = attach(search.problem.model, "rotor", CoulombAsymmetry(with_level=True))
+    both = search.refitted((uneven_already, law.candidate.attachment), search.plain)
+    assert both is not None
+    assert richer_forms(search.study, "rotor", [(law.candidate, both)]) == []
