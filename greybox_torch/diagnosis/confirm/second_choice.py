@@ -7,7 +7,7 @@ import numpy as np
 from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
-from greybox_torch.diagnosis.refit.rank import RankedCandidate, sound
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, sound
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.compare import compare

@@ -8,7 +8,7 @@ from functools import partial
 from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import likelihood_significance
-from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState

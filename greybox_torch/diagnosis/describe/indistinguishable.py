@@ -6,7 +6,7 @@ from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.describe.divergence import divergence
 from greybox_torch.diagnosis.describe.statement import Member, statement
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
-from greybox_torch.diagnosis.refit.rank import RankedCandidate
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.select.posterior import shares, told_of
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.hypothesis.whole_records import from_windows
-from greybox_torch.diagnosis.refit.rank import RankedCandidate
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.select.posterior import shares, told_of
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings

@@ -3,70 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 
-import numpy as np
-
-from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, augmented, score_of, window_lengths, without_free
-from greybox_torch.diagnosis.hypothesis.significance import white_samples, window_significance
-from greybox_torch.diagnosis.refit.curve import laws_on_curve
+from greybox_torch.diagnosis.refit.behind_curve import laws_behind_curve
 from greybox_torch.diagnosis.refit.finalists import finalists, leading_and_rest
 from greybox_torch.diagnosis.refit.order import in_better_order, in_both_orders, joined
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
-from greybox_torch.diagnosis.refit.richer_forms import richer_forms
 from greybox_torch.diagnosis.refit.twins import from_twin
-from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of
-from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.problem import problem_for
-from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import cut
 
 Shown = tuple[float, Hypothesis, int]
 """How far a trial is from the hypothesis before it (negative: better), the trial, and the length of its windows in samples."""
-
-
-@dataclass(frozen=True)
-class RankedCandidate:
-    """A refitted hypothesis with its newest effect; ``gain``: by how much its score is below that of the one before, ``significance``: by
-    how many standard errors over windows.
-    """
-
-    candidate: Candidate
-    fitted: Hypothesis
-    gain: float
-    significance: float
-    cost: float | None = None
-    """Negative logarithm of the likelihood of whole records, errors coloured, where others fit windows alike and noise alone is left."""
-
-    @property
-    def unknown(self) -> bool:
-        """Whether the newest effect is a free curve rather than a law."""
-        return self.candidate.unknown
-
-    @property
-    def size(self) -> int:
-        """How many parameters the newest effect has to adjust."""
-        start = f"{self.candidate.attachment.prefix}."
-        return sum(name.startswith(start) for name in self.fitted.problem.free_names)
-
-
-def in_order(ranked: Sequence[RankedCandidate], settings: DiagnosisSettings) -> list[RankedCandidate]:
-    """Best first: by score, with a price for every parameter: of laws that fit alike, the simpler one is meant.
-
-    Where the best leaves white noise alone the price is log(N) / N for N samples, by which a law is likelier. Where more is left, errors
-    are neither white nor only the lacking effect's, and the samples say less than their number.
-
-    Source: G. Schwarz, "Estimating the dimension of a model", Annals of Statistics 6, 1978.
-    """
-    best = min((r.fitted for r in ranked), key=lambda h: h.score, default=None)
-    samples = 0 if best is None else white_samples(best, settings)
-    price = min(settings.parameter_price, float(np.log(samples)) / samples) if samples else settings.parameter_price
-    return sorted(ranked, key=lambda r: r.fitted.score + price * r.size)
 
 
 def rank(
@@ -168,7 +122,7 @@ def rank(
         # Curves take longest: begun last, they would leave the other cores idle.
         longest_first = sorted(some, key=lambda entry: not entry[1].unknown)
         final += [r for r in side_by_side(partial(in_full, *entry[1:]) for entry in longest_first) if r is not None]
-    return in_order([*final, *_laws_behind_curve(study, current, final, frozen)], study.settings)
+    return in_order([*final, *laws_behind_curve(study, current, final, frozen)], study.settings)
 
 
 def _elsewhere(study: Study, candidate: Candidate, trial: Hypothesis) -> list[dict[str, float]]:
@@ -184,58 +138,11 @@ def _score_over(fitted: Hypothesis, steps: int) -> float:
     return score_of([f for f in fitted.fits if f.windows.steps == steps], fitted.floor)
 
 
-def judged(
-    candidate: Candidate, before: Hypothesis, fitted: Hypothesis, settings: DiagnosisSettings
-) -> RankedCandidate:
-    """A refit compared with the hypothesis ``before`` it."""
-    return RankedCandidate(
-        candidate, fitted, before.score - fitted.score, window_significance(before, fitted, settings)
-    )
-
-
 def _pays(study: Study, ranked: RankedCandidate) -> bool:
     """Whether a named candidate improves on the hypothesis before it, surely, and by a law that says something of the machine."""
     settings = study.settings
     improves = ranked.gain > settings.least_gain and ranked.significance > settings.least_significance
     return improves and not ranked.unknown and sound(study, ranked)
-
-
-def sound(study: Study, ranked: RankedCandidate) -> bool:
-    """Whether the newest effect's parameters, as they were refitted, say something of the machine."""
-    return degenerate(ranked.candidate.attachment, study.surroundings, ranked.fitted.values()) is None
-
-
-def _laws_behind_curve(
-    study: Study, current: Hypothesis, final: Sequence[RankedCandidate], frozen: frozenset[str]
-) -> list[RankedCandidate]:
-    """Where a free curve leads: the named laws of the same signal at the same port, refitted from what the curve has learned.
-
-    Not those that have come as far as the curve by themselves.
-    """
-    best = min(final, key=lambda r: r.fitted.score, default=None)
-    if best is None or not isinstance(best.candidate.attachment.mechanism, Unknown):
-        return []
-    within = best.fitted.score + study.settings.score_tie
-    there = {identity_of(r.candidate.attachment) for r in final if r.fitted.score < within}
-
-    def tried(candidate: Candidate) -> RankedCandidate | None:
-        study.working_on(f"refitting {candidate.attachment.prefix} from the curve")
-        effects = joined(current.effects, candidate)
-        limits, shorter = study.budget.window_iterations, best.fitted.fits[0]
-        fitted = fit(study, effects, candidate.starts, shorter, limits=limits, frozen=frozen)
-        return None if fitted is None else judged(candidate, current, fitted, study.settings)
-
-    laws = laws_on_curve(study.problem.model, best.fitted, best.candidate.attachment, study.surroundings, study.card)
-    allowed = [
-        law for law in laws if not study.beliefs.exclude(law.attachment) and identity_of(law.attachment) not in there
-    ]
-    tries = in_both_orders(study, current.effects, allowed)
-    behind = [r for r in side_by_side(partial(tried, law) for law in tries) if r is not None]
-    # A law that removes a part of it would else give way to the richer form of another one, at another port.
-    in_part = [r for r in final if not r.unknown and 0.0 < r.gain < study.settings.named_share * best.gain]
-    richer = richer_forms(study, best.candidate.attachment.port, [(r.candidate, r.fitted) for r in in_part])
-    forms = side_by_side(partial(tried, law) for law in richer)
-    return [*behind, *(r for r in forms if r is not None and r.fitted.score < within)]
 
 
 def _compiled(study: Study, current: Hypothesis, found: Sequence[Candidate], frozen: frozenset[str]) -> list[Simulator]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from greybox_torch.diagnosis.refit.rank import RankedCandidate
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import identity_of
 from greybox_torch.diagnosis.study import Study

@@ -13,7 +13,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.significance import white_samples
 from greybox_torch.diagnosis.refit.likelihood import cost_of
-from greybox_torch.diagnosis.refit.rank import RankedCandidate
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 
 LOST = 2.0

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order, judged
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, judged
 from greybox_torch.diagnosis.refit.refitted import polished
 from greybox_torch.diagnosis.refit.restarts import restarts
 from greybox_torch.diagnosis.screen.score_test import ScreenScore

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.refit.rank import RankedCandidate, sound
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, sound
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.choice import priced_score
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep

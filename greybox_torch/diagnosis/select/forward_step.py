@@ -8,7 +8,8 @@ from functools import cache, partial
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.likelihood import cost_of, likelier
-from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order, rank, sound
+from greybox_torch.diagnosis.refit.rank import rank
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, sound
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist, with_motion

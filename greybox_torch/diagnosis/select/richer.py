@@ -14,7 +14,7 @@ import numpy as np
 from greybox_torch.diagnosis.hypothesis.above_noise import only_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import floor_known, noise_floor
-from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged, sound
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.choice import least_gain, priced_score
 from greybox_torch.diagnosis.select.flexed import widened

@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import partial
 
 from greybox_torch.diagnosis.refit.curve import two_laws_on_curve
-from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.forward_step import forward_step

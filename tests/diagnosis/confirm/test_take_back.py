@@ -12,7 +12,7 @@ from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified, with_simpler_laws
 from greybox_torch.diagnosis.confirm.take_back import _idle, goes_farther_in_most_windows
 from greybox_torch.diagnosis.confirm.wider_laws import with_wider_laws
-from greybox_torch.diagnosis.refit.rank import judged
+from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings

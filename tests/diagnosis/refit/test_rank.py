@@ -10,8 +10,11 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.hypothesis.fit import window_lengths
+from greybox_torch.diagnosis.refit import behind_curve
 from greybox_torch.diagnosis.refit import rank as rank_module
-from greybox_torch.diagnosis.refit.rank import RankedCandidate, _laws_behind_curve, rank
+from greybox_torch.diagnosis.refit.behind_curve import laws_behind_curve
+from greybox_torch.diagnosis.refit.rank import rank
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
 from greybox_torch.diagnosis.select.offered import screen_scores
@@ -165,9 +168,9 @@ def test_a_law_that_is_there_already_is_not_refitted_from_the_curve(dead_zone_se
     law, curve = Attachment("rotor", CoulombFriction()), Attachment("rotor", Unknown("speed"))
     fitted = dead_zone_search.plain
     ranked = [RankedCandidate(Candidate(a, ({},), 1.0), fitted, 1.0, 9.0) for a in (curve, law)]
-    monkeypatch.setattr(rank_module, "laws_on_curve", lambda *_: [Candidate(law, ({},), 1.0)])
-    monkeypatch.setattr(rank_module, "fit", lambda *_, **__: fitted)
-    behind = partial(_laws_behind_curve, dead_zone_search.study, fitted, frozen=frozenset())
+    monkeypatch.setattr(behind_curve, "laws_on_curve", lambda *_: [Candidate(law, ({},), 1.0)])
+    monkeypatch.setattr(behind_curve, "fit", lambda *_, **__: fitted)
+    behind = partial(laws_behind_curve, dead_zone_search.study, fitted, frozen=frozenset())
     assert [r.candidate.attachment for r in behind(ranked[:1])] == [law]
     assert behind(ranked) == []
 

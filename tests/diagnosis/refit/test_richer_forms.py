@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.beliefs import Beliefs
-from greybox_torch.diagnosis.refit.rank import RankedCandidate, _laws_behind_curve, judged
+from greybox_torch.diagnosis.refit import behind_curve
+from greybox_torch.diagnosis.refit.behind_curve import laws_behind_curve
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged, price_of_noise
 from greybox_torch.diagnosis.refit.richer_forms import richer_forms
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.mechanisms.attachment import attach
@@ -50,7 +52,7 @@ def compared(motor_data, motor, begun):
 def test_friction_that_differs_by_direction_is_compared_as_such(compared) -> None:
     """Seen: a voice coil's friction, five times as large one way, was told as damping of its flexure."""
     search, ranked = compared(uneven)
-    behind = _laws_behind_curve(search.study, search.plain, ranked, frozenset())
+    behind = laws_behind_curve(search.study, search.plain, ranked, frozenset())
     (form,) = (r for r in behind if "rotor.coulomb_asymmetry.F_c" in r.fitted.values())
     values = form.fitted.values()
     assert values["rotor.coulomb_asymmetry.F_c"] == pytest.approx(0.06, rel=0.1)
@@ -60,8 +62,32 @@ def test_friction_that_differs_by_direction_is_compared_as_such(compared) -> Non
 
 def test_a_form_that_does_not_come_as_far_as_the_curve_is_left_out(compared) -> None:
     search, ranked = compared(also_by_position)
-    behind = _laws_behind_curve(search.study, search.plain, ranked, frozenset())
+    behind = laws_behind_curve(search.study, search.plain, ranked, frozenset())
     assert not [r for r in behind if "rotor.coulomb_asymmetry.F_c" in r.fitted.values()]
+
+
+def test_where_a_curve_leads_by_the_noise_that_it_takes_up_no_form_is_compared(compared, monkeypatch) -> None:
+    """Seen: a complete model and 255 samples; a curve led with 14 parameters, a ripple with 13 came as far and was told."""
+    search, (curve, law) = compared(uneven)
+
+    def named() -> list[str]:
+        return [
+            r.candidate.attachment.prefix
+            for r in laws_behind_curve(search.study, search.plain, (curve, law), frozenset())
+        ]
+
+    assert named() == ["rotor.coulomb_asymmetry"]
+    price = curve.gain / (curve.size - law.size)
+    monkeypatch.setattr(behind_curve, "price_of_noise", lambda *_: price)
+    assert named() == []
+
+
+def test_a_parameter_costs_what_the_samples_say_where_noise_alone_is_left(motor_data, motor, begun, compared) -> None:
+    complete = begun(motor_data(), motor)
+    samples = int(np.sum(~np.isnan(complete.problem.records.y)))
+    assert price_of_noise(complete.plain, complete.study.settings) == pytest.approx(np.log(samples) / samples)
+    search, _ = compared(uneven)
+    assert price_of_noise(search.plain, search.study.settings) == 0.0
 
 
 def test_forms_are_those_of_laws_at_the_port_that_are_not_excluded(compared) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.refit import ties
-from greybox_torch.diagnosis.refit.rank import RankedCandidate, judged
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.posterior import shared

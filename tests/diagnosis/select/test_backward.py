@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from greybox_torch.diagnosis.refit.rank import RankedCandidate
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select import backward
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous

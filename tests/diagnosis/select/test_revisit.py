@@ -9,7 +9,7 @@ import pytest
 
 from greybox_torch.diagnosis.hypothesis.fit import hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import white_samples
-from greybox_torch.diagnosis.refit.rank import judged
+from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.refit.refitted import polished
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, _with_ties, at_other_ports

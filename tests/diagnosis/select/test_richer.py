@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
-from greybox_torch.diagnosis.refit.rank import judged
+from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.richer import _forms, _pays, _preferred, richer_instead, with_richer_form
 from greybox_torch.diagnosis.select.state import SelectionStep

@@ -11,7 +11,7 @@ from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.confirm.held_out import Gain, gain
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.significance import likelihood_significance, window_significance
-from greybox_torch.diagnosis.refit.rank import RankedCandidate, in_order
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.posterior import (

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.refit.rank import judged
+from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select import forward
 from greybox_torch.diagnosis.select.forward import _named_instead

@@ -1,0 +1,75 @@
+"""Refitted hypotheses as candidates of a choice: how each compares with the one before it, and their order."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.significance import white_samples, window_significance
+from greybox_torch.diagnosis.screen.shortlist import Candidate
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.diagnosis.study import Study
+
+
+@dataclass(frozen=True)
+class RankedCandidate:
+    """A refitted hypothesis with its newest effect; ``gain``: by how much its score is below that of the one before, ``significance``: by
+    how many standard errors over windows.
+    """
+
+    candidate: Candidate
+    fitted: Hypothesis
+    gain: float
+    significance: float
+    cost: float | None = None
+    """Negative logarithm of the likelihood of whole records, errors coloured, where others fit windows alike and noise alone is left."""
+
+    @property
+    def unknown(self) -> bool:
+        """Whether the newest effect is a free curve rather than a law."""
+        return self.candidate.unknown
+
+    @property
+    def size(self) -> int:
+        """How many parameters the newest effect has to adjust."""
+        start = f"{self.candidate.attachment.prefix}."
+        return sum(name.startswith(start) for name in self.fitted.problem.free_names)
+
+
+def in_order(ranked: Sequence[RankedCandidate], settings: DiagnosisSettings) -> list[RankedCandidate]:
+    """Best first: by score, with a price for every parameter: of laws that fit alike, the simpler one is meant.
+
+    Where the best leaves white noise alone the price is log(N) / N for N samples, by which a law is likelier. Where more is left, errors
+    are neither white nor only the lacking effect's, and the samples say less than their number.
+
+    Source: G. Schwarz, "Estimating the dimension of a model", Annals of Statistics 6, 1978.
+    """
+    best = min((r.fitted for r in ranked), key=lambda h: h.score, default=None)
+    price = settings.parameter_price
+    if best is not None and white_samples(best, settings):
+        price = min(price, price_of_noise(best, settings))
+    return sorted(ranked, key=lambda r: r.fitted.score + price * r.size)
+
+
+def price_of_noise(best: Hypothesis, settings: DiagnosisSettings) -> float:
+    """By how much the score has to fall for a further parameter to be likely, where white noise alone is left: log(N) / N; else 0."""
+    samples = white_samples(best, settings)
+    return float(np.log(samples)) / samples if samples else 0.0
+
+
+def judged(
+    candidate: Candidate, before: Hypothesis, fitted: Hypothesis, settings: DiagnosisSettings
+) -> RankedCandidate:
+    """A refit compared with the hypothesis ``before`` it."""
+    return RankedCandidate(
+        candidate, fitted, before.score - fitted.score, window_significance(before, fitted, settings)
+    )
+
+
+def sound(study: Study, ranked: RankedCandidate) -> bool:
+    """Whether the newest effect's parameters, as they were refitted, say something of the machine."""
+    return degenerate(ranked.candidate.attachment, study.surroundings, ranked.fitted.values()) is None
