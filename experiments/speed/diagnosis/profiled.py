@@ -22,7 +22,7 @@ PURPOSES = {
     ("score_test.py", "scores"): "screen: effects",
     ("rank.py", "tried"): "trials",
     ("rank.py", "in_full"): "finalists",
-    ("rank.py", "_laws_behind_curve"): "laws behind a curve",
+    ("behind_curve.py", "laws_behind_curve"): "laws behind a curve",
     ("compare.py", "_polished"): "polishing",
     ("likelihood.py", "cost_of"): "likelihood of whole records",
     ("finer_curve.py", "with_finer_curve"): "finer curves",

@@ -82,12 +82,13 @@ def test_where_a_curve_leads_by_the_noise_that_it_takes_up_no_form_is_compared(c
     assert named() == []
 
 
-def test_a_parameter_costs_what_the_samples_say_where_noise_alone_is_left(motor_data, motor, begun, compared) -> None:
-    complete = begun(motor_data(), motor)
-    samples = int(np.sum(~np.isnan(complete.problem.records.y)))
-    assert price_of_noise(complete.plain, complete.study.settings) == pytest.approx(np.log(samples) / samples)
+@pytest.mark.parametrize(("samples", "price"), [(1000, np.log(1000) / 1000), (0, 0.0)])
+def test_a_parameter_costs_what_the_samples_say_where_noise_alone_is_left(
+    compared, monkeypatch, samples, price
+) -> None:
     search, _ = compared(uneven)
-    assert price_of_noise(search.plain, search.study.settings) == 0.0
+    monkeypatch.setattr("greybox_torch.diagnosis.refit.ranked.white_samples", lambda *_: samples)
+    assert price_of_noise(search.plain, search.study.settings) == pytest.approx(price)
 
 
 def test_forms_are_those_of_laws_at_the_port_that_are_not_excluded(compared) -> None:
