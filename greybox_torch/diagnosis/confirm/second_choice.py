@@ -23,22 +23,33 @@ def second_choice(study: Study, state: SearchState, others: HeldOut) -> Stage[Se
     it were never asked. Here the held-out experiments decide: what few windows of the estimation experiments show (a tank that runs over
     twice) is confirmed by them or not. Only where the error is far above the noise everywhere, so that something is missing in any case.
     """
-    done = next((s for s in state.steps if s.taken is not None and s.taken.unknown and not s.parent.effects), None)
-    if done is None or not _plainly_missing(study, state, others):
+    done = _up_to_curve(state)
+    if not done or not _plainly_missing(study, state, others):
         return state
     study.working_on("asking held-out experiments about named laws in the place of a curve")
-    names = [r for r in done.ranked if _pays(study, r)]
-    compared = compare(study, state.plain, done.screened, names)
+    screened = done[-1].screened
+    names = [r for step in reversed(done) for r in step.ranked if _pays(study, r)]
+    compared = compare(study, state.plain, screened, names)
     best = next((r for r in compared.ranked if _pays(study, r)), None)
     if best is None:
         return state
     found = gain(others.fits(compared.parent), others.fits(best.fitted))
     if found.errors_away <= study.settings.held_out_beyond_chance:
         return state
-    step = SelectionStep(done.screened, compared.parent, compared.ranked, best)
+    step = SelectionStep(screened, compared.parent, compared.ranked, best)
     named = SearchState(compared.parent, best.fitted, (*state.steps, step))
     yield named
     return (yield from drop_superfluous(study, named))
+
+
+def _up_to_curve(state: SearchState) -> list[SelectionStep]:
+    """The steps beyond the model as it stands, up to the one that took a curve; none where none did.
+
+    A fine curve is compared alone: the names stood beside the coarse ones of the step before it.
+    """
+    steps = [s for s in state.steps if not s.parent.effects]
+    taken = next((k for k, s in enumerate(steps) if s.taken is not None and s.taken.unknown), -1)
+    return steps[: taken + 1]
 
 
 def _pays(study: Study, ranked: RankedCandidate) -> bool:

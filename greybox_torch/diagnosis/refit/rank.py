@@ -7,12 +7,12 @@ from functools import partial
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, augmented, score_of, window_lengths, without_free
 from greybox_torch.diagnosis.refit.behind_curve import laws_behind_curve
-from greybox_torch.diagnosis.refit.finalists import finalists, leading_and_rest
+from greybox_torch.diagnosis.refit.finalists import Trial, finalists, leading_and_rest
 from greybox_torch.diagnosis.refit.order import in_better_order, in_both_orders, joined
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.refit.twins import from_twin
-from greybox_torch.diagnosis.screen.shortlist import Candidate
+from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.problem import problem_for
 from greybox_torch.simulation.side_by_side import side_by_side
@@ -107,22 +107,44 @@ def rank(
 
     reached = side_by_side(partial(tried_again, *pair, own) for pair, own in zip(pairs, reached, strict=True))
     shown = side_by_side(partial(where_it_shows, *pair, own) for pair, own in zip(pairs, reached, strict=True))
+    rounds = _finalists_of(study, shown, pairs)
     if others := {one[2] for one in shown if one is not None} - {middle}:
+        over_middle = [one if one is not None and one[2] == middle else None for one in shown]
         shown = side_by_side(partial(where_others_show, *pair, own) for pair, own in zip(pairs, shown, strict=True))
-    first = [
-        (trial[0], candidate, trial[1], simulator)
-        for trial, (candidate, simulator) in zip(shown, pairs, strict=True)
-        if trial is not None
-    ]
-    first = in_better_order(first)
+        rounds = _both(_finalists_of(study, shown, pairs), _finalists_of(study, over_middle, pairs))
     final: list[RankedCandidate] = []
-    for some in leading_and_rest(study, finalists(first, study)):
+    for some in rounds:
         if any(_pays(study, r) for r in final):
             break
         # Curves take longest: begun last, they would leave the other cores idle.
         longest_first = sorted(some, key=lambda entry: not entry[1].unknown)
         final += [r for r in side_by_side(partial(in_full, *entry[1:]) for entry in longest_first) if r is not None]
     return in_order([*final, *laws_behind_curve(study, current, final, frozen)], study.settings)
+
+
+def _finalists_of(
+    study: Study, shown: Sequence[Shown | None], pairs: Sequence[tuple[Candidate, Simulator]]
+) -> list[list[Trial]]:
+    """The finalists among those that were shown: those that lead, and the rest."""
+    known = zip(shown, pairs, strict=True)
+    trials = [(one[0], candidate, one[1], simulator) for one, (candidate, simulator) in known if one is not None]
+    return leading_and_rest(study, finalists(in_better_order(trials), study))
+
+
+def _both(over_longer: list[list[Trial]], over_middle: list[list[Trial]]) -> list[list[Trial]]:
+    """What leads over windows of either kind, then the rest of both, each law once.
+
+    Gains over longer windows are not those over middle ones. Seen: a pendulum's friction led over middle windows; beside others over
+    longer ones it was no finalist.
+    """
+    there: set[tuple] = set()
+    rounds: list[list[Trial]] = []
+    for some in zip(over_longer, over_middle, strict=True):
+        # Of a law in both, the trial over longer windows stands.
+        entries = {identity_of(e[1].attachment): e for e in (*some[1], *some[0])}
+        rounds.append([e for identity, e in entries.items() if identity not in there])
+        there |= set(entries)
+    return rounds
 
 
 def _elsewhere(study: Study, candidate: Candidate, trial: Hypothesis) -> list[dict[str, float]]:

@@ -18,7 +18,9 @@ from greybox_torch.diagnosis.stopping import result_of
 def asked(stub, monkeypatch) -> Any:
     """What is left of a search that took a curve before an overflow, once held-out experiments have refuted the curve."""
 
-    def make(held_out: Gain, *, gain: float = 0.3, times: float = 30.0, taken: bool = True) -> SearchState:
+    def make(
+        held_out: Gain, *, gain: float = 0.3, times: float = 30.0, taken: bool = True, fine: bool = False
+    ) -> SearchState:
         plain = stub(effects=())
         overflow = stub(
             unknown=False, gain=gain, fitted=stub(effects=("overflow",), values=dict), candidate=stub(attachment=None)
@@ -27,6 +29,8 @@ def asked(stub, monkeypatch) -> Any:
             unknown=True, gain=0.9, fitted=stub(effects=("curve",), values=dict), candidate=stub(attachment=None)
         )
         steps = (SelectionStep((), plain, (curve, overflow), curve),) if taken else ()
+        if fine:
+            steps = (SelectionStep((), plain, (curve, overflow), None), SelectionStep((), plain, (curve,), curve))
         monkeypatch.setattr(
             module, "compare", lambda study, parent, screened, names: stub(parent=parent, ranked=tuple(names))
         )
@@ -53,6 +57,10 @@ def test_the_law_beside_a_refuted_curve_is_taken_where_held_out_experiments_bear
     found = asked(Gain(0.2, 0.04, size=0.2))
     assert found.current.effects == ("overflow",)
     assert [step.taken.unknown for step in found.steps] == [True, False]
+
+
+def test_the_names_that_stood_beside_coarse_curves_are_asked_where_a_fine_one_was_taken(asked) -> None:
+    assert asked(Gain(0.2, 0.04, size=0.2), fine=True).current.effects == ("overflow",)
 
 
 @pytest.mark.parametrize(

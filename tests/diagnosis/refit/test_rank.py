@@ -159,6 +159,34 @@ def test_trials_are_compared_over_the_same_windows(dead_zone_search, monkeypatch
     assert [where for _, where in tried] == [middle, "in full"], "nothing else is compared there"
 
 
+def test_what_leads_over_middle_windows_is_refitted_where_others_show_over_longer_ones(
+    dead_zone_search, monkeypatch
+) -> None:
+    """Seen: a pendulum's friction, no finalist beside what promised much over longer windows; the verdict said that nothing is missing."""
+    found, in_full = dead_zone_search, []
+    study, current = found.study, found.state.current
+    _, middle, longest = window_lengths(study.problem)
+    offered = shortlist(study, screen_scores(study, found.state, curves=False, fine=False), current.fits)
+    stop = replace(offered[0], steps=current.fits[2].windows.steps, explained=0.86)
+    friction = replace(offered[1], steps=current.fits[1].windows.steps, explained=0.43)
+    left = {("stop", middle): 1.0, ("stop", longest): 0.1, ("friction", middle): 0.6}
+
+    def fit(study: Any, effects: Any, starts: Any, *, at: Any = None, **how: Any) -> Any:
+        one = "stop" if stop.attachment.named in [e.named for e in effects] else "friction"
+        in_full.extend([one] if at is None else [])
+        which = [k for k, length in enumerate(window_lengths(study.problem)) if at in (None, [length])]
+        share = left[one, *at] if at else 0.5
+        return replace(
+            current,
+            effects=tuple(effects),
+            fits=tuple(replace(current.fits[k], mean_square=share * current.fits[k].mean_square) for k in which),
+        )
+
+    monkeypatch.setattr("greybox_torch.diagnosis.refit.rank.fit", fit)
+    rank(replace(study, budget=replace(study.budget, finalists=1, most_tied=1)), current, [stop, friction])
+    assert sorted(in_full) == ["friction", "stop"]
+
+
 def test_beside_one_at_the_noise_none_is_refitted_that_is_behind_it(dead_zone_search) -> None:
     """However little of its gain a rival would have to bring."""
     assert refitted_in_full(dead_zone_search, finalist_share=0.0) == ["refitting actuator.actuator_deadzone in full"]
