@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain
@@ -30,7 +32,7 @@ def second_choice(study: Study, state: SearchState, others: HeldOut) -> Stage[Se
     screened = done[-1].screened
     names = [r for step in reversed(done) for r in step.ranked if _pays(study, r)]
     compared = compare(study, state.plain, screened, names)
-    best = next((r for r in compared.ranked if _pays(study, r)), None)
+    best = _surest(study, compared.ranked)
     if best is None:
         return state
     found = gain(others.fits(compared.parent), others.fits(best.fitted))
@@ -55,6 +57,13 @@ def _up_to_curve(state: SearchState) -> list[SelectionStep]:
 def _pays(study: Study, ranked: RankedCandidate) -> bool:
     """Whether a named law explains something on the estimation experiments, and something of the machine."""
     return not ranked.unknown and sound(study, ranked) and ranked.gain > least_gain(ranked.fitted, study.settings)
+
+
+def _surest(study: Study, ranked: Sequence[RankedCandidate]) -> RankedCandidate | None:
+    """Of the laws that gain about as much as the best the one that most windows bear out: a larger gain may be of few windows."""
+    paying = [r for r in ranked if _pays(study, r)]
+    near = [r for r in paying if r.gain > study.settings.polish_share * paying[0].gain]
+    return max(near, key=lambda r: r.significance, default=None)
 
 
 def _plainly_missing(study: Study, state: SearchState, others: HeldOut) -> bool:
