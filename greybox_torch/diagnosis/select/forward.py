@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
@@ -85,7 +86,7 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     branch = yield from only_if(_without_curves(study, start, with_curve), partial(_as_far, study, with_curve))
     if _as_far(study, with_curve, branch):
         return branch
-    standing = _first_name(start, branch) if _in_pieces(study, with_curve, branch) else branch
+    standing = _before_pieces(start, with_curve, branch) if _in_pieces(study, with_curve, branch) else branch
     if standing is None or len(standing.effects) <= len(done.parent.effects):
         return replace(with_curve, plain=branch.plain)
     return replace(with_curve, plain=branch.plain, named=replace(standing, named=None))
@@ -107,11 +108,25 @@ def _name_before_fine_curve(study: Study, start: SearchState, with_curve: Search
     return replace(start.at(name.fitted), steps=(*start.steps, replace(before, taken=name)))
 
 
-def _first_name(start: SearchState, branch: SearchState) -> SearchState | None:
-    """``branch`` after the first step from ``start``, where that took a name: the one to ask where the curve does not hold."""
-    steps = branch.steps[: len(start.steps) + 1]
-    taken = steps[-1].taken if len(steps) > len(start.steps) else None
-    return None if taken is None else replace(branch.at(taken.fitted), steps=steps)
+def _before_pieces(start: SearchState, with_curve: SearchState, branch: SearchState) -> SearchState | None:
+    """What to ask of names that are pieces of a curve, where that does not hold: those that went farther than the curve before others
+    joined them, else the first one; None where the first step from ``start`` took none.
+
+    Seen: a stage's constant force and dry friction went farther than the curve; with a ripple and a stop beside them all four were pieces,
+    and the constant force alone was told.
+    """
+    grown = list(_one_by_one(start, branch))
+    farther = (s for s in grown[:-1] if s.current.score < with_curve.current.score)
+    return next(farther, grown[0] if grown else None)
+
+
+def _one_by_one(start: SearchState, branch: SearchState) -> Iterator[SearchState]:
+    """``branch`` after each of its steps from ``start`` that took an effect."""
+    for count in range(len(start.steps) + 1, len(branch.steps) + 1):
+        steps = branch.steps[:count]
+        if steps[-1].taken is None:
+            return
+        yield replace(branch.at(steps[-1].taken.fitted), steps=steps)
 
 
 def _without_curves(study: Study, start: SearchState, with_curve: SearchState) -> Stage[SearchState]:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from greybox_torch.diagnosis.select import forward
-from greybox_torch.diagnosis.select.forward import _first_name, _in_pieces, _name_before_fine_curve, _without_curves
+from greybox_torch.diagnosis.select.forward import _before_pieces, _in_pieces, _name_before_fine_curve, _without_curves
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import result_of
@@ -94,18 +94,32 @@ def test_others_are_looked_for_beside_a_name_that_brings_a_part_of_what_the_curv
 
 def test_of_names_that_are_pieces_of_a_curve_the_first_is_asked_where_the_curve_does_not_hold(stub) -> None:
     """Seen: a pendulum's dry friction, which held-out recordings bear out and which was lost beside a warm-up and a ripple."""
-    dry, none, two = (stub(effects=effects) for effects in (("dry",), (), ("dry", "warmup")))
-    started, first, second, nothing = (
-        stub(taken=None),
-        stub(taken=stub(fitted=dry)),
-        stub(taken=stub(fitted=two)),
-        stub(taken=None),
-    )
+    start, branch = grown(stub, {"dry": -1.0, "warmup": -1.1})
+    curve = stub(current=stub(score=-2.0))
+    found = _before_pieces(start, curve, branch)
+    assert found is not None and found.current.effects == ("dry",) and found.steps == branch.steps[:2]
+    assert _before_pieces(start, curve, replace(start, steps=(*start.steps, stub(taken=None)))) is None
+    assert _before_pieces(start, curve, start) is None
+
+
+def test_names_that_went_farther_than_the_curve_before_pieces_joined_them_are_asked_together(stub) -> None:
+    """Seen: a stage's constant force and dry friction, with a ripple and a stop beside them: the constant force alone was told."""
+    start, branch = grown(stub, {"bias": -0.5, "dry": -2.7, "ripple": -3.0, "stop": -3.5})
+    found = _before_pieces(start, stub(current=stub(score=-2.2)), branch)
+    assert found is not None and found.current.effects == ("bias", "dry")
+    found = _before_pieces(start, stub(current=stub(score=-2.8)), branch)
+    assert found is not None and found.current.effects == ("bias", "dry", "ripple")
+    found = _before_pieces(start, stub(current=stub(score=-3.4)), branch)
+    assert found is not None and found.current.effects == ("bias",), "all of them are what is in pieces"
+
+
+def grown(stub, scores: dict[str, float]) -> tuple[SearchState, SearchState]:
+    """A search that began with a step that took nothing, and what it took one by one, with the scores reached."""
+    names, started = tuple(scores), stub(taken=None)
+    none = stub(effects=(), score=0.0)
+    reached = [stub(effects=names[: k + 1], score=score) for k, score in enumerate(scores.values())]
     start = SearchState(none, none, steps=(started,))
-    found = _first_name(start, SearchState(none, two, steps=(started, first, second)))
-    assert found is not None and found.current is dry and found.steps == (started, first)
-    assert _first_name(start, SearchState(none, none, steps=(started, nothing))) is None
-    assert _first_name(start, start) is None
+    return start, SearchState(none, reached[-1], steps=(started, *(stub(taken=stub(fitted=one)) for one in reached)))
 
 
 @pytest.mark.parametrize(
