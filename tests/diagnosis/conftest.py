@@ -51,8 +51,8 @@ def motor_data(data_set, motor_speed) -> MotorData:
     ``acting`` maps the recorded voltage to the one that acts; ``torque`` of position and speed is what the model does not know.
     """
 
-    def make(samples=2000, roles=("estimation", "validation"), *, acting=lambda v: v, torque=None, noise=0.02):
-        rng, experiments = np.random.default_rng(0), []
+    def make(samples=2000, roles=("estimation", "validation"), *, acting=lambda v: v, torque=None, noise=0.02, seed=0):
+        rng, experiments = np.random.default_rng(seed), []
         for _ in roles:
             voltage = np.repeat(rng.uniform(-3, 3, samples // 20), 20)
             true = motor_speed(acting(voltage), start=0.3) if torque is None else turned(acting(voltage), torque)

@@ -47,14 +47,20 @@ def describe(
     assert isinstance(hypothesis.model, AugmentedModel)
     floor = min(f.mean_square for f in hypothesis.fits) * max(1, len(study.problem.records.first))
     whole = max(0.0, (sums[0] - sums[1]) / max(sums[0] - floor, 1e-300))
-    parts = _parts(state)
+    parts, left = _parts(state), _left(sums)
     return tuple(
         replace(
-            _effect(study, state, hypothesis.model, e, final, min(1.0, whole * part), gains.get(e.prefix)),
+            _effect(study, state, hypothesis.model, e, final, min(1.0, whole * part), gains.get(e.prefix), left),
             size=sizes.get(e.prefix, float("nan")),
         )
         for e, part in zip(hypothesis.effects, parts, strict=True)
     )
+
+
+def _left(sums: tuple[float, ...]) -> float:
+    """Share of the plain model's error that the augmented one leaves; none where that overflows."""
+    before, after = sums
+    return after / before if np.isfinite(before) and before > 0 else 0.0
 
 
 def _parts(state: SearchState) -> list[float]:
@@ -74,9 +80,10 @@ def _effect(
     final: Final,
     explained: float,
     gain: Gain | None,
+    left: float,
 ) -> Effect:
     taken = state.step_of(attachment.prefix)
-    probability, alternatives = _probability(study, state, attachment, taken)
+    probability, alternatives = _probability(study, state, attachment, taken, left)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     profiles = _profiles(study, state, model, attachment, site)
     timelines = () if gain is None else gain.timelines
@@ -106,9 +113,11 @@ def _effect(
 
 
 def _probability(
-    study: Study, state: SearchState, attachment: Attachment, taken: SelectionStep | None
+    study: Study, state: SearchState, attachment: Attachment, taken: SelectionStep | None, left: float
 ) -> tuple[float, tuple[Alternative, ...]]:
-    """The probability of an effect and of its alternatives; of a law less where much of the mismatch is left with all of them."""
+    """The probability of an effect and of its alternatives; of a law less where much of the mismatch is left with all of them, over
+    windows or in free runs, of which ``left`` is.
+    """
     if taken is None or taken.taken is None:
         without = state.without.get(attachment.prefix, state.plain)
         probability, alternatives = by_comparison(without, state.current, study.settings), ()
@@ -117,7 +126,7 @@ def _probability(
     if attachment.mechanism.free:
         return probability, alternatives
     share = remaining_share(state.plain, state.current, study.settings)
-    return for_all_that_is_left(probability, share, state.current, study.settings), alternatives
+    return for_all_that_is_left(probability, share, state.current, study.settings, left), alternatives
 
 
 def ceiling_share(done: SelectionStep, memory: SelectionStep | None = None) -> float | None:

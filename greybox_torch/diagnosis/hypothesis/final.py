@@ -16,6 +16,7 @@ from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimise
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.uncertainty import Uncertainty, of_information, uncertainty
+from greybox_torch.estimate.window_information import window_information
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.side_by_side import side_by_side
 
@@ -110,11 +111,24 @@ def from_longest_windows(hypothesis: Hypothesis) -> Final:
 
 
 def as_windows_have_it(hypothesis: Hypothesis, records: Records | None = None) -> Final:
-    """The values of the longest windows, with their uncertainty on whole records, where those can be simulated from there."""
+    """The values of the longest windows, with the uncertainty that they have there.
+
+    Where they are asked for, whole records are no measure of the values: a run that is lost says nothing of what its error depends on.
+    """
     problem = from_windows(hypothesis.fits[-1])
     run = whole_runs(hypothesis, [problem])[0] if records is None else _on_all(hypothesis, records, problem)
-    known = run.normals(run.start) is not None
-    return Final(run.at(run.start), uncertainty(run, run.start) if known else None)
+    return Final(run.at(run.start), _over_windows(hypothesis))
+
+
+def _over_windows(hypothesis: Hypothesis) -> Uncertainty | None:
+    """Of the parameters, start states of the longest windows eliminated; errors as white as they are. None where nothing is free."""
+    fit = hypothesis.fits[-1]
+    information = window_information(fit, hypothesis.simulator)
+    if information is None or not len(information):
+        return None
+    unknowns = len(information) + fit.starts.size
+    variance = float(fit.energies.sum()) / max(fit.problem.samples - unknowns, 1)
+    return of_information(information / max(variance, np.finfo(float).tiny))
 
 
 def _on_all(hypothesis: Hypothesis, records: Records, problem: Problem) -> FreeRun:

@@ -30,17 +30,20 @@ def of_a_stopped_search(effects: Sequence[Effect], settings: DiagnosisSettings) 
     )
 
 
-def for_all_that_is_left(probability: float, share: float, left: Hypothesis, settings: DiagnosisSettings) -> float:
+def for_all_that_is_left(
+    probability: float, share: float, left: Hypothesis, settings: DiagnosisSettings, of_free_runs: float = 0.0
+) -> float:
     """The probability of a name, given what all findings together leave: much more than noise, and more than a finding is.
 
     Where that is most of the mismatch, what is named may be a part of what takes the place of the machine's own law.
 
     Args:
         share: of the whole mismatch, that ``left`` leaves.
+        of_free_runs: share of the squared error of free validation runs that is left.
     """
     if not far_above_noise(left, settings) or share <= settings.least_size:
         return probability
-    most_is_left = share > settings.most_of_mismatch
+    most_is_left = max(share, of_free_runs) > settings.most_of_mismatch
     highest = (
         settings.highest_probability_where_most_is_left
         if most_is_left

@@ -177,7 +177,8 @@ class ProbabilitySettings:
     )
     most_of_mismatch: float = share(
         0.67,
-        "Share of the plain model's mismatch from which most of it is left, at the window length where it is largest.",
+        "Share of the plain model's mismatch from which most of it is left, at the window length where it is largest, or in free "
+        "runs of the validation experiments.",
         unit="share of the plain model's mismatch",
         chosen_by="two thirds: what is named is then the smaller part",
     )

@@ -19,3 +19,7 @@ def test_a_name_is_less_sure_the_more_is_left_with_it(stub) -> None:
     assert [for_all_that_is_left(0.97, share, much, SETTINGS) for share in (0.01, 0.3, 0.8)] == [0.97, 0.85, 0.5]
     assert for_all_that_is_left(0.3, 0.8, much, SETTINGS) == 0.3
     assert for_all_that_is_left(0.97, 0.8, little, SETTINGS) == 0.97, "near the noise"
+    free_runs = [for_all_that_is_left(0.97, 0.01, much, SETTINGS, of_free_runs=left) for left in (0.5, 0.9)]
+    assert free_runs == [0.97, 0.97], "over windows next to nothing is left"
+    assert for_all_that_is_left(0.97, 0.3, much, SETTINGS, of_free_runs=0.9) == 0.5
+    assert for_all_that_is_left(0.97, 0.3, little, SETTINGS, of_free_runs=0.9) == 0.97
