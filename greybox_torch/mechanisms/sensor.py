@@ -5,11 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import torch
+
 from greybox_torch.mechanisms.degenerate import too_long
 from greybox_torch.mechanisms.lag import Lag
 from greybox_torch.mechanisms.linear_law import LinearLaw, Of
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals, State
+
+FOLLOWED = 1.6
+"""Samples of the shortest dead time whose approximation one step of the integrator per sample follows: its poles lie at 3.5 / T."""
 
 
 class SensorLag(Lag):
@@ -53,7 +58,7 @@ class OutputDelay(Mechanism):
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         step = around.sample_time
-        return [Parameter("T", 4 * step, "s", lower=2 * step, upper=500 * step, description="dead time")]
+        return [Parameter("T", 4 * step, "s", lower=0.5 * step, upper=500 * step, description="dead time")]
 
     def states(self, around: Surroundings) -> list[State]:
         unit = around.units.get("output", "")
@@ -63,7 +68,9 @@ class OutputDelay(Mechanism):
         return {"filtered": s.output}
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
-        return {"filtered": z.slope, "slope": 12 / p.T**2 * (s.output - z.filtered - 0.5 * p.T * z.slope)}
+        # A shorter one is followed no faster than the integrator does: its mean is T all the same, as the force is T times the slope.
+        time = torch.clamp(p.T, min=FOLLOWED * s.sample_time)
+        return {"filtered": z.slope, "slope": 12 / time**2 * (s.output - z.filtered - 0.5 * time * z.slope)}
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         return -p.T * z.slope

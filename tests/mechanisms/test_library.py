@@ -51,7 +51,9 @@ def memory_of(mechanism: Mechanism, around: Surroundings) -> dict[str, np.ndarra
 
 def seen(mechanism: Mechanism, anywhere: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     needs = (mechanism.signal,) if isinstance(mechanism, Unknown) else mechanism.needs
-    sampling = {"sample_time": np.array(0.004)} if mechanism.name.endswith("_lag") else {}
+    sampling = (
+        {"sample_time": np.array(0.004)} if mechanism.name.endswith("_lag") or mechanism.name == "output_delay" else {}
+    )
     return {name: anywhere[name] for name in needs or ("speed",)} | sampling
 
 
