@@ -41,6 +41,7 @@ class MotorData(Protocol):
         acting: Callable[[np.ndarray], np.ndarray] = ...,
         torque: Callable[[float, float], float] | None = ...,
         noise: float = ...,
+        seed: int = ...,
     ) -> DataSet: ...
 
 

@@ -23,13 +23,15 @@ def fit_plain_model(study: Study) -> tuple[Study, SearchState]:
     """The study with what the fit of the model as it stands shows of its ports, and the state that a search begins from.
 
     Raises:
-        NumericalError: it overflows even over short windows.
+        NumericalError: it overflows even over short windows, and with any one parameter halved or doubled too.
     """
     study.report("refitting the model as it stands")
     model = study.problem.model
     study = replace(study, motion=reconstructed(study.problem) if study.motion is None else study.motion)
     views = views_of(study.problem, study.motion)
     plain = fit(study, (), [study.card, *([] if isinstance(views, str) else views.starts())], None)
+    if plain is None and (others := _around(study)):
+        plain = fit(study, (), others, None)
     if plain is None:
         raise NumericalError(
             f"simulating {model.title}: the simulation overflows even over windows of a 64th of the record; "
@@ -47,6 +49,21 @@ def fit_plain_model(study: Study) -> tuple[Study, SearchState]:
         at_card=at_card if narrower != around else (),
     )
     return study, SearchState(plain, plain)
+
+
+def _around(study: Study) -> list[dict[str, float]]:
+    """The card's values with one free parameter halved or doubled at a time, as far as bounds and joint constraints allow.
+
+    For a card that cannot be simulated: a mass matrix that is not positive, say, of two parameters a few per cent off.
+    """
+    problem, found = study.problem, []
+    for k in np.flatnonzero(problem.free):
+        for factor in (0.5, 2.0):
+            values = problem.values.copy()
+            values[k] *= factor
+            if (values >= problem.lower).all() and (values <= problem.upper).all() and problem.admissible(values):
+                found.append(dict(zip(problem.names, map(float, values), strict=True)))
+    return found
 
 
 def weighted_by_noise(study: Study, state: SearchState) -> Study:
