@@ -7,7 +7,7 @@ from functools import partial
 
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.choice import priced_score
-from greybox_torch.diagnosis.select.explore import explore
+from greybox_torch.diagnosis.select.explore import explore, nothing_is_left
 from greybox_torch.diagnosis.select.forward import take_effects
 from greybox_torch.diagnosis.select.forward_step import forward_step
 from greybox_torch.diagnosis.select.memory import with_memory
@@ -43,12 +43,17 @@ def search(study: Study, state: SearchState) -> Stage[SearchState]:
 def revise(study: Study, state: SearchState) -> Stage[SearchState]:
     """Choose doubtful effects but the newest once more, beside the others: an early choice was made while those were still missing.
 
-    Once one is replaced, the rest is left as it is; where none is, the hypothesis is the same as before.
+    So is one that was chosen beside what has gone since, the newest too, where more than noise is left. Once one is replaced, the rest is
+    left as it is; where none is, the hypothesis is the same as before.
     """
     price = partial(priced_score, settings=study.settings)
-    newest = state.newest
-    for effect in (e for e in state.effects if e.prefix != newest):
-        if beyond_doubt(study, state, effect) and not lost_an_amplitude(study, state, effect):
+    newest, noise_alone = state.newest, nothing_is_left(study, state)
+    for effect in state.effects:
+        beside_others = not noise_alone and beside_what_is_gone(state, effect)
+        doubtful = effect.prefix != newest and (
+            not beyond_doubt(study, state, effect) or lost_an_amplitude(study, state, effect)
+        )
+        if not (doubtful or beside_others):
             continue
         study.working_on(f"choosing {effect.prefix} once more")
         other = result_of(forward_step(study, state.at(state.without[effect.prefix])))
@@ -58,6 +63,15 @@ def revise(study: Study, state: SearchState) -> Stage[SearchState]:
             return (yield from drop_superfluous(study, other))
         state = replace(state, plain=other.plain, steps=other.steps if pays else state.steps)
     return state
+
+
+def beside_what_is_gone(state: SearchState, effect: Attachment) -> bool:
+    """Whether an effect was chosen beside others of which one is no longer there.
+
+    Seen: a sensor's dead time, told as a lag (0.97), which did better beside a curve and a delay that both fell away.
+    """
+    done = state.step_of(effect.prefix)
+    return done is not None and any(e.prefix not in state.prefixes for e in done.parent.effects)
 
 
 def beyond_doubt(study: Study, state: SearchState, effect: Attachment) -> bool:

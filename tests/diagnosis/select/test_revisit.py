@@ -68,6 +68,29 @@ def test_an_early_wrong_choice_is_mended_beside_the_others(two_lacking, motor) -
     assert revised.took_one and not told.steps, "a state is not changed by what follows from it"
 
 
+@pytest.mark.parametrize("gone", [True, False])
+def test_the_newest_is_chosen_once_more_where_what_it_was_chosen_beside_has_gone(two_lacking, motor, gone) -> None:
+    """Seen: a dead time, told as a lag (0.97), which did better beside a delay and a curve that both fell away."""
+    search = two_lacking
+    bias, wrong, other = (attach(motor, "rotor", law) for law in (ConstantBias(), TorqueRipple(3.0), ViscousFriction()))
+    whole = search.refitted((bias, wrong), search.plain)
+    before = search.refitted((bias, other) if gone else (bias,), search.plain)
+    taken = judged(Candidate(wrong, (), 0.5), before, whole, SETTINGS)
+    without = {
+        bias.prefix: search.refitted((wrong,), search.plain),
+        wrong.prefix: search.refitted((bias,), search.plain),
+    }
+    steps = (
+        SelectionStep(
+            (), search.plain, (first := judged(Candidate(bias, (), 0.5), search.plain, before, SETTINGS),), first
+        ),
+        SelectionStep((), before, (taken,), taken),
+    )
+    told = search.at(whole, without=without, steps=steps).state
+    revised = result_of(revise(search.study, told))
+    assert ("torque_ripple" not in {e.mechanism.name for e in revised.effects}) is gone
+
+
 def test_what_stands_is_left_where_the_choice_is_the_same(two_lacking, motor) -> None:
     search = two_lacking
     drag, bias = attach(motor, "rotor", QuadraticDrag()), attach(motor, "rotor", ConstantBias())
