@@ -66,12 +66,14 @@ def revise(study: Study, state: SearchState) -> Stage[SearchState]:
 
 
 def beside_what_is_gone(state: SearchState, effect: Attachment) -> bool:
-    """Whether an effect was chosen beside others of which one is no longer there.
+    """Whether a law was chosen beside others of which one is no longer there.
 
     Seen: a sensor's dead time, told as a lag (0.97), which did better beside a curve and a delay that both fell away.
     """
     done = state.step_of(effect.prefix)
-    return done is not None and any(e.prefix not in state.prefixes for e in done.parent.effects)
+    if done is None or effect.mechanism.free:
+        return False
+    return any(e.prefix not in state.prefixes for e in done.parent.effects)
 
 
 def beyond_doubt(study: Study, state: SearchState, effect: Attachment) -> bool:
