@@ -47,9 +47,9 @@ def revise(study: Study, state: SearchState) -> Stage[SearchState]:
     left as it is; where none is, the hypothesis is the same as before.
     """
     price = partial(priced_score, settings=study.settings)
-    newest, noise_alone = state.newest, nothing_is_left(study, state)
+    newest = state.newest
     for effect in state.effects:
-        beside_others = not noise_alone and beside_what_is_gone(state, effect)
+        beside_others = beside_what_is_gone(state, effect) and not nothing_is_left(study, state)
         doubtful = effect.prefix != newest and (
             not beyond_doubt(study, state, effect) or lost_an_amplitude(study, state, effect)
         )
