@@ -73,6 +73,8 @@ class Mechanism:
     """As a richer form: what a further effect at its port has to be named for this one law to be asked in the place of both."""
     rubs: bool = False
     """Whether it is friction by the speed of its body alone: a body has one such friction, of which two laws are two parts."""
+    springs: bool = False
+    """Whether it is how a coupling's force answers its deflection: a coupling has one such answer, of which two laws are two parts."""
     nature: ClassVar[str] = ""
     """What it has in common with its look-alikes, as a noun, for a statement about several that cannot be told apart."""
     explanation: ClassVar[str] = ""

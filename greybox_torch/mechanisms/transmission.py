@@ -38,6 +38,7 @@ class Backlash(Mechanism):
     kinds = ("coupling",)
     needs = ("deflection",)
     later = ("damping",)
+    springs = True
     nature = "a coupling that is no linear spring"
     explanation = "There is play: within a gap the coupling transmits nothing."
     source = "M. Nordin, P.-O. Gutman, Automatica 38(10), 2002"
@@ -96,6 +97,7 @@ class NonlinearStiffness(Mechanism):
     needs = ("deflection",)
     natural = ("d_0",)
     later = ("k_a",)
+    springs = True
     nature = "a coupling that is no linear spring"
     explanation = "The spring stiffens or softens with deflection."
     source = "T. Tuttle, W. Seering, IEEE Trans. Robotics and Automation 12(3), 1996 (harmonic drives)"
@@ -136,6 +138,7 @@ class HystereticSpring(Mechanism):
     kinds = ("coupling",)
     needs = ("rate",)
     natural = ("sharpness", "z_0.lower")
+    springs = True
     nature = "a coupling that is no linear spring"
     explanation = "The coupling remembers: loading and unloading follow different curves (micro-slip, rubber)."
     source = "R. Bouc, 1967; Y.-K. Wen, J. Eng. Mech. 102(2), 1976; M. Ruderman, F. Hoffmann, T. Bertram, IEEE TIE 56(10), 2009"

@@ -15,6 +15,7 @@ from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.mechanism import Mechanism
 
 
 def sizes(study: Study, state: SearchState, gains: Mapping[str, Gain]) -> dict[str, float]:
@@ -57,8 +58,8 @@ def refinements(
 ) -> set[str]:
     """The effects that are too small to be findings, or that small and not confirmed by held-out experiments beyond chance.
 
-    Of two laws of friction at one body the smaller one has to be larger than other effects: it may be what the other lacks. So has any law
-    at the port of a larger one, where more than noise is left in spite of both.
+    Of two laws of friction at one body, or of one spring, the smaller one has to be larger than other effects: it may be what the other
+    lacks. So has any law at the port of a larger one, where more than noise is left in spite of both.
 
     Args:
         sizes: of every effect, from :func:`sizes`.
@@ -74,10 +75,15 @@ def refinements(
     def part_of_another(prefix: str) -> bool:
         own = effects[prefix]
         larger = (e for p, e in effects.items() if e.port == own.port and sizes[p] > sizes[prefix])
-        lacks = any(not completed or (e.mechanism.rubs and own.mechanism.rubs) for e in larger)
+        lacks = any(not completed or _of_one_kind(e.mechanism, own.mechanism) for e in larger)
         return lacks and sizes[prefix] < settings.least_size_beside_larger
 
     return {p for p in state.prefixes if not sizes[p] >= least or doubtful(p) or part_of_another(p)}
+
+
+def _of_one_kind(one: Mechanism, other: Mechanism) -> bool:
+    """Whether two laws are friction by speed alone, or a spring's answer to its deflection, of which a port has one."""
+    return (one.rubs and other.rubs) or (one.springs and other.springs)
 
 
 def sharing_with_the_rest(

@@ -121,8 +121,8 @@ class ConfirmationSettings:
     )
     least_size_beside_larger: float = share(
         0.1,
-        "The same for a law at the port of a larger one, where the two are friction by speed alone or leave more than noise: it may be "
-        "what the larger one lacks.",
+        "The same for a law at the port of a larger one, where the two are friction by speed alone or one spring's, or leave more than "
+        "noise: it may be what the larger one lacks.",
         unit="share of the plain model's held-out mismatch",
         chosen_by="bristles that also damp and slide by speed: what one law of friction lacks of them is 0.02 to 0.06",
     )

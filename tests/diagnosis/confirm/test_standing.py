@@ -16,6 +16,7 @@ from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import ViscousFriction
 from greybox_torch.mechanisms.mechanism import Mechanism
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
+from greybox_torch.mechanisms.transmission import Backlash, NonlinearStiffness
 
 
 @pytest.fixture
@@ -82,7 +83,9 @@ def test_a_small_effect_is_a_finding_only_where_others_confirm_it_beyond_chance(
     assert not refinements(study, state, others, {}, {name: 0.002}), "nobody was asked"
 
 
-def test_of_two_laws_of_friction_at_one_body_the_small_one_is_part_of_the_other(dead_zone_search, stub) -> None:
+def test_of_two_laws_of_friction_at_one_body_or_of_one_spring_the_small_one_is_part_of_the_other(
+    dead_zone_search, stub
+) -> None:
     """Seen: friction with bristles and damping, told as bristles and, 6 % of the mismatch, viscous friction.
 
     And bristles that fall with speed, told as Stribeck friction, 75 times the noise left, and a ripple of 5 % of the mismatch.
@@ -102,6 +105,11 @@ def test_of_two_laws_of_friction_at_one_body_the_small_one_is_part_of_the_other(
     assert len(told(bristles, viscous, small=0.2)) == 2, "too much for what a law lacks"
     assert len(told(bristles, ("motor", ViscousFriction()), small=0.06)) == 2, "of another body"
     assert len(told(bristles, bias, small=0.06)) == 2, "no friction"
+    play, bent = ("belt", Backlash()), ("belt", NonlinearStiffness())
+    assert told(play, bent, small=0.06) == ["belt.backlash"], (
+        "seen: play with soft ends, told with a spring that softens (0.97)"
+    )
+    assert len(told(play, bent, small=0.2)) == len(told(play, ("shaft", NonlinearStiffness()), small=0.06)) == 2
     assert told(bristles, bias, small=0.06, left=75.0) == ["arm.presliding_hysteresis"], "of a law that lacks something"
     assert len(told(bristles, bias, small=0.2, left=75.0)) == 2
     assert len(told(bristles, ("motor", ConstantBias()), small=0.06, left=75.0)) == 2
