@@ -72,7 +72,10 @@ def simulate(
     precision: Precision = "double",
     json: Json = False,
 ) -> None:
-    """Simulate all experiments in free run with the start values."""
+    """Simulate all experiments in free run with the card's parameter values.
+
+    Start states that the card does not fix are estimated from the first tenth of each experiment.
+    """
     from greybox_torch.commands import simulate
 
     simulate.run(dataset, Options(model, out, seed, device, json, precision))

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from greybox_torch.api.check_result import CheckResult
-from greybox_torch.checking.examine import Examination, examine
+from greybox_torch.checking.examine import examine
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError, Kind, UserError
@@ -45,10 +45,11 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
     name, given = _given(model)
     with users_code(_file(given), f"model {name}", "checking it"):
         examined = examine(given)
-    findings = list(examined.findings)
+    findings, values = list(examined.findings), dict[str, float]()
     if data is not None and examined.model is not None and not any(f.level == "error" for f in findings):
-        findings += _with_data(data, examined)
-    return CheckResult(name, replace(examined, findings=in_order(findings)), in_order(findings))
+        more, values = _with_data(data, examined.model)
+        findings += more
+    return CheckResult(name, replace(examined, findings=in_order(findings)), in_order(findings), values)
 
 
 def _given(model: Any) -> tuple[str, GreyBoxModel | type[GreyBoxModel]]:
@@ -69,11 +70,11 @@ def _file(given: GreyBoxModel | type[GreyBoxModel]) -> Path:
     return source_of(given if isinstance(given, type) else type(given)).file or Path("model")
 
 
-def _with_data(data: DataSet, examined: Examination) -> list[Finding]:
-    assert examined.model is not None
+def _with_data(data: DataSet, model: GreyBoxModel) -> tuple[list[Finding], dict[str, float]]:
+    """What is wrong between the two, and the parameter values that the model begins with there."""
     try:
-        make_problem(data, examined.model, data.recordings)
+        problem = make_problem(data, model, data.recordings)
     except UserError as error:
         found, _, write = str(error).removeprefix(f"{data.path}: ").partition("; expected ")
-        return [Finding("error", "card", found, write or "the names that the model declares", data.path)]
-    return []
+        return [Finding("error", "card", found, write or "the names that the model declares", data.path)], {}
+    return [], problem.values_by_name

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,12 +27,14 @@ _COLUMNS = ["kind", "name", "unit", "value", "moves"]
 class CheckResult(Result):
     """``findings`` say where, what and what to write instead, errors first; ``usable`` is False where one is an error.
 
-    ``compiled`` is False where equations work but have no compiled form, which makes a diagnosis far too slow.
+    ``compiled`` is False where equations work but have no compiled form, which makes a diagnosis far too slow. ``values``: of parameters,
+    where a data card was given; those declared otherwise.
     """
 
     name: str
     examined: Examination
     findings: tuple[Finding, ...]
+    values: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def usable(self) -> bool:
@@ -58,7 +61,7 @@ class CheckResult(Result):
         model, moved = self.examined.model, self.examined.influence
         if model is None:
             return []
-        values = {p.name: p.value for p in model.declared_parameters}
+        values = {**{p.name: p.value for p in model.declared_parameters}, **self.values}
         items = {
             "state": model.states,
             "input": model.inputs,

@@ -102,7 +102,7 @@ def warnings(found: Estimation) -> list[str]:
         if note.kind is Termination.at_bound:
             lines.append(
                 f"At a bound: {note.detail}; the standard deviations there mean little. Where physics does not end there, the model lacks "
-                "something that drives the parameter there."
+                "something that drives the parameter there, or the data hardly determine it beside those that it is correlated with."
             )
     return lines
 

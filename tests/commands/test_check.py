@@ -46,6 +46,19 @@ def test_a_card_that_does_not_fit(motor_folder: Callable[..., Path], edit: Calla
     assert "model Motor has no such name" in done.stdout
 
 
+def test_parameters_have_the_values_of_the_card(motor_folder: Callable[..., Path]) -> None:
+    """Seen: a new user read the values of the model's file as those of a card that is not applied."""
+    folder = motor_folder()
+    shown = [
+        CliRunner().invoke(app, ["check", str(t)]) for t in (folder / "dataset.toml", f"{folder / 'my_motor.py'}:Motor")
+    ]
+    with_card, alone = (
+        next(line.split() for line in done.stdout.splitlines() if line.split()[:2] == ["parameter", "b"])
+        for done in shown
+    )
+    assert "0.08" in with_card and "0.08" not in alone
+
+
 @pytest.mark.parametrize("target", ["no_such.py:Motor", "no_such_system", "no_such.toml"])
 def test_what_is_not_there(target: str) -> None:
     done = CliRunner().invoke(app, ["check", target])
