@@ -104,6 +104,9 @@ class Effect:
     one_of: OneOf | None = None
     """What these recordings cannot tell from it, as one statement; None where it stands alone."""
 
+    made_up_for: str = ""
+    """Where the recordings do not show it, as the re-estimated model makes up for it: how that is known, in words."""
+
     @property
     def prefix(self) -> str:
         """What the names of its parameters begin with."""

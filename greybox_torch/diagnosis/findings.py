@@ -14,6 +14,7 @@ from typing import Any
 from greybox_torch.deadline import Deadline, until
 from greybox_torch.diagnosis.confirm.holding import Judged, holding
 from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.final import Final, finish, from_longest_windows
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.selection import Selection
@@ -27,9 +28,13 @@ JUDGING = "validation and report data"
 
 @dataclass(frozen=True, kw_only=True)
 class Findings(Selection):
-    """A selection of which free runs bear out what is left, and what they say of it."""
+    """A selection of which free runs bear out what is left, and what they say of it.
+
+    ``by_parameters``: the effect of the state where the recordings do not show it, and the re-estimated parameters do.
+    """
 
     judged: Judgement
+    by_parameters: Effect | None = None
 
 
 def judge(selection: Selection, clock: Stopwatch) -> Findings:

@@ -8,8 +8,9 @@ from functools import partial
 from typing import Any
 
 from greybox_torch.data import DataSet
-from greybox_torch.deadline import Deadline
+from greybox_torch.deadline import Deadline, until
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
+from greybox_torch.diagnosis.common_gain import with_common_gain
 from greybox_torch.diagnosis.confirm.standing import refinements, sizes
 from greybox_torch.diagnosis.confirm.unstable import no_free_run_follows
 from greybox_torch.diagnosis.contradictions import contradictions
@@ -117,6 +118,8 @@ def diagnose(
     before_writing = Deadline(end.at - budget.seconds_for_writing)
     found = find_with_more(find(dataset, model, make_study, clock, end), model, make_study, clock, before_writing)
     found = find_what_is_slow(found, model, make_study, clock, before_writing)
+    with until(before_writing):
+        found, _ = or_else(partial(with_common_gain, found), lambda: found)
     told = partial(_diagnosis, found, dataset, model, seed, clock)
     return or_else(told, told)[0]
 
@@ -146,7 +149,8 @@ def _taken_back(found: Findings, against: Sequence[str]) -> Findings:
     """The findings without any effect, and why."""
     why = f"Everything found was taken back, as a verdict with it would contradict itself: {'; '.join(against)}."
     plain = found.state.at(found.state.plain)
-    return replace(found, state=plain, gains={}, judged=found.judged.without_effects(), more=(*found.more, why))
+    judged = found.judged.without_effects()
+    return replace(found, state=plain, gains={}, judged=judged, by_parameters=None, more=(*found.more, why))
 
 
 def _as_found(
@@ -193,7 +197,9 @@ def _as_found(
         complete=found.complete,
         unexplained=unexplained,
         refinements=refinements,
-        left=None if effects and judged.by_windows_alone else what_is_left(judged, detected, bool(effects)),
+        left=None
+        if effects and judged.by_windows_alone
+        else what_is_left(judged, detected, bool(effects), found.by_parameters is None),
         unstable=unstable,
         settings=study.settings,
         budget=study.budget,
@@ -210,6 +216,8 @@ def _as_found(
 
 def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
     """The effects that are findings, and those that are too small for that; the latter by themselves are none of the model's."""
+    if found.by_parameters is not None:
+        return (found.by_parameters,), ()
     study, state, judged = found.study, found.state, found.judged
     by_effect = sizes(study, state, found.gains)
     told = describe(study, state, judged.augmented, _sums(found), found.gains, by_effect)

@@ -168,6 +168,8 @@ class Verdict:
         return tuple(s for s in self.scores[model] if s.experiment not in self.unstable)
 
     def _gain(self) -> str:
+        if self.effects[0].made_up_for:
+            return f"; {self.effects[0].made_up_for}"
         pairs = [
             (before.fit, after.fit)
             for before, after in zip(self.counted("refit"), self.counted("augmented"), strict=True)

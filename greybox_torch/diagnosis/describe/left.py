@@ -11,8 +11,12 @@ from greybox_torch.diagnosis.describe.residual_tests import Detection
 from greybox_torch.diagnosis.verdict import Left
 
 
-def what_is_left(judged: Judgement, detected: Sequence[Detection], effects: bool) -> Left:
-    """What remains on the validation experiments, and whether it is repeatable."""
+def what_is_left(judged: Judgement, detected: Sequence[Detection], effects: bool, shown: bool = True) -> Left:
+    """What remains on the validation experiments, and whether it is repeatable.
+
+    Args:
+        shown: whether the recordings show the effects; where parameters made up for them, the re-estimated model leaves as much.
+    """
     share, times, worst = judged.left(effects)
     beyond = any(d.final.past.beyond for d in detected)
     coloured = any(d.final.colour.beyond for d in detected)
@@ -28,5 +32,7 @@ def what_is_left(judged: Judgement, detected: Sequence[Detection], effects: bool
         if np.isfinite(times)
         else "how much of its error is noise does not show"
     )
-    whole = f"{100 * share:.2g} % of the mismatch remains" if effects else "The model as it stands is recommended"
+    whole = "The model as it stands is recommended"
+    if effects:
+        whole = f"{100 * share:.2g} % of the mismatch remains" if shown else "As much remains as without it"
     return Left(share, times, f"{whole}: {size}. On the experiments that it was estimated from, {how}.")

@@ -189,7 +189,8 @@ def confidence(
     """
     settings = study.settings
     if effects:
-        return settings.highest_probability
+        by_parameters = [_of_the_whole(e) for e in effects if e.made_up_for]
+        return min(by_parameters, default=settings.highest_probability)
     if not complete:
         return settings.confidence_stopped
     if unexplained is not None:
@@ -200,3 +201,8 @@ def confidence(
         return settings.confidence_nothing_above_noise
     best = max((r.gain for r in state.steps[-1].ranked), default=0.0) if state.steps else 0.0
     return settings.confidence_nothing if best < settings.least_gain else settings.confidence_nothing_with_rivals
+
+
+def _of_the_whole(effect: Effect) -> float:
+    """The probability of an effect, or of the statement that it is told in."""
+    return effect.probability if effect.one_of is None else effect.one_of.probability

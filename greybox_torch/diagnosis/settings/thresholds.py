@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from greybox_torch.diagnosis.settings.card import CardSettings
 from greybox_torch.diagnosis.settings.choosing import (
     ComparisonSettings,
     NoiseSettings,
@@ -18,6 +19,7 @@ from greybox_torch.diagnosis.settings.fields import check
 class DiagnosisSettings(
     ResidualSettings,
     ProbabilitySettings,
+    CardSettings,
     ConfirmationSettings,
     SelectionSettings,
     ComparisonSettings,
