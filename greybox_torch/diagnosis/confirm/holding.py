@@ -8,6 +8,7 @@ from functools import partial
 from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
 from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.confirm.same_everywhere import drifts
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified
 from greybox_torch.diagnosis.confirm.standing import sizes
 from greybox_torch.diagnosis.confirm.take_back import held_out_gains, take_back_weakest
@@ -45,6 +46,7 @@ def holding(
 
     while state.effects:
         empty, holds = _empty(study, state, judged.augmented, gains), judged.holds and _shown(state, others, judged)
+        empty = empty or _drifting(study, state, judged)
         if empty is None and holds and not judged.unstable:
             break
         if empty is None:
@@ -113,6 +115,16 @@ def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[st
         if degenerate(e, study.surroundings, values, {} if proven else deviations) is not None:
             return e.prefix
     return _undone(study, state, sizes(study, state, gains))
+
+
+def _drifting(study: Study, state: SearchState, judged: Judgement) -> str | None:
+    """An offset that is another one in every experiment."""
+    asked = (
+        e.prefix
+        for e in state.effects
+        if drifts(state.current, judged.problem, study.surroundings[e.port], e, study.budget)
+    )
+    return next(asked, None)
 
 
 def _undone(study: Study, state: SearchState, by_effect: Mapping[str, float]) -> str | None:

@@ -18,6 +18,7 @@ from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.window_fit import fit_windows
 from greybox_torch.estimate.window_information import window_information
 from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
 from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import Simulator
@@ -25,9 +26,20 @@ from greybox_torch.simulation.simulator import Simulator
 CHANCE = 0.01
 """Probability that a drift without any constant is taken for one."""
 
+CHANCE_OF_SHOWN = 0.05
+"""The same of what windows show as well, and of machines whose constants scatter by some tens of per cent."""
+
+FEWEST = 3
+"""Experiments from which that is asked: of two, each has to be within a tenth of their mean."""
+
 
 def same_everywhere(
-    found: Hypothesis, problem: Problem, around: Surroundings, effect: Attachment, budget: SearchBudget
+    found: Hypothesis,
+    problem: Problem,
+    around: Surroundings,
+    effect: Attachment,
+    budget: SearchBudget,
+    chance: float = CHANCE,
 ) -> bool:
     """Whether an effect of one amplitude has it in every experiment, by Student's t of the amplitudes fitted to each alone.
 
@@ -37,6 +49,7 @@ def same_everywhere(
     Args:
         problem: the plain model on all experiments.
         around: of the effect's port.
+        chance: that a drift without any constant is taken for one.
     """
     directions = {name for probe in effect.mechanism.probes(around) for name in probe.directions}
     if len(directions) != 1 or SHARE in directions or len(problem.records.first) < 2:
@@ -47,10 +60,16 @@ def same_everywhere(
     experiments = range(len(problem.records.first))
     alone = side_by_side(partial(_alone, restated, simulator, name, e, budget) for e in experiments)
     sizes, variances = np.array([pair for pair in alone if pair is not None]).reshape(-1, 2).T
-    return constant(sizes, variances)
+    return constant(sizes, variances, chance)
 
 
-def constant(sizes: np.ndarray, variances: np.ndarray) -> bool:
+def drifts(found: Hypothesis, problem: Problem, around: Surroundings, effect: Attachment, budget: SearchBudget) -> bool:
+    """Whether an offset that windows show is another one in each of several experiments, and so a drift; arguments as above."""
+    asked = effect.mechanism.nature == ConstantBias.nature and len(problem.records.first) >= FEWEST
+    return asked and not same_everywhere(found, problem, around, effect, budget, CHANCE_OF_SHOWN)
+
+
+def constant(sizes: np.ndarray, variances: np.ndarray, chance: float = CHANCE) -> bool:
     """Whether ``sizes`` (n,), each known with a variance (n,), have a mean that their further scatter does not make by chance.
 
     Source: W. S. Gosset ("Student"), The Probable Error of a Mean, Biometrika 6, 1908.
@@ -61,7 +80,7 @@ def constant(sizes: np.ndarray, variances: np.ndarray) -> bool:
     if count < 2:
         return True
     between = max(float(np.var(sizes, ddof=1)) - float(np.mean(variances)), 0.0)
-    least = stdtrit(count - 1, 1.0 - CHANCE / 2) * np.sqrt(between / count)
+    least = stdtrit(count - 1, 1.0 - chance / 2) * np.sqrt(between / count)
     return abs(float(np.mean(sizes))) >= float(least)
 
 

@@ -20,6 +20,7 @@ from greybox_torch.mechanisms.mechanism import Range, Surroundings
 def shares(monkeypatch: pytest.MonkeyPatch) -> dict[str, float]:
     """What the other parameters leave of an effect, by prefix."""
     left: dict[str, float] = {}
+    monkeypatch.setattr(holding, "_drifting", lambda study, state, judged: None)
     monkeypatch.setattr(holding, "not_undone", lambda fitted, effect, surroundings: left.get(effect.prefix, 1.0))
     monkeypatch.setattr(
         holding, "sizes", lambda study, state, gains: {p: g.size for p, g in gains.items()} or {"link.law": 0.1}
@@ -110,3 +111,14 @@ def test_values_that_hold_on_some_experiments_give_way_to_better_ones_and_are_no
     left, gains, kept, told, whole = holding.holding(stub(settings=None, recorded=None), state, None, {}, judged)
     assert left is state and whole is time
     assert (kept, told) == ((by_windows, (WINDOWS_STAND,)) if windows else (judged, ()))
+
+
+def test_an_offset_that_drifts_is_taken_back_though_everything_else_holds(monkeypatch, stub) -> None:
+    effect = stub(prefix="arm.constant_bias")
+    state = stub(effects=(effect,), current="windows", compared_without=True, prefixes={"arm.constant_bias"})
+    judged = stub(holds=True, unstable=(), augmented="records", by_windows_alone=False, without_effects=lambda: "plain")
+    monkeypatch.setattr(holding, "_empty", lambda *args: None)
+    monkeypatch.setattr(holding, "_drifting", lambda *args: "arm.constant_bias")
+    monkeypatch.setattr(holding, "_without", lambda *args: stub(effects=()))
+    left, gains, kept, told, whole = holding.holding(stub(settings=None, recorded=None), state, None, {}, judged)
+    assert (left.effects, gains, kept, told, whole) == ((), {}, "plain", (), True)

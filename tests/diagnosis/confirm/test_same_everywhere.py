@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
-from greybox_torch.diagnosis.confirm.same_everywhere import constant, same_everywhere
+from greybox_torch.diagnosis.confirm.same_everywhere import constant, drifts, same_everywhere
 from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
@@ -58,3 +58,23 @@ def test_is_told_of_every_experiment_fitted_alone(data_set, motor, begun, torque
     assert same_everywhere(found, everything, around, ripple, SearchBudget()), (
         "two amplitudes make a phase, nothing is said"
     )
+
+
+@pytest.mark.parametrize(
+    ("torques", "drifting"), [((0.05, -0.01, 0.002, 0.03), True), ((0.05, 0.04, 0.06, 0.03), False)]
+)
+def test_an_offset_that_windows_show_is_none_where_it_drifts(data_set, motor, begun, torques, drifting) -> None:
+    """Seen: a bias of -0.0025, -0.0023, 0.0024 and -0.0021 N m was told of a complete arm, and one of -0.0078 to 0.0031 beside friction."""
+    rng, experiments = np.random.default_rng(6), []
+    for torque in torques:
+        voltage = np.repeat(rng.uniform(-3, 3, 60), 20)
+        speed = turned(voltage, lambda q, v, torque=torque: torque)
+        experiments.append({"voltage": voltage, "speed": speed + rng.normal(0, 0.02, len(speed))})
+    for count, expected in ((4, drifting), (2, False)):
+        data = data_set({"voltage": "V", "speed": "rad/s"}, experiments[:count], roles=ROLES[:count], sample_time=STEP)
+        search = begun(data, motor)
+        effect, everything = attach(motor, "rotor", ConstantBias()), FreeRuns(search.study, data).problem
+        found, around = search.refitted((effect,), search.plain), search.surroundings["rotor"]
+        assert drifts(found, everything, around, effect, SearchBudget()) is expected, count
+    ripple = attach(motor, "rotor", TorqueRipple(3.0))
+    assert not drifts(found, everything, around, ripple, SearchBudget()), "only of an offset it is asked"
