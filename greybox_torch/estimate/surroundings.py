@@ -6,6 +6,7 @@ import numpy as np
 import torch
 
 from greybox_torch.estimate.free_run import visited_states
+from greybox_torch.estimate.measured_deflection import with_measured
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.added_declarations import position_unit
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
@@ -53,15 +54,13 @@ def _around(
     values["time"] = times
     units = _of_sums(model, port, x, u, p) | _units(model, port)
     _complete(port, units)
-    return Surroundings(
-        {name: _range(v) for name, v in values.items()},
-        units,
-        _force_unit(port, units),
-        float(np.median(problem.records.dt)),
-        frozenset(
-            n for n, signal in port.signals.items() if isinstance(port, Coupling) and not _is_measured(model, signal)
-        ),
-    )
+    ranges = {name: _range(v) for name, v in values.items()}
+    hidden = frozenset[str]()
+    if isinstance(port, Coupling):
+        hidden = frozenset(n for n, signal in port.signals.items() if not _is_measured(model, signal))
+        if "deflection" in ranges and "deflection" not in hidden:
+            ranges["deflection"] = with_measured(ranges["deflection"], model, port, x, u, problem)
+    return Surroundings(ranges, units, _force_unit(port, units), float(np.median(problem.records.dt)), hidden)
 
 
 def _is_measured(model: GreyBoxModel, signal: Signal) -> bool:

@@ -29,6 +29,8 @@ def dead_zone(value: Any, below: Any, above: Any) -> Any:
 class Backlash(Mechanism):
     """The spring sees the deflection less a dead zone.
 
+    Where sensors show the deflection, the gap has a ``centre``: those at either end have zeros of their own, and play is seldom where they
+    agree.
     Where the coupling's rate is known, its damper may lose ``damping`` within the gap, where the two sides do not touch: a part of its
     coefficient, or all of it. ``as_force``: the same as a force, with the ``stiffness`` of the spring as a parameter of its own, for
     a model in which no state reaches this spring alone.
@@ -37,7 +39,7 @@ class Backlash(Mechanism):
     name = "backlash"
     kinds = ("coupling",)
     needs = ("deflection",)
-    later = ("damping",)
+    later = ("damping", "centre")
     springs = True
     nature = "a coupling that is no linear spring"
     explanation = "There is play: within a gap the coupling transmits nothing."
@@ -56,24 +58,32 @@ class Backlash(Mechanism):
         if self.as_force:
             stiffness = "stiffness of the coupling's spring"
             found.append(Parameter("stiffness", 0.0, around.per("deflection"), lower=0.0, description=stiffness))
+        if "deflection" not in around.unmeasured:
+            found.append(Parameter("centre", 0.0, unit, lower=-reach, upper=reach, description="middle of the gap"))
         if "rate" in around.ranges:
             lost = "what the coupling's damper loses within the gap"
             found.append(Parameter("damping", 0.0, around.per("rate"), lower=0.0, description=lost))
         return found
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        lost, damped = -p.stiffness * torch.clamp(s.deflection, -p.half_gap, p.half_gap), self.damped(s, p)
+        lost, damped = -p.stiffness * torch.clamp(s.deflection, *self.gap(p)), self.damped(s, p)
         return lost if damped is None else lost + damped
 
     def deflection(self, s: Signals, p: Signals) -> Any:
-        return dead_zone(s.deflection, p.half_gap, p.half_gap)
+        low, high = self.gap(p)
+        return dead_zone(s.deflection, -low, high)
+
+    def gap(self, p: Signals) -> tuple[Any, Any]:
+        """Where the gap begins and ends."""
+        return (p.centre - p.half_gap, p.centre + p.half_gap) if "centre" in p else (-p.half_gap, p.half_gap)
 
     def damped(self, s: Signals, p: Signals) -> Any:
         if "damping" not in p:
             return None
         # A kinematic law sees the deflection less its dead zone: within the gap that is zero, but for rounding.
         within = p.half_gap if self.as_force else ROUNDING * p.half_gap
-        return torch.where(torch.abs(s.deflection) < within, -p.damping * s.rate, 0.0)
+        from_centre = s.deflection - p.centre if self.as_force and "centre" in p else s.deflection
+        return torch.where(torch.abs(from_centre) < within, -p.damping * s.rate, 0.0)
 
     def written_as_force(self) -> Mechanism:
         return Backlash(as_force=True)
@@ -81,7 +91,7 @@ class Backlash(Mechanism):
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         gaps = [f * around.ranges["deflection"].reach for f in (0.03, 0.1, 0.3, 0.7)]
         if self.as_force:
-            amplitudes = tuple(p.name for p in self.parameters(around) if p.name != "half_gap")
+            amplitudes = tuple(p.name for p in self.parameters(around) if p.name not in ("half_gap", "centre"))
             return [Probe(amplitudes, {"half_gap": gap}) for gap in gaps]
         return [Probe(("half_gap",)), *(Probe((SHARE,), {"half_gap": gap}) for gap in gaps)]
 

@@ -150,3 +150,16 @@ def test_what_slips_stays_finite_where_a_step_is_too_long_for_it(rates, mechanis
     for _ in range(200):
         slip = stepped(slip, 1.0)
     assert slip == pytest.approx(z_0, rel=1e-6)
+
+
+@pytest.mark.parametrize("as_force", [False, True])
+def test_the_gap_has_a_middle_of_its_own_where_sensors_show_the_deflection(law, around, as_force) -> None:
+    """Seen: a dog clutch whose play lay 1.6 mrad off the zeros of its encoders, told as a spring that stiffens beside an offset (0.97)."""
+    names = {p.name for p in Backlash(as_force).parameters(around)}
+    hidden = {p.name for p in Backlash(as_force).parameters(replace(around, unmeasured=frozenset({"deflection"})))}
+    assert names - hidden == {"centre"}
+    values = {"half_gap": 0.02, "centre": 0.005, **({"stiffness": 1.0} if as_force else {})}
+    signals = {"deflection": TWIST, "rate": 0.0 * TWIST}
+    transmitted = law(Backlash(as_force), values, **signals) + (TWIST if as_force else 0.0)
+    expected = np.sign(TWIST - 0.005) * np.maximum(np.abs(TWIST - 0.005) - 0.02, 0.0)
+    np.testing.assert_allclose(transmitted, expected, atol=1e-14)

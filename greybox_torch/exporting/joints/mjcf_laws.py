@@ -67,10 +67,11 @@ def end_stop(at: Place) -> Said:
 
 
 def backlash(at: Place) -> Said:
-    gap = at.values["half_gap"]
+    centre, gap = at.values.get("centre", 0.0), at.values["half_gap"]
+    ends = (centre - gap, centre + gap)
     own = stiffness(at.model, at.port) if isinstance(at.port, Coupling) else None
     if own is None:
-        band = f'springlength="{-gap:.6g} {gap:.6g}"'
+        band = f'springlength="{ends[0]:.6g} {ends[1]:.6g}"'
         return [], [
             f"the stiffness of this coupling cannot be read from the model: write a fixed tendon with yours and {band}"
         ]
@@ -81,7 +82,7 @@ def backlash(at: Place) -> Said:
         left.append(
             f"what the damper loses within the gap, {at.values['damping']:.6g}: a joint's damping acts everywhere"
         )
-    return [_tendon(at, {"stiffness": (own,), "springlength": (-gap, gap)})], left
+    return [_tendon(at, {"stiffness": (own,), "springlength": ends})], left
 
 
 def spring(at: Place) -> Said:
