@@ -33,7 +33,10 @@ class LoadDependentFriction(DryLaw):
 
 
 class PositionDependentFriction(Mechanism):
-    """−(a cos nθ + b sin nθ) tanh(v / v_0) with an order n, and ``harmonics`` of it: a_k cos knθ + b_k sin knθ."""
+    """−(a cos nθ + b sin nθ) tanh(v / v_0) with an order n, and ``harmonics`` of it: a_k cos knθ + b_k sin knθ.
+
+    ``with_level``, −F_c tanh(v / v_0) besides: for a body whose model has no dry friction.
+    """
 
     name = "position_dependent_friction"
     kinds = ("body",)
@@ -45,14 +48,20 @@ class PositionDependentFriction(Mechanism):
     source = "M. R. Popović, A. A. Goldenberg, IEEE Trans. Robotics and Automation 14(1), 1998"
     experiment = "the same positions passed in both directions"
 
-    def __init__(self, order: float = 1.0, harmonics: int = 1) -> None:
-        self.order, self.harmonics = order, harmonics
+    def __init__(self, order: float = 1.0, harmonics: int = 1, with_level: bool = False) -> None:
+        self.order, self.harmonics, self.with_level = order, harmonics, with_level
+        if with_level:
+            self.includes = ("coulomb_friction",)
+            self.stands_for = ("coulomb_friction", "position_dependent_friction")
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
-        return [*wave_parameters(around, self.order, self.harmonics), width_parameter(around)]
+        level = Parameter("F_c", 0.0, around.force_unit, lower=0.0, description="mean Coulomb level")
+        own = [*wave_parameters(around, self.order, self.harmonics), width_parameter(around)]
+        return [level, *own] if self.with_level else own
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return -waves(s.position, p, self.harmonics) * smooth_sign(s.speed, p.v_0)
+        varying = waves(s.position, p, self.harmonics)
+        return -(p.F_c + varying if self.with_level else varying) * smooth_sign(s.speed, p.v_0)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(amplitudes_up_to(self.harmonics), {"order": self.order, "v_0": widths(around)[1]})]
@@ -61,11 +70,17 @@ class PositionDependentFriction(Mechanism):
         return not_seen_to_repeat(values["order"], around)
 
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
-        """With harmonics; and as a ripple with harmonics: where the speed hardly changes its sign the friction is one without."""
-        if self.harmonics > 1:
-            return ()
-        order, wave = values["order"], {n: values[n] for n in ("a", "b", "order")}
-        return (PositionDependentFriction(order, HARMONICS), dict(values)), (TorqueRipple(order, HARMONICS), wave)
+        """With harmonics, with a mean level, and as a ripple: where the speed hardly changes its sign the friction is one without."""
+        order, forms = values["order"], []
+        if self.harmonics == 1:
+            wave = {n: values[n] for n in ("a", "b", "order")}
+            forms = [
+                (PositionDependentFriction(order, HARMONICS, self.with_level), dict(values)),
+                (TorqueRipple(order, HARMONICS), wave),
+            ]
+        if not self.with_level:
+            forms.append((PositionDependentFriction(order, self.harmonics, True), {**values, "F_c": 0.0}))
+        return forms
 
 
 class FrictionWarmup(Mechanism):

@@ -115,12 +115,17 @@ def test_position_dependence_is_periodic(law) -> None:
 def test_richer_forms_of_position_dependence_begin_as_it_was_found(law) -> None:
     values, angle = {"a": 0.4, "b": -0.2, "order": 3.0, "v_0": 0.1}, np.linspace(0.0, 2.0, 50)
     there = {"speed": np.full(50, -5.0), "position": angle}
-    (harmonics, begun), (ripple, wave) = PositionDependentFriction(3.0).richer(values)
-    assert harmonics.options() == ripple.options() == {"order": 3.0, "harmonics": 3}
+    (harmonics, begun), (ripple, wave), (level, mean) = PositionDependentFriction(3.0).richer(values)
+    assert harmonics.options() == {"order": 3.0, "harmonics": 3, "with_level": False}
+    assert ripple.options() == {"order": 3.0, "harmonics": 3}
     plain = law(PositionDependentFriction(3.0), values, **there)
     np.testing.assert_allclose(law(harmonics, begun, **there), plain, atol=1e-14)
     np.testing.assert_allclose(law(ripple, wave, position=angle), plain, atol=1e-14)
-    assert harmonics.richer(begun) == ()
+    np.testing.assert_allclose(law(level, mean, **there), plain, atol=1e-14)
+    np.testing.assert_allclose(law(level, {**mean, "F_c": 0.5}, **there), plain + 0.5, atol=1e-12)
+    ((both, _),) = harmonics.richer(begun)
+    assert both.options() == {"order": 3.0, "harmonics": 3, "with_level": True}
+    assert both.richer({**begun, "F_c": 0.5}) == []
 
 
 def test_harmonics_of_position_dependence_rub(law) -> None:

@@ -54,19 +54,40 @@ def richer_instead(study: Study, before: SearchState, after: SearchState) -> Sea
     if newest is None:
         return None
     to_reach = priced_score(after.current, study.settings) + study.settings.score_tie
-    port, name = newest.candidate.attachment.named
-    for effect in (e for e in before.effects if e.port == port):
+    latest = newest.candidate.attachment
+    for effect in (e for e in before.effects if e.port == latest.port):
         done = before.step_of(effect.prefix)
         if done is None or done.taken is None:
             continue
-        for law, start in _forms(effect, before):
-            if law.mechanism.stands_for and name not in law.mechanism.stands_for:
-                continue
+        for law, start in _forms_of_both(effect, latest, before, after):
             found = _in_form(study, before, done.taken, law, start)
             if found is not None and priced_score(found.fitted, study.settings) <= to_reach and _improves(study, found):
                 in_step = _beside_rivals(done.taken, found)
                 return replace(widened(before, done, in_step, found.fitted), plain=after.plain)
     return None
+
+
+def _forms_of_both(
+    effect: Attachment, newest: Attachment, before: SearchState, after: SearchState
+) -> Iterator[tuple[Attachment, dict[str, float]]]:
+    """The richer forms of an effect, and those of the newest one at its port that have in them what it is, such as a mean level.
+
+    A form that stands for both begins with what the two came to.
+    """
+    for law, start in _forms(effect, before):
+        if not law.mechanism.stands_for:
+            yield law, start
+    for own, other in ((effect, newest), (newest, effect)):
+        for law, start in _forms(own, before, after.current.values()):
+            if other.mechanism.name in law.mechanism.stands_for:
+                yield law, start | _shared(law, start, other, after)
+
+
+def _shared(law: Attachment, start: Mapping[str, float], other: Attachment, after: SearchState) -> dict[str, float]:
+    """What ``law`` begins with at zero and ``other`` has under the same name."""
+    values, own, theirs = after.current.values(), f"{law.prefix}.", f"{other.prefix}."
+    named = {f"{own}{n.removeprefix(theirs)}": v for n, v in values.items() if n.startswith(theirs)}
+    return {n: v for n, v in named.items() if start.get(n) == 0.0}
 
 
 def _beside_rivals(plain: RankedCandidate, form: RankedCandidate) -> RankedCandidate:
@@ -81,19 +102,24 @@ def _improves(study: Study, found: RankedCandidate) -> bool:
     return further and sound(study, found)
 
 
-def _forms(effect: Attachment, state: SearchState) -> Iterator[tuple[Attachment, dict[str, float]]]:
+def _forms(
+    effect: Attachment, state: SearchState, begun: Mapping[str, float] | None = None
+) -> Iterator[tuple[Attachment, dict[str, float]]]:
     """The richer forms of an effect that are not there already under their own name, and all parameters to begin with.
 
     Neither among what was found nor among what the model was given with.
+
+    Args:
+        begun: the values that they begin with; by default those of the state.
     """
     given = {p.name.rpartition(".")[0] for p in state.plain.model.declared_parameters}
-    start, values = f"{effect.prefix}.", state.current.values()
+    start, values = f"{effect.prefix}.", begun or state.current.values()
     own = {n.removeprefix(start): v for n, v in values.items() if n.startswith(start)}
     others = {n: v for n, v in values.items() if not n.startswith(start)}
-    for mechanism, begun in effect.mechanism.richer(own):
+    for mechanism, own_start in effect.mechanism.richer(own):
         law = replace(effect, mechanism=mechanism)
         if law.prefix not in (state.prefixes | given) - {effect.prefix}:
-            yield law, {**others, **{f"{law.prefix}.{n}": v for n, v in begun.items()}}
+            yield law, {**others, **{f"{law.prefix}.{n}": v for n, v in own_start.items()}}
 
 
 def _in_form(

@@ -85,6 +85,32 @@ def test_dry_friction_and_what_makes_it_uneven_are_one_law(motor_data, motor, be
     assert values["rotor.coulomb_asymmetry.delta"] == pytest.approx(difference, rel=0.05)
 
 
+@pytest.mark.parametrize("first", ["level", "varying"])
+def test_a_mean_level_and_what_varies_with_position_are_one_law_whichever_comes_first(
+    motor_data, motor, begun, first
+) -> None:
+    """Seen: a blanket cylinder that rubs four times as much along half a turn, told as dry friction there and at the motor."""
+
+    def lacking(q: float, v: float) -> float:
+        return -(0.1 + 0.06 * np.sin(8.0 * q)) * np.tanh(v / 0.05)
+
+    search = begun(motor_data(torque=lacking), motor)
+    level, varying = attach(motor, "rotor", CoulombFriction()), attach(motor, "rotor", PositionDependentFriction(8.0))
+    starts = {level: {f"{level.prefix}.F_c": 0.1}, varying: {f"{varying.prefix}.b": 0.06}}
+    one, other = (level, varying) if first == "level" else (varying, level)
+    before = found(search, one, starts[one])
+    both = search.refitted(
+        (one, other), before.current, [{**before.current.values(), **starts[level], **starts[varying]}]
+    )
+    taken = judged(Candidate(other, (), 0.5), before.current, both, search.study.settings)
+    step = SelectionStep((), before.current, (taken,), taken)
+    state = richer_instead(search.study, before, replace(before.at(both), steps=(*before.steps, step)))
+    assert state is not None and state.prefixes == {varying.prefix}
+    values = {n.removeprefix(f"{varying.prefix}."): v for n, v in state.current.values().items()}
+    assert values["F_c"] == pytest.approx(0.1, rel=0.1)
+    assert np.hypot(values["a"], values["b"]) == pytest.approx(0.06, rel=0.1)
+
+
 @pytest.mark.parametrize(("plain", "left", "taken"), [(20.0, 1.05, True), (20.0, 9.0, False), (1.5, 0.9, False)])
 def test_what_it_takes_up_is_asked_where_the_law_leaves_most(motor_data, motor, begun, plain, left, taken) -> None:
     """Seen: cogging of two orders along a rail; over all but the longest windows one order left little more than an encoder's steps."""
