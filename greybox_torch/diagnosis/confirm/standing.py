@@ -12,6 +12,8 @@ import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
@@ -89,13 +91,25 @@ def _of_one_kind(one: Mechanism, other: Mechanism) -> bool:
 def sharing_with_the_rest(
     study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain]
 ) -> str | None:
-    """The smallest effect, where each is too small for a finding beside the rest alone, and all of them together are not.
+    """The smallest of several effects that are each too small for a finding beside the rest, and together are not; None elsewhere.
 
-    None elsewhere. Of a lag and a delay each makes up for the other: one has to go before the other one's size is known.
+    Of a lag and a delay, or of two stops at either end of a spring, each makes up for the other: one has to go before the other one's size
+    is known.
     """
     by_effect = sizes(study, state, gains)
-    if len(by_effect) < 2 or refinements(study, state, others, gains, by_effect) != state.prefixes:
+    small = refinements(study, state, others, gains, by_effect)
+    if len(small) < 2:
         return None
-    plain, full = (h.fits if others is None else others.fits(h) for h in (state.plain, state.current))
-    together = size(plain, plain, full, study.settings)
-    return min(by_effect, key=lambda p: by_effect[p]) if together >= study.settings.least_size else None
+    without = _without_all(study, state, small)
+    plain, rest, full = (h.fits if others is None else others.fits(h) for h in (state.plain, without, state.current))
+    together = size(plain, rest, full, study.settings)
+    return min(sorted(small), key=lambda p: by_effect[p]) if together >= study.settings.least_size else None
+
+
+def _without_all(study: Study, state: SearchState, prefixes: set[str]) -> Hypothesis:
+    """The state's hypothesis without several of its effects."""
+    rest = tuple(e for e in state.effects if e.prefix not in prefixes)
+    if not rest:
+        return state.plain
+    study.working_on("trying without what is small")
+    return refitted(study, rest, state.current) or state.plain

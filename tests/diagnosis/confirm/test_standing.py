@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from greybox_torch.diagnosis.confirm import standing
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
 from greybox_torch.diagnosis.confirm.standing import least_size, refinements, sharing_with_the_rest, sizes
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -154,3 +155,33 @@ def test_of_effects_that_make_up_for_each_other_one_has_to_go(
     if taken_back is not None:
         alone = stub(**vars(state) | {"effects": effects[1:], "prefixes": {effects[1].prefix}, "without": {}})
         assert sharing_with_the_rest(study, alone, others, {}) is None
+
+
+@pytest.mark.parametrize(("of_both", "taken_back"), [(0.5, "actuator.input_lag"), (0.004, None)])
+def test_two_that_make_up_for_each_other_beside_a_finding(
+    monkeypatch, dead_zone_search, fits, stub, of_both, taken_back
+) -> None:
+    """Seen: an arm's stop, told at both ends of its gear's spring, each a refinement beside the other and a camera's delay."""
+    study, noise = dead_zone_search.study, 4e-4
+    lag, delay = Attachment("actuator", InputLag()), Attachment("actuator", InputDelay())
+    bias = Attachment("rotor", ConstantBias())
+    prefixes = {e.prefix for e in (lag, delay, bias)}
+    state = stub(
+        effects=(lag, delay, bias),
+        prefixes=prefixes,
+        plain=stub(fits=fits(1.0)),
+        current=stub(fits=fits(noise)),
+        without=dict.fromkeys(prefixes),
+    )
+    asked = []
+
+    def without_both(study, rest, start):
+        asked.append(rest)
+        return stub(fits=fits(noise + of_both * (1.0 - noise)))
+
+    monkeypatch.setattr(standing, "refitted", without_both)
+    sizes = {lag.prefix: 0.001, delay.prefix: 0.002, bias.prefix: 0.3}
+    gains = {p: Gain(0.7, 0.01, size=s) for p, s in sizes.items()}
+    others = stub(fits=lambda h: h.fits, times_noise=lambda h: np.array([1.0]))
+    assert sharing_with_the_rest(study, state, others, gains) == taken_back
+    assert asked == [(bias,)]
