@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import f as fisher
 
 from greybox_torch.diagnosis.describe.statement import Member, statement
 from greybox_torch.diagnosis.effect import Effect
@@ -95,6 +94,8 @@ def common_gain(
         exponents: (n,) of each parameter, to which power of the gain it makes up for it.
         looks: at how many gains one looks.
     """
+    from scipy.special import fdtrc  # not every diagnosis needs it
+
     if len(moves) < 2 or not np.isfinite(exponents).all():
         return None
     squares = exponents @ exponents
@@ -104,7 +105,7 @@ def common_gain(
     logarithm = -(exponents @ moves) / squares
     rest, freedom = moves + exponents * logarithm, len(moves) - 1
     before, after = moves @ moves, rest @ rest
-    chance = looks * float(fisher.sf(freedom * (before - after) / max(after, 1e-300), 1, freedom))
+    chance = looks * float(fdtrc(1, freedom, freedom * (before - after) / max(after, 1e-300)))
     scatter = float(np.sqrt(after / freedom))
     error = float(np.expm1(logarithm))
     small = abs(error) < settings.least_gain_error or scatter > settings.most_scatter_of_card
