@@ -19,6 +19,16 @@ ROLES = ["estimation", "validation", "validation", "validation"]
 EXACT = np.full(4, 1e-12)
 
 
+def pushed(torques: tuple[float, ...], seed: int) -> list[dict[str, np.ndarray]]:
+    """Experiments of the motor, one for each constant torque (N m) that pushes it."""
+    rng, experiments = np.random.default_rng(seed), []
+    for torque in torques:
+        voltage = np.repeat(rng.uniform(-3, 3, 60), 20)
+        speed = turned(voltage, lambda q, v, torque=torque: torque)
+        experiments.append({"voltage": voltage, "speed": speed + rng.normal(0, 0.02, len(speed))})
+    return experiments
+
+
 def test_drifts_of_one_sign_are_no_constant() -> None:
     """Seen: 38 % of the free runs' fit gained by a bias that was -0.0026 to 0.0021 N m, and one of 0.0006 to 0.0019."""
     assert not constant(np.array([0.0021, -0.0008, -0.0026, 0.0014]), EXACT)
@@ -43,11 +53,7 @@ def test_pure_drift_is_taken_for_a_constant_as_seldom_as_promised() -> None:
 
 @pytest.mark.parametrize(("torques", "same"), [((0.05, 0.05, 0.05, 0.05), True), ((0.05, -0.01, 0.002, 0.03), False)])
 def test_is_told_of_every_experiment_fitted_alone(data_set, motor, begun, torques, same) -> None:
-    rng, experiments = np.random.default_rng(5), []
-    for torque in torques:
-        voltage = np.repeat(rng.uniform(-3, 3, 60), 20)
-        speed = turned(voltage, lambda q, v, torque=torque: torque)
-        experiments.append({"voltage": voltage, "speed": speed + rng.normal(0, 0.02, len(speed))})
+    experiments = pushed(torques, 5)
     data = data_set({"voltage": "V", "speed": "rad/s"}, experiments, roles=ROLES, sample_time=STEP)
     search = begun(data, motor)
     effect, everything = attach(motor, "rotor", ConstantBias()), FreeRuns(search.study, data).problem
@@ -65,11 +71,7 @@ def test_is_told_of_every_experiment_fitted_alone(data_set, motor, begun, torque
 )
 def test_an_offset_that_windows_show_is_none_where_it_drifts(data_set, motor, begun, torques, drifting) -> None:
     """Seen: a bias of -0.0025, -0.0023, 0.0024 and -0.0021 N m was told of a complete arm, and one of -0.0078 to 0.0031 beside friction."""
-    rng, experiments = np.random.default_rng(6), []
-    for torque in torques:
-        voltage = np.repeat(rng.uniform(-3, 3, 60), 20)
-        speed = turned(voltage, lambda q, v, torque=torque: torque)
-        experiments.append({"voltage": voltage, "speed": speed + rng.normal(0, 0.02, len(speed))})
+    experiments = pushed(torques, 6)
     for count, expected in ((4, drifting), (2, False)):
         data = data_set({"voltage": "V", "speed": "rad/s"}, experiments[:count], roles=ROLES[:count], sample_time=STEP)
         search = begun(data, motor)
