@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from greybox_torch.diagnosis.confirm.undone import made_up_for
 from greybox_torch.diagnosis.describe.statement import Member, statement
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.findings import Findings
@@ -27,7 +28,6 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.problem import problem_for
 from greybox_torch.estimate.window_information import window_information
-from greybox_torch.linear_algebra import solve
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.sensor import SensorGain
 from greybox_torch.simulation.simulator import Simulator
@@ -41,7 +41,7 @@ class Moves:
     logarithms: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CommonGain:
     """A gain error that explains the moves of the parameters.
 
@@ -69,7 +69,7 @@ def with_common_gain(found: Findings) -> Findings:
         return found
     moves = moves_of(plain, found.judged.plain, settings)
     offered = [e for e in _gains(study) if not study.beliefs.exclude(e)]
-    looked = (_common_gain(study, plain, moves, e, len(offered)) for e in offered)
+    looked = (_asked(study, plain, moves, e, len(offered)) for e in offered)
     likely = sorted((g for g in looked if g is not None), key=lambda g: g.chance)
     return next((told for g in likely if (told := _told(found, moves, g, likely)) is not None), found)
 
@@ -124,7 +124,7 @@ def _names(study: Study, effect: Attachment) -> list[str]:
     return [f"{effect.prefix}.{p.name}" for p in effect.mechanism.parameters(study.surroundings[effect.port])]
 
 
-def _common_gain(study: Study, plain: Hypothesis, moves: Moves, effect: Attachment, looks: int) -> CommonGain | None:
+def _asked(study: Study, plain: Hypothesis, moves: Moves, effect: Attachment, looks: int) -> CommonGain | None:
     """What the moves say of one gain; None where the parameters do not make up for it."""
     model = augmented(study.problem, (effect,), study.surroundings)
     (gain,) = _names(study, effect)
@@ -135,10 +135,8 @@ def _common_gain(study: Study, plain: Hypothesis, moves: Moves, effect: Attachme
         return None
     own = problem.free_names.index(gain)
     rest = [i for i in range(len(known)) if i != own]
-    answer = -solve(known[np.ix_(rest, rest)], known[rest, own])
-    whole = known[own, own]
-    left = whole + known[own, rest] @ answer
-    if not whole > 0 or left > study.settings.least_not_undone * whole:
+    answer, left = made_up_for(known, [own], rest, np.ones(1))
+    if left > study.settings.least_not_undone:
         return None
     by_name = {problem.free_names[i]: a for i, a in zip(rest, answer, strict=True)}
     values = plain.values()
@@ -189,19 +187,16 @@ def _effect(study: Study, effect: Attachment, gain: CommonGain, likely: Sequence
         explained=0.0,
         alternatives=rivals,
         curve=None,
-        profiles=(),
         explanation=effect.mechanism.explanation,
         source=effect.mechanism.source,
         separating_experiment=effect.mechanism.experiment,
         size=gain.share,
-        one_of=_one_of(study, likely, {**shares, effect.named: own}, highest),
+        one_of=_one_of(study, likely, {**shares, effect.named: own}),
         made_up_for=_made_up_for(moves, gain),
     )
 
 
-def _one_of(
-    study: Study, likely: Sequence[CommonGain], shares: dict[tuple[str, str], float], highest: float
-) -> OneOf | None:
+def _one_of(study: Study, likely: Sequence[CommonGain], shares: dict[tuple[str, str], float]) -> OneOf | None:
     """The gains that the moves do not tell apart, as one statement; None where one alone is likely."""
     near = [g for g in likely if shares[g.attachment.named] >= study.settings.least_class_share]
     if len(near) < 2:

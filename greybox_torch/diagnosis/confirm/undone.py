@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -29,9 +29,20 @@ def not_undone(fitted: Hypothesis, effect: Attachment, surroundings: Mapping[str
     rest = [i for i, name in enumerate(names) if i not in own and not name.startswith(curves)]
     sizes = effect.mechanism.essential or effect.mechanism.amplitudes(surroundings[effect.port])
     amplitude = np.array([values[names[i]] * (names[i].removeprefix(f"{effect.prefix}.") in sizes) for i in own])
+    return made_up_for(known, own, rest, amplitude)[1]
+
+
+def made_up_for(
+    known: np.ndarray, own: Sequence[int], rest: Sequence[int], amplitude: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """How other parameters move to make up for a law, and the share of its squared output that is left; all where it has none.
+
+    Args:
+        known: the information (n_p, n_p) of all free parameters; ``own`` are the law's, with ``amplitude``, ``rest`` those that move.
+    """
     whole = float(amplitude @ known[np.ix_(own, own)] @ amplitude)
     onto = known[np.ix_(rest, own)] @ amplitude
     # What the others undo is the projection onto them; the Schur complement is what is left.
-    undone = float(onto @ solve(known[np.ix_(rest, rest)], onto)) if rest else 0.0
-    share = (whole - undone) / whole if whole > 0 else 1.0
-    return float(np.clip(share, 0.0, 1.0)) if np.isfinite(share) else 1.0
+    moves = solve(known[np.ix_(rest, rest)], onto) if len(rest) else onto
+    share = (whole - float(onto @ moves)) / whole if whole > 0 else 1.0
+    return -moves, float(np.clip(share, 0.0, 1.0)) if np.isfinite(share) else 1.0
