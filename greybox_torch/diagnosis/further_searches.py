@@ -10,7 +10,13 @@ from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, TimeIsUp, until
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.longer_windows import longer_windows, sentence, stands
-from greybox_torch.diagnosis.confirm.promotion import Promotion, promote_unstable, promote_validation, replaces
+from greybox_torch.diagnosis.confirm.promotion import (
+    Promotion,
+    promote_for_a_rival,
+    promote_unstable,
+    promote_validation,
+    replaces,
+)
 from greybox_torch.diagnosis.findings import Findings, judge
 from greybox_torch.diagnosis.hypothesis.start_positions import places_in
 from greybox_torch.diagnosis.places import NOWHERE, Places
@@ -86,9 +92,11 @@ def _selected(
 
 
 def _promotion(found: Selection, others: HeldOut) -> Promotion | None:
-    """The data set with one more experiment to choose with: one that cannot score, or that shows what the others do not."""
+    """The data set with one more experiment to choose with: one that cannot score, that shows what the others do
+    not, or that speaks for another name."""
     cannot_score = promote_unstable(found.dataset, _unstable(found))
-    return cannot_score or promote_validation(found.study, found.dataset, found.state, others)
+    asked = found.study, found.dataset, found.state, others
+    return cannot_score or promote_validation(*asked) or promote_for_a_rival(*asked)
 
 
 def _places(last: Selection, others: HeldOut) -> Places:

@@ -6,7 +6,9 @@ a state is neither, and something depends on it, nothing can be said without a s
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
@@ -52,15 +54,20 @@ class Motion:
         return path
 
 
-def reconstructed(problem: Problem) -> Motion | str:
-    """The motion that the outputs of a problem show; a clause that says why where they do not show it."""
+def reconstructed(problem: Problem, driven: Mapping[int, np.ndarray] = MappingProxyType({})) -> Motion | str:
+    """The motion that the outputs of a problem show; a clause that says why where they do not show it.
+
+    Args:
+        driven: states (N,) at the samples that inputs alone drive, by index: they need no sensor.
+    """
     model, records = problem.model.plain, problem.records
     sensed, outputs = sensed_states(model), [o.name for o in model.outputs]
     shown = {i: outputs.index(sensed[s.name]) for i, s in enumerate(model.states) if s.name in sensed}
     relations = kinematics_of(model)
     hidden = [] if relations is None else list(relations.hidden[relations.determined])
     unseen = model.carried_states()
-    left = [s.name for i, s in enumerate(model.states) if i not in shown and i not in hidden and s.name not in unseen]
+    known = {*shown, *hidden, *driven}
+    left = [s.name for i, s in enumerate(model.states) if i not in known and s.name not in unseen]
     if left or not shown:
         return f"no output shows {', '.join(left) or 'a state'}, or a rate that it follows from"
     missing = np.isnan(records.y)
@@ -73,15 +80,17 @@ def reconstructed(problem: Problem) -> Motion | str:
     at_samples, measured = np.zeros((2, len(model.states), whole.shape[1]))
     for i, k in shown.items():
         at_samples[i], measured[i] = _smoothed(records, whole[k], float(cutoffs[k])), whole[k]
+    for i in set(driven) - {*shown, *hidden}:
+        at_samples[i] = measured[i] = driven[i]
     if relations is not None:
         slopes = np.array([_slope(records, whole[k], float(cutoffs[k])) for k in relations.outputs])
         at_samples[hidden] = measured[hidden] = _hidden(relations, slopes, at_samples, records)[relations.determined]
-    known = np.asarray(~missing.any(axis=0))
-    if not known.all():
+    there = np.asarray(~missing.any(axis=0))
+    if not there.all():
         widest = half_width(float(cutoffs.min()), whole.shape[1])
-        known = np.convolve(~known, np.ones(2 * widest + 1), "same") < 0.5  # smoothing takes in what is beside
-    shown_states = np.array([*shown, *hidden])
-    return _between(records, at_samples, measured, known, shown_states, float(cutoffs.min()))
+        there = np.convolve(~there, np.ones(2 * widest + 1), "same") < 0.5  # smoothing takes in what is beside
+    shown_states = np.array(sorted({*shown, *hidden, *driven}))
+    return _between(records, at_samples, measured, there, shown_states, float(cutoffs.min()))
 
 
 def _hidden(relations: Kinematics, slopes: np.ndarray, states: np.ndarray, records: Records) -> np.ndarray:

@@ -6,7 +6,7 @@ import numpy as np
 import torch
 
 from greybox_torch.estimate.free_run import visited_states
-from greybox_torch.estimate.measured_deflection import with_measured
+from greybox_torch.estimate.measured_range import as_measured, farther, no_farther
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.added_declarations import position_unit
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
@@ -59,7 +59,10 @@ def _around(
     if isinstance(port, Coupling):
         hidden = frozenset(n for n, signal in port.signals.items() if not _is_measured(model, signal))
         if "deflection" in ranges and "deflection" not in hidden:
-            ranges["deflection"] = with_measured(ranges["deflection"], model, port, x, u, problem)
+            measured = as_measured(model, port.signals["deflection"], x, u, problem)
+            ranges["deflection"] = farther(ranges["deflection"], measured)
+    if isinstance(port, Body) and port.position is not None and _is_measured(model, port.position):
+        ranges["position"] = no_farther(ranges["position"], as_measured(model, port.position, x, u, problem))
     return Surroundings(ranges, units, _force_unit(port, units), float(np.median(problem.records.dt)), hidden)
 
 

@@ -28,7 +28,10 @@ LONGEST = 2.0
 def lost_in_its_deviation(
     names: Sequence[str], values: Mapping[str, float], deviations: Mapping[str, float]
 ) -> str | None:
-    """Every amplitude of ``names`` is smaller than its own standard deviation (or that is not a number), so that zero is as good."""
+    """Every amplitude of ``names`` is zero, or smaller than its standard deviation (or that is not a number): zero is as good."""
+    stated = [name for name in names if name in values]
+    if stated and all(values[name] == 0.0 for name in stated):
+        return f"{' and '.join(stated)} = 0"
     known = [name for name in names if name in deviations]
     if not known or any(abs(values[name]) > deviations[name] for name in known):
         return None

@@ -96,6 +96,7 @@ class EndStop(Mechanism):
     name = "end_stop"
     kinds = ("body",)
     needs = ("position", "speed")
+    at_rest = ("speed",)
     nature = "a force that depends on position"
     explanation = "Past a position something stiff pushes back (mechanical stop, cable)."
     source = "F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts, 1996"

@@ -58,9 +58,13 @@ def matching_laws(
 def laws_of(
     kind: str, around: Surroundings, signals: Collection[str], but: Collection[str] = ()
 ) -> Iterator[Mechanism]:
-    """The laws without memory at a kind of port that depend on no other ``signals``; ``but`` as for :func:`matching_laws`."""
+    """The laws without memory at a kind of port that depend on no other ``signals``, or not at rest.
+
+    ``but`` as for :func:`matching_laws`.
+    """
     for law in (m() for name, m in LIBRARY.items() if name not in but):
-        if kind in law.kinds and set(law.needs) <= set(signals) and not law.kinematic and not law.states(around):
+        drawn = bool(signals) and set(law.needs) - set(law.at_rest) <= set(signals)
+        if kind in law.kinds and drawn and not law.kinematic and not law.states(around):
             yield law
 
 
@@ -94,7 +98,29 @@ def _trials(
         results.append(
             Match(law, share, {**probe.values, **dict(zip(probe.directions, map(float, size), strict=True))})
         )
+    if law.at_rest and results:
+        results.append(_placed(max(results, key=lambda match: match.share), around, signals, force, root))
     return results
+
+
+def _placed(
+    match: Match, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, root: np.ndarray
+) -> Match:
+    """A match with what it has fitted to the curve: a stop begins where the force does, not where it was looked for."""
+    from scipy.optimize import least_squares  # a fifth of a second to import, which only some diagnoses need
+
+    free = [p for p in match.law.parameters(around) if not p.fixed and match.values.get(p.name, p.value) != 0.0]
+    names, (low, high) = [p.name for p in free], np.array([p.bounds for p in free]).T
+
+    def left(z: np.ndarray) -> np.ndarray:
+        values = {**match.values, **dict(zip(names, map(float, z), strict=True))}
+        return root * (force - law_force(match.law, around, signals, values))
+
+    start = np.array([match.values.get(p.name, p.value) for p in free])
+    scale = np.maximum(np.abs(start), 1e-12)
+    found = least_squares(left, np.clip(start, low, high), bounds=(low, high), x_scale=scale, max_nfev=40)
+    share = 1.0 - float(np.sum(found.fun**2)) / max(float(np.sum((root * force) ** 2)), 1e-300)
+    return Match(match.law, share, {**match.values, **dict(zip(names, map(float, found.x), strict=True))})
 
 
 def _shape_trials(
@@ -147,8 +173,12 @@ def force_columns(
 def law_force(
     law: Mechanism, around: Surroundings, signals: Mapping[str, torch.Tensor], values: Mapping[str, float]
 ) -> np.ndarray:
-    """The force (N,) of a law without memory at local signals (N,); parameters that ``values`` do not mention are as declared."""
+    """The force (N,) of a law without memory at local signals (N,), at rest where those do not say how fast it moves.
+
+    Parameters that ``values`` do not mention are as declared.
+    """
     complete = {p.name: p.value for p in law.parameters(around)} | dict(values)
     p = Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in complete.items()})
-    force = law.force(Signals("signal", signals), p, Signals("memory", {}))
+    still = dict.fromkeys(law.at_rest, torch.zeros_like(next(iter(signals.values()))))
+    force = law.force(Signals("signal", {**still, **signals}), p, Signals("memory", {}))
     return np.broadcast_to(np.asarray(force), next(iter(signals.values())).shape).astype(float)

@@ -41,6 +41,8 @@ class Mechanism:
     name: ClassVar[str]
     kinds: ClassVar[tuple[str, ...]]
     needs: tuple[str, ...] = ()
+    at_rest: ClassVar[tuple[str, ...]] = ()
+    """Signals of ``needs`` that may be zero and leave a law of the others: a stop pushes back however slowly it is met."""
     links: tuple[str, ...] = ()
     """Bodies of a chain whose positions the law uses, as signals ``position@BODY``."""
     drives: tuple[str, ...] = ()

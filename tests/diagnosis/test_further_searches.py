@@ -25,6 +25,11 @@ def no_unseen_positions(monkeypatch) -> None:
     monkeypatch.setattr(further_searches, "_places", lambda last, others: {})
 
 
+@pytest.fixture(autouse=True)
+def no_rival(monkeypatch) -> None:
+    monkeypatch.setattr(further_searches, "promote_for_a_rival", lambda *args: None)
+
+
 @pytest.fixture
 def first(stub, monkeypatch) -> Selection:
     """A search that ended, on a data set of which one more experiment shows something."""

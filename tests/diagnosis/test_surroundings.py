@@ -122,7 +122,8 @@ def test_position_of_the_model_and_missing_samples(data_set, machines: Path) -> 
     run = simulator.run(
         problem.records, Pass(whole_records(problem.records), problem.values, problem.initial, keep_states=True)
     ).states[0]
-    assert around["arm"].ranges["position"].high == run[:, 0].max()
+    assert around["arm"].ranges["position"].high == pytest.approx(0.5, abs=1e-4), "as measured"
+    assert around["arm"].ranges["speed"].high == run[:, 1].max(), "as simulated: a speed is read with more noise"
     assert around["arm"].units["position"] == "rad"
     assert around["sensor.position"].ranges["output"].high == np.nanmax(angle)
     assert set(around) == {"arm", "actuator", "sensor.position", "sensor.velocity"}
@@ -160,3 +161,29 @@ def test_a_difference_of_lengths_is_a_length() -> None:
     spring, lever = found["spring"], found["lever"]
     assert (spring.units["deflection"], spring.units["rate"], spring.force_unit) == ("m", "m/s", "N")
     assert "deflection" not in lever.units and lever.force_unit == ""
+
+
+def test_a_measured_position_ranges_as_far_as_the_sensor_shows(data_set) -> None:
+    """Seen: a leg whose model lacks the knee's stop: it ran to 0.66 rad, the knee to 0.08, and a stop was looked for beyond that."""
+
+    class Sled(TwoMasses):
+        ports = [
+            gt.Body("first", position="q_1", speed="w_1"),
+            gt.Body("apart", position=lambda x, u, p: x.q_2 - x.q_1, speed="w_2"),
+        ]
+
+    time = np.arange(400) * 0.01
+    q = np.minimum(np.sin(time), 0.5)
+    data = data_set(
+        {"force": "N", "first": "m", "second": "m"},
+        [{"force": np.ones(400), "first": q, "second": np.zeros(400)}],
+        roles=["estimation"],
+        sample_time=0.01,
+    )
+    problem = make_problem(data, Sled(), data.estimation())
+    states = np.zeros((400, 4))
+    states[:, 0] = np.linspace(-3.0, 3.0, 400)
+    found = surroundings_along(Sled(), problem, states)
+    first, apart = (found[name].ranges["position"] for name in ("first", "apart"))
+    assert (first.low, first.high) == pytest.approx((q.min(), 0.5), abs=0.02)
+    assert (apart.low, apart.high) == pytest.approx((-0.5, -q.min()), abs=0.02)

@@ -174,3 +174,11 @@ def test_every_mechanism_answers(law: type[Mechanism], around: Surroundings) -> 
     }
     answer = mechanism.degenerate(around, tiny, dict.fromkeys(tiny, 1.0) if amplitudes else dict.fromkeys(tiny, np.inf))
     assert answer is not None and "standard deviation" in answer
+
+
+@pytest.mark.parametrize("name", SOUND)
+def test_a_law_whose_amplitudes_are_all_zero_is_none_whatever_is_known_of_them(name: str, around: Surroundings) -> None:
+    """Seen: a stop of stiffness 0 and damping 0, told (0.96) beside a backlash."""
+    law = law_of(name)
+    nothing = {**SOUND[name], **dict.fromkeys(law.essential or law.amplitudes(around), 0.0)}
+    assert str(law.degenerate(around, nothing, {})).endswith(" = 0")

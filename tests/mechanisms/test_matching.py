@@ -118,3 +118,18 @@ def test_a_gain_is_neither_saturation_nor_dead_band() -> None:
     found = {m.law.name: m.share for m in matching_laws("actuator", AT_DRIVE, {"input": INPUT}, curve, EVENLY)}
     assert max(found, key=lambda name: found[name]) == "input_gain"
     assert found["torque_saturation"] == found["actuator_deadzone"] == 0.0
+
+
+@pytest.mark.parametrize(("side", "where"), [(1.0, 3.1), (-1.0, -3.7)])
+def test_a_stop_draws_a_curve_over_the_position_at_rest(side: float, where: float) -> None:
+    """Seen: a knee's stop, told as an unknown curve over its angle: the law also depends on the speed, and was not asked."""
+    stop = LIBRARY["end_stop"]()
+    drawn = {"k": 40.0, "where": where, "c": 3.0, "side": side}
+    force = law_force(stop, AROUND, {"position": SPEED}, drawn)
+    moving = law_force(stop, AROUND, {"position": SPEED, "speed": torch.full_like(SPEED, side)}, drawn)
+    assert np.abs(moving - force).max() == pytest.approx(3.0)
+    best = worth_a_refit(matching_laws("body", AROUND, {"position": SPEED}, force, EVENLY))[0]
+    assert best.law.name == "end_stop" and best.share == pytest.approx(1.0, abs=1e-6)
+    assert best.values["where"] == pytest.approx(where, abs=0.01) and best.values["k"] == pytest.approx(40.0, rel=0.01)
+    assert (best.values["c"], best.values["side"]) == (0.0, side)
+    assert "end_stop" not in {m.law.name for m in matching_laws("body", AROUND, {"speed": SPEED}, force, EVENLY)}

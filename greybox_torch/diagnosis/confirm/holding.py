@@ -139,9 +139,12 @@ def _undone(study: Study, state: SearchState, by_effect: Mapping[str, float]) ->
 
 
 def _share_kept(study: Study, effect: Attachment, before: Mapping[str, float], after: Mapping[str, float]) -> float:
-    """What is left of an effect's amplitudes, of the one that keeps most, from one estimate to another."""
+    """What is left of an effect's amplitudes, of the one that keeps most, from one estimate to another.
+
+    One that was zero before has nothing to keep.
+    """
     names = [f"{effect.prefix}.{n}" for n in effect.mechanism.amplitudes(study.surroundings[effect.port])]
-    return max((abs(after[n]) / abs(before[n]) if before[n] else 1.0 for n in names), default=1.0)
+    return max((abs(after[n]) / abs(before[n]) for n in names if before[n]), default=1.0)
 
 
 def _proven(gain: Gain | None, settings: DiagnosisSettings) -> bool:

@@ -10,6 +10,8 @@ import numpy as np
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain, size
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
+from greybox_torch.diagnosis.one_of import spoken_at
+from greybox_torch.diagnosis.select.rivals_beside import in_its_place
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 
@@ -64,6 +66,27 @@ def promote_validation(study: Study, dataset: DataSet, state: SearchState, other
         return None
     why = f"the model found before leaves {errors[worst]:.2g} times the noise there, which the estimation experiments do not show so"
     return Promotion.of(dataset, recordings[worst].name, why)
+
+
+def promote_for_a_rival(study: Study, dataset: DataSet, state: SearchState, others: HeldOut) -> Promotion | None:
+    """The data set with a validation experiment among those to choose with that a rival of what was found predicts better, beyond chance.
+
+    None where held-out experiments speak for no rival, or where no validation experiment would be left. The estimation experiments left the
+    names undecided, or decided them by what other effects, not quite the machine's, leave there.
+    """
+    recordings, settings = dataset.validation(), study.settings
+    if len(recordings) < 2 or not state.effects or np.max(others.times_noise(state.current)) < settings.rival_error:
+        return None
+    found = others.fits(state.current)
+    for effect in state.effects:
+        for rival in in_its_place(study, state, effect, settings.rival_margin):
+            further = gain(found, others.fits(rival))
+            if further.errors_away > settings.held_out_beyond_chance and further.share > settings.least_gain:
+                better = others.times_noise(state.current) / others.times_noise(rival)
+                law = next(e for e in rival.effects if e not in state.effects)
+                why = f"{spoken_at(*law.named[::-1])} instead of {spoken_at(*effect.named[::-1])} predicts it better"
+                return Promotion.of(dataset, recordings[int(np.argmax(better))].name, why)
+    return None
 
 
 def replaces(others: HeldOut, before: SearchState, after: SearchState, settles: bool = False) -> bool:

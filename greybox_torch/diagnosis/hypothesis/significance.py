@@ -31,8 +31,9 @@ def window_significance(before: Hypothesis, after: Hypothesis, settings: Diagnos
     """How many standard errors the improvement is away from none: the largest over the window lengths.
 
     Judged over windows, so that errors which are correlated within a window count once: by the mean difference of the windows'
-    energies; by the mean of their logarithmic ratio, which sees an effect whose size varies by orders of magnitude; and by how far the
-    ratio of a single window stands out from that of the others, which sees an effect that acts at one place of the record (a stop).
+    energies; by the mean of their logarithmic ratio, which sees an effect whose size varies by orders of magnitude; by how far the
+    ratio of a single window stands out from that of the others, which sees an effect that acts at one place of the record (a stop); and,
+    where most of the energy goes, by how alike the windows are in that.
     """
     best = 0.0
     for old, new in zip(before.fits, after.fits, strict=True):
@@ -44,6 +45,7 @@ def window_significance(before: Hypothesis, after: Hypothesis, settings: Diagnos
                 _standard_errors(old.energies - new.energies),
                 _standard_errors(ratio),
                 _standing_out(ratio, settings.least_ratio_spread),
+                _most_removed(old.energies, new.energies, settings.most_of_the_mismatch),
             )
     return best
 
@@ -58,3 +60,24 @@ def _standing_out(ratio: np.ndarray, least_spread: float) -> float:
 def _standard_errors(values: np.ndarray) -> float:
     spread = float(np.std(values, ddof=1)) / np.sqrt(len(values))
     return float(values.mean()) / max(spread, 1e-300)
+
+
+def _most_removed(before: np.ndarray, after: np.ndarray, least: float) -> float:
+    """By how many standard errors the share of the energy that goes lies above zero, as normal deviates; zero where it is below ``least``.
+
+    Windows whose energies differ by orders of magnitude scatter by that, however alike the share is that each loses. The share is a ratio
+    estimate, and only windows that have energy say anything of it: Student's t with as many degrees of freedom as their effective number,
+    less one. Seen: a weight that a fan lifts: 95 % of the error gone, and the mean over windows 2.2 standard errors from zero.
+
+    Source: W. G. Cochran, Sampling Techniques, 1977, section 2.11; L. Kish, Survey Sampling, 1965, for the effective number.
+    """
+    total = float(before.sum())
+    share = float((before - after).sum()) / max(total, 1e-300)
+    freedom = total**2 / max(float((before**2).sum()), 1e-300) - 1.0
+    if share < least or freedom <= 0.0:
+        return 0.0
+    from scipy.special import ndtri, stdtr  # not every diagnosis needs it
+
+    scatter = float(np.std(before - after - share * before, ddof=1)) * np.sqrt(len(before)) / total
+    chance = float(stdtr(freedom, -share / max(scatter, 1e-12)))
+    return float(-ndtri(max(chance, 1e-300)))

@@ -13,8 +13,10 @@ from greybox_torch.diagnosis.select.bent_model import from_the_card, narrowed
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.errors import NumericalError
-from greybox_torch.estimate.reconstruction import reconstructed
+from greybox_torch.estimate.driven_states import driven_states, simulated_driven
+from greybox_torch.estimate.reconstruction import Motion, reconstructed
 from greybox_torch.estimate.shifted_states import shifted_states
+from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.estimate.surroundings import surroundings_along
 from greybox_torch.estimate.window_fit import states_along
 
@@ -27,7 +29,7 @@ def fit_plain_model(study: Study) -> tuple[Study, SearchState]:
     """
     study.report("refitting the model as it stands")
     model = study.problem.model
-    study = replace(study, motion=reconstructed(study.problem) if study.motion is None else study.motion)
+    study = replace(study, motion=_motion(study) if study.motion is None else study.motion)
     views = views_of(study.problem, study.motion)
     plain = fit(study, (), [study.card, *([] if isinstance(views, str) else views.starts())], None)
     if plain is None and (others := _around(study)):
@@ -49,6 +51,14 @@ def fit_plain_model(study: Study) -> tuple[Study, SearchState]:
         at_card=at_card if narrower != around else (),
     )
     return study, SearchState(plain, plain)
+
+
+def _motion(study: Study) -> Motion | str:
+    """The motion that the outputs show, states that inputs alone drive as the card has them."""
+    problem = study.problem
+    if not driven_states(problem.model.plain):
+        return reconstructed(problem)
+    return reconstructed(problem, simulated_driven(problem, simulator_for(problem, study.options)))
 
 
 def _around(study: Study) -> list[dict[str, float]]:

@@ -5,18 +5,23 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
+from greybox_torch.diagnosis.refit.behind_curve import laws_behind_curve
+from greybox_torch.diagnosis.refit.ranked import in_order, judged
+from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.choice import priced_score
 from greybox_torch.diagnosis.select.explore import explore, nothing_is_left
 from greybox_torch.diagnosis.select.forward import take_effects
-from greybox_torch.diagnosis.select.forward_step import forward_step
+from greybox_torch.diagnosis.select.forward_step import forward_step, take_best
 from greybox_torch.diagnosis.select.memory import with_memory
 from greybox_torch.diagnosis.select.posterior import separated
+from greybox_torch.diagnosis.select.rivals_beside import rivalled_beside_others
 from greybox_torch.diagnosis.select.sparser_curve import with_sparser_curve
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage, result_of
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.unknown import Unknown
 
 
 def search(study: Study, state: SearchState) -> Stage[SearchState]:
@@ -49,9 +54,16 @@ def revise(study: Study, state: SearchState) -> Stage[SearchState]:
     price = partial(priced_score, settings=study.settings)
     newest = state.newest
     for effect in state.effects:
-        beside_others = beside_what_is_gone(state, effect) and not nothing_is_left(study, state)
+        gone = beside_what_is_gone(state, effect)
+        if gone and isinstance(effect.mechanism, Unknown):
+            named = yield from _named_behind(study, state, effect)
+            if named is not state:
+                return named
+        beside_others = gone and not effect.mechanism.free and not nothing_is_left(study, state)
         doubtful = effect.prefix != newest and (
-            not beyond_doubt(study, state, effect) or lost_an_amplitude(study, state, effect)
+            not beyond_doubt(study, state, effect)
+            or lost_an_amplitude(study, state, effect)
+            or rivalled_beside_others(study, state, effect)
         )
         if not (doubtful or beside_others):
             continue
@@ -65,15 +77,29 @@ def revise(study: Study, state: SearchState) -> Stage[SearchState]:
     return state
 
 
+def _named_behind(study: Study, state: SearchState, curve: Attachment) -> Stage[SearchState]:
+    """The state with a law in the place of a free curve that draws it; as it is where none does as well.
+
+    Seen: a knee's stop, told as a curve: three laws stood for parts of it until the curve came, and without them it was asked for no name.
+    """
+    study.working_on(f"asking for a law behind {curve.prefix}")
+    parent = state.without[curve.prefix]
+    drawn = judged(Candidate(curve, (), 0.0), parent, state.current, study.settings)
+    laws = laws_behind_curve(study, parent, [drawn], frozenset())
+    named = result_of(take_best(study, state.at(parent), (), in_order([drawn, *laws], study.settings)))
+    if not named.took_one or curve.prefix in named.prefixes:
+        return state
+    yield named
+    return (yield from drop_superfluous(study, named))
+
+
 def beside_what_is_gone(state: SearchState, effect: Attachment) -> bool:
     """Whether a law was chosen beside others of which one is no longer there.
 
     Seen: a sensor's dead time, told as a lag (0.97), which did better beside a curve and a delay that both fell away.
     """
     done = state.step_of(effect.prefix)
-    if done is None or effect.mechanism.free:
-        return False
-    return any(e.prefix not in state.prefixes for e in done.parent.effects)
+    return done is not None and any(e.prefix not in state.prefixes for e in done.parent.effects)
 
 
 def beyond_doubt(study: Study, state: SearchState, effect: Attachment) -> bool:

@@ -63,5 +63,5 @@ def second_step(study: Study, first: SearchState) -> Stage[SearchState]:
 
 
 def _refitted_alone(ranked: tuple[RankedCandidate, ...], law: Attachment) -> RankedCandidate | None:
-    """The refit of a law among those of a step."""
-    return next((r for r in ranked if r.candidate.attachment.named == law.named), None)
+    """The refit of a law among those of a step; not one of the same name by another label, such as a ripple of another order."""
+    return next((r for r in ranked if r.candidate.attachment.prefix == law.prefix), None)

@@ -138,6 +138,18 @@ class ConfirmationSettings:
         unit="share of the plain model's error",
         chosen_by="cases simulated elsewhere: from less, searching again never bettered what was found",
     )
+    rival_error: float = ratio(
+        1.1,
+        "Error of what was found from which validation experiments are asked about its rivals.",
+        unit=NOISE_MULTIPLE,
+        chosen_by="what is right leaves 1.00 to 1.05 there",
+    )
+    rival_margin: float = share(
+        0.1,
+        "By how much a rival may have lost for held-out experiments to be asked about it.",
+        unit="difference in the logarithm of the mean squared error",
+        chosen_by="twins of time in three proofs: right ones lost by up to 0.09 while a stop or a limit beside them was not the machine's",
+    )
     slow_share: float = share(
         0.25,
         "Part of the mismatch of free runs that must be left, where windows show noise alone, for longer ones to be searched; "

@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select import forward
 from greybox_torch.diagnosis.select.forward import _named_instead
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
-from greybox_torch.diagnosis.select.two_laws import with_first_of_two
+from greybox_torch.diagnosis.select.two_laws import second_step, with_first_of_two
 from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.attachment import attach
@@ -90,3 +90,27 @@ def nothing(state: SearchState) -> Any:
     """A branch that finds nothing."""
     yield state
     return state
+
+
+def test_a_law_of_the_same_name_by_another_label_is_not_the_first_of_two(drawn) -> None:
+    """Seen: a pan-tilt head on a spring: the step had a ripple of another order by the same name, and the diagnosis ended in an error."""
+    search, with_curve = drawn(uneven)
+    (step,) = with_curve.steps
+    first = with_first_of_two(search.study, search.state, with_curve)
+    assert first is not None
+    own = first.steps[-1].taken
+    assert own is not None
+    labelled = replace(own.candidate.attachment, label="_2")
+    other = judged(
+        replace(own.candidate, attachment=labelled),
+        search.plain,
+        search.refitted((labelled,), search.plain),
+        search.study.settings,
+    )
+    with_other = replace(with_curve, steps=(replace(step, ranked=(*step.ranked, other)),))
+    again = with_first_of_two(search.study, search.state, with_other)
+    assert again is not None and again.prefixes == first.prefixes
+    assert {e.mechanism.name for e in result_of(second_step(search.study, again)).effects} == {
+        "coulomb_friction",
+        "coulomb_asymmetry",
+    }

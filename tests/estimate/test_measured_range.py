@@ -1,4 +1,4 @@
-"""How far a coupling deflects by its sensors: farther than a model without play says, noise aside."""
+"""How far a signal goes by its sensors: farther than a model without play says, less far than one without a stop, noise aside."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from greybox_torch.estimate.measured_deflection import farther
+from greybox_torch.estimate.measured_range import farther, no_farther
 from greybox_torch.mechanisms.surroundings import Range
 
 SIMULATED = Range(-0.006, 0.004, 0.002)
@@ -32,3 +32,13 @@ def test_play_that_the_model_lacks_is_taken_in(seed: int, noise: float, missing:
 
 def test_few_samples_say_nothing() -> None:
     assert farther(SIMULATED, np.array([1.0, np.nan, -1.0])) == SIMULATED
+
+
+@given(seed=st.integers(0, 10**6), noise=st.floats(0.0, 2e-4))
+def test_what_a_model_without_a_stop_runs_past_is_left_out(seed: int, noise: float) -> None:
+    rng, time = np.random.default_rng(seed), np.arange(4000)
+    measured = np.minimum(np.sin(time / 150.0), 0.2) + noise * rng.standard_normal(4000)
+    found = no_farther(Range(-1.0, 0.9, 0.7), measured)
+    assert abs(found.low + 1.0) < 1e-3 and abs(found.high - 0.2) < 1e-3
+    assert found.rms == np.sqrt(np.mean(measured**2))
+    assert no_farther(SIMULATED, np.full(4000, 1.0)) == SIMULATED, "what never moves has no range"
