@@ -96,7 +96,7 @@ def _promotion(found: Selection, others: HeldOut) -> Promotion | None:
     not, or that speaks for another name."""
     cannot_score = promote_unstable(found.dataset, _unstable(found))
     asked = found.study, found.dataset, found.state, others
-    return cannot_score or promote_validation(*asked) or promote_for_a_rival(*asked)
+    return cannot_score or promote_validation(*asked) or promote_for_a_rival(*asked, found.gains)
 
 
 def _places(last: Selection, others: HeldOut) -> Places:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 
 from greybox_torch.data import DataSet
-from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain, size
+from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, size
+from greybox_torch.diagnosis.confirm.standing import refinements, sizes
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.select.rivals_beside import in_its_place
@@ -68,17 +70,27 @@ def promote_validation(study: Study, dataset: DataSet, state: SearchState, other
     return Promotion.of(dataset, recordings[worst].name, why)
 
 
-def promote_for_a_rival(study: Study, dataset: DataSet, state: SearchState, others: HeldOut) -> Promotion | None:
+def promote_for_a_rival(
+    study: Study,
+    dataset: DataSet,
+    state: SearchState,
+    others: HeldOut,
+    gains: Mapping[str, Gain] = MappingProxyType({}),
+) -> Promotion | None:
     """The data set with a validation experiment among those to choose with that a rival of what was found predicts better, beyond chance.
 
     None where held-out experiments speak for no rival, or where no validation experiment would be left. The estimation experiments left the
-    names undecided, or decided them by what other effects, not quite the machine's, leave there.
+    names undecided, or decided them by what other effects, not quite the machine's, leave there. Effects too small to be findings are not
+    asked about.
+
+    Args:
+        gains: by effect, on held-out experiments.
     """
     recordings, settings = dataset.validation(), study.settings
     if len(recordings) < 2 or not state.effects or np.max(others.times_noise(state.current)) < settings.rival_error:
         return None
-    found = others.fits(state.current)
-    for effect in state.effects:
+    found, small = others.fits(state.current), refinements(study, state, others, gains, sizes(study, state, gains))
+    for effect in (e for e in state.effects if e.prefix not in small):
         for rival in in_its_place(study, state, effect, settings.rival_margin):
             further = gain(found, others.fits(rival))
             if further.errors_away > settings.held_out_beyond_chance and further.share > settings.least_gain:

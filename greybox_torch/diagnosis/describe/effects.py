@@ -82,7 +82,7 @@ def _effect(
     gain: Gain | None,
     left: float,
 ) -> Effect:
-    taken = state.step_of(attachment.prefix)
+    taken = state.step_beside_others(attachment.prefix)
     probability, alternatives = _probability(study, state, attachment, taken, left)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     profiles = _profiles(study, state, model, attachment, site)

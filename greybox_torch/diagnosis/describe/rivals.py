@@ -41,7 +41,7 @@ def rivals(state: SearchState, settings: DiagnosisSettings, beliefs: Beliefs = N
     """
     found: list[Rival] = []
     for effect in state.effects:
-        step = state.step_of(effect.prefix)
+        step = state.step_beside_others(effect.prefix)
         if step is None or step.taken is None or step.taken.unknown:
             continue
         ranked = shares(step.taken, step.ranked, settings, beliefs, step.led)

@@ -86,6 +86,17 @@ class SearchState:
             None,
         )
 
+    def step_beside_others(self, prefix: str) -> SelectionStep | None:
+        """The step in which an effect was taken, without the rivals that were found themselves since: they are not in its place.
+
+        Seen: a servo's pendulum, told as "Coulomb friction, or a sensor's lag" and the sensor's lag.
+        """
+        done = self.step_of(prefix)
+        if done is None or done.taken is None:
+            return done
+        found = self.prefixes - {prefix}
+        return replace(done, ranked=tuple(r for r in done.ranked if r.candidate.attachment.prefix not in found))
+
     def with_law(self, effect: Attachment, law: Attachment) -> tuple[Attachment, ...]:
         """The effects with ``law`` in the place of ``effect``."""
         return tuple(law if e.prefix == effect.prefix else e for e in self.effects)

@@ -98,3 +98,14 @@ def test_a_curve_that_stands_alone_at_last_is_asked_for_a_name(motor_data, motor
     state = SearchState(search.plain, fitted, (step,), without={curve.prefix: search.plain})
     revised = result_of(revise(search.study, state))
     assert {e.mechanism.name for e in revised.effects} == ({"coulomb_friction"} if gone else {"unknown"})
+
+
+def test_what_was_found_itself_is_no_rival_of_what_was_found_before(told) -> None:
+    """Seen: a servo's pendulum, told as "Coulomb friction, or a sensor's lag" and the sensor's lag."""
+    search, _, state, laws = told("coulomb_friction", "quadratic_drag")
+    (step,) = state.steps
+    bias = replace(step.ranked[1], candidate=Candidate(state.effects[1], (), 0.5))
+    state = replace(state, steps=(replace(step, ranked=(*step.ranked, bias)),))
+    told_step = state.step_beside_others(laws["coulomb_friction"].prefix)
+    assert told_step is not None and told_step.ranked == step.ranked and told_step.taken is step.taken
+    assert state.step_beside_others(state.effects[1].prefix) is None, "no step on record"
