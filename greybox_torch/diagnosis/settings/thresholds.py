@@ -13,6 +13,7 @@ from greybox_torch.diagnosis.settings.choosing import (
 )
 from greybox_torch.diagnosis.settings.claiming import ConfirmationSettings, ProbabilitySettings, ResidualSettings
 from greybox_torch.diagnosis.settings.fields import check
+from greybox_torch.diagnosis.settings.searching_again import SearchingAgainSettings
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,13 +21,14 @@ class DiagnosisSettings(
     ResidualSettings,
     ProbabilitySettings,
     CardSettings,
+    SearchingAgainSettings,
     ConfirmationSettings,
     SelectionSettings,
     ComparisonSettings,
     ScreenSettings,
     NoiseSettings,
 ):
-    """By what a diagnosis decides: noise, screen, comparison, selection, confirmation, probability, tests of residuals.
+    """By what a diagnosis decides: noise, screen, comparison, selection, confirmation, searching again, probability, tests of residuals.
 
     Every field says in its metadata what it means, its unit and what its default was chosen by; :func:`setting_rows` tabulates that.
 
