@@ -35,12 +35,13 @@ def flexed(study: Study, before: SearchState, after: SearchState) -> SearchState
 
 
 def wider_laws(study: Study, state: SearchState) -> Iterator[tuple[Attachment, SelectionStep, RankedCandidate]]:
-    """The laws of a state with the step that took each, and the best law of that step that contains it."""
+    """The laws of a state with the step that took each, and the best law of that step that contains it and is not there itself."""
     for effect in state.effects:
         done = state.step_of(effect.prefix)
         if done is None or done.taken is None:
             continue
-        contain = (r for r in done.ranked if _contains(r.candidate.attachment, effect) and sound(study, r))
+        others = (r for r in done.ranked if r.candidate.attachment.prefix not in state.prefixes)
+        contain = (r for r in others if _contains(r.candidate.attachment, effect) and sound(study, r))
         wider = next(contain, None)
         if wider is not None and wider.fitted.score < done.taken.fitted.score:
             yield effect, done, wider

@@ -9,7 +9,7 @@ import pytest
 
 from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
-from greybox_torch.diagnosis.select.flexed import flexed
+from greybox_torch.diagnosis.select.flexed import flexed, wider_laws
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import TorqueRipple
@@ -77,3 +77,11 @@ def test_where_nothing_was_taken_nothing_flexes(sticking) -> None:
     study, before, *_ = sticking
     idle = replace(before, steps=(*before.steps, SelectionStep((), before.current, (), None)))
     assert flexed(study, before, idle) is None
+
+
+def test_a_law_that_is_there_itself_takes_no_other_place(motor, sticking) -> None:
+    """Seen: Coulomb friction and bristles at an arm: the diagnosis ended with "'states' names arm.presliding_hysteresis.bristle twice"."""
+    study, before, fits, wide = sticking
+    assert list(wider_laws(study, before))
+    both = before.at(replace(before.current, effects=(*before.effects, wide)))
+    assert not list(wider_laws(study, both))
