@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise
+from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, noise_over_windows
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.hypothesis.significance import overall_significance, white_samples
@@ -42,6 +42,19 @@ def part_of_a_curve(led: RankedCandidate, paying: Sequence[RankedCandidate], set
     """Whether a name removes but a part of what a free curve removes, which by itself is no finding: then it is none either."""
     most = max((r.gain for r in paying if r.unknown), default=0.0)
     return not led.unknown and most > settings.curve_far_ahead * led.gain
+
+
+def as_unsure_as_a_name(
+    led: RankedCandidate, parent: Hypothesis, in_turn: Sequence[RankedCandidate], settings: DiagnosisSettings
+) -> bool:
+    """Whether a free curve leads where windows leave hardly more than noise, and goes hardly farther than a name that is not sure itself.
+
+    Seen: a complete arm whose slow drift a constant force drew nearly as well, which was not sure; the curve was told (0.95).
+    """
+    if not led.unknown or not noise_over_windows(parent, settings):
+        return False
+    names = [r for r in in_turn if not r.unknown and r.gain > settings.least_gain]
+    return bool(names) and chosen([names[0], led], parent, settings) is names[0]
 
 
 def alone_at_noise(curve: Hypothesis, named: Hypothesis, plain: Hypothesis, settings: DiagnosisSettings) -> bool:

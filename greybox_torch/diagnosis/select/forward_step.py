@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, soun
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist, with_motion
-from greybox_torch.diagnosis.select.choice import chosen, least_gain, part_of_a_curve
+from greybox_torch.diagnosis.select.choice import as_unsure_as_a_name, chosen, least_gain, part_of_a_curve
 from greybox_torch.diagnosis.select.compare import Comparison, compare
 from greybox_torch.diagnosis.select.finer_curve import with_finer_curve
 from greybox_torch.diagnosis.select.found_before import with_found_before
@@ -90,6 +90,8 @@ def _take(study: Study, state: SearchState, screened: Screened, compared: Compar
         paying = [r for r in paying if completes(r.fitted, settings)]
     led = chosen([r for r in paying if not r.unknown or substantial(study, state, r)], state.plain, settings)
     if led is not None and part_of_a_curve(led, paying, settings):
+        led = None
+    if led is not None and as_unsure_as_a_name(led, state.current, in_turn, settings):
         led = None
     taken = None if led is None else believed(led, paying, settings, study.beliefs)
     step = SelectionStep(screened, state.current, tuple(in_turn), taken, None if taken is led else led)

@@ -13,7 +13,8 @@ from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.screen.candidates import candidates
 from greybox_torch.diagnosis.screen.score_test import ScreenScore, _sound
 from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
-from greybox_torch.diagnosis.select.choice import chosen, part_of_a_curve, simplest
+from greybox_torch.diagnosis.select import choice
+from greybox_torch.diagnosis.select.choice import as_unsure_as_a_name, chosen, part_of_a_curve, simplest
 from greybox_torch.diagnosis.select.forward_step import substantial
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
@@ -80,6 +81,25 @@ def test_a_name_that_is_part_of_what_a_curve_removes_is_none(ranked) -> None:
         assert part_of_a_curve(named, [curve, named], SETTINGS) is part
         assert not part_of_a_curve(curve, [curve, named], SETTINGS)
     assert not part_of_a_curve(named, [named], SETTINGS)
+
+
+@pytest.mark.parametrize(
+    ("named", "at_noise", "unsure"), [(0.092, True, True), (0.092, False, False), (0.01, True, False)]
+)
+def test_a_curve_hardly_beyond_a_name_that_is_not_sure_is_not_sure_at_the_noise(
+    ranked, monkeypatch, named: float, at_noise: bool, unsure: bool
+) -> None:
+    """Seen: a complete arm whose slow drift a constant force drew nearly as well; the curve was told (0.95)."""
+    monkeypatch.setattr(choice, "noise_over_windows", lambda fitted, settings: at_noise)
+
+    def gaining(mechanism: Any, gain: float) -> RankedCandidate:
+        return replace(ranked(mechanism, np.full(WINDOWS, 1.0)), gain=gain)
+
+    bias, curve = gaining(ConstantBias(), named), gaining(Unknown("speed"), 0.119)
+    assert as_unsure_as_a_name(curve, curve.fitted, [curve, bias], SETTINGS) is unsure
+    assert not as_unsure_as_a_name(bias, curve.fitted, [bias, curve], SETTINGS), "a name leads"
+    far = gaining(Unknown("speed"), named + 2.0)
+    assert not as_unsure_as_a_name(far, curve.fitted, [far, bias], SETTINGS), "it goes much farther"
 
 
 def test_a_curve_is_also_refitted_from_a_part_of_it(dead_zone_search) -> None:
