@@ -8,6 +8,9 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import reaches_noise
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
+NEARLY_ALL = 0.9
+"""Share of the energy from which it counts how alike windows are in losing it. A curve removed 0.8 of two tanks' by chance."""
+
 
 def overall_significance(worse: Hypothesis, better: Hypothesis, settings: DiagnosisSettings) -> float:
     """How many standard errors ``better`` is better: by windows or, at the noise, by likelihood."""
@@ -33,7 +36,7 @@ def window_significance(before: Hypothesis, after: Hypothesis, settings: Diagnos
     Judged over windows, so that errors which are correlated within a window count once: by the mean difference of the windows'
     energies; by the mean of their logarithmic ratio, which sees an effect whose size varies by orders of magnitude; by how far the
     ratio of a single window stands out from that of the others, which sees an effect that acts at one place of the record (a stop); and,
-    where most of the energy goes, by how alike the windows are in that.
+    where nearly all of the energy goes, by how alike the windows are in that.
     """
     best = 0.0
     for old, new in zip(before.fits, after.fits, strict=True):
@@ -45,7 +48,7 @@ def window_significance(before: Hypothesis, after: Hypothesis, settings: Diagnos
                 _standard_errors(old.energies - new.energies),
                 _standard_errors(ratio),
                 _standing_out(ratio, settings.least_ratio_spread),
-                _most_removed(old.energies, new.energies, settings.most_of_the_mismatch),
+                _nearly_all_removed(old.energies, new.energies),
             )
     return best
 
@@ -62,8 +65,8 @@ def _standard_errors(values: np.ndarray) -> float:
     return float(values.mean()) / max(spread, 1e-300)
 
 
-def _most_removed(before: np.ndarray, after: np.ndarray, least: float) -> float:
-    """By how many standard errors the share of the energy that goes lies above zero, as normal deviates; zero where it is below ``least``.
+def _nearly_all_removed(before: np.ndarray, after: np.ndarray) -> float:
+    """By how many standard errors the share of the energy that goes lies above zero, as normal deviates; zero where much of it stays.
 
     Windows whose energies differ by orders of magnitude scatter by that, however alike the share is that each loses. The share is a ratio
     estimate, and only windows that have energy say anything of it: Student's t with as many degrees of freedom as their effective number,
@@ -74,7 +77,7 @@ def _most_removed(before: np.ndarray, after: np.ndarray, least: float) -> float:
     total = float(before.sum())
     share = float((before - after).sum()) / max(total, 1e-300)
     freedom = total**2 / max(float((before**2).sum()), 1e-300) - 1.0
-    if share < least or freedom <= 0.0:
+    if share < NEARLY_ALL or freedom <= 0.0:
         return 0.0
     from scipy.special import ndtri, stdtr  # not every diagnosis needs it
 
