@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, size
 from greybox_torch.diagnosis.confirm.standing import refinements, sizes
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
 from greybox_torch.diagnosis.one_of import spoken_at
-from greybox_torch.diagnosis.select.rivals_beside import in_its_place
+from greybox_torch.diagnosis.select.rivals_beside import rivals_in_its_place
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 
@@ -91,7 +91,7 @@ def promote_for_a_rival(
         return None
     found, small = others.fits(state.current), refinements(study, state, others, gains, sizes(study, state, gains))
     for effect in (e for e in state.effects if e.prefix not in small):
-        for rival in in_its_place(study, state, effect, settings.rival_margin):
+        for rival in rivals_in_its_place(study, state, effect, settings.rival_margin):
             further = gain(found, others.fits(rival))
             if further.errors_away > settings.held_out_beyond_chance and further.share > settings.least_gain:
                 better = others.times_noise(state.current) / others.times_noise(rival)

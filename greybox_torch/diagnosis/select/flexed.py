@@ -7,7 +7,7 @@ that contain what was found are asked first: one effect that comes as far as two
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
@@ -52,15 +52,24 @@ def _contains(law: Attachment, effect: Attachment) -> bool:
 
 
 def in_its_place(
-    study: Study, state: SearchState, effect: Attachment, done: SelectionStep, wider: RankedCandidate
+    study: Study,
+    state: SearchState,
+    effect: Attachment,
+    done: SelectionStep,
+    other: RankedCandidate,
+    starts: Sequence[dict[str, float]] = (),
 ) -> Hypothesis | None:
-    """The hypothesis of ``state`` with ``wider`` in the place of ``effect``."""
-    law = wider.candidate.attachment
+    """The hypothesis of ``state`` with ``other``, of the step that took ``effect``, in the place of that.
+
+    Args:
+        starts: further values to begin with than those of ``state`` with the law's own.
+    """
+    law = other.candidate.attachment
     if state.effects == (*done.parent.effects, effect):
-        return wider.fitted
+        return other.fitted
     study.working_on(f"trying {law.prefix} in the place of {effect.prefix}")
-    start = state.current.values() | {n: v for n, v in wider.fitted.values().items() if n.startswith(f"{law.prefix}.")}
-    return fit(study, state.with_law(effect, law), [start], state.current.fits[0])
+    own = {n: v for n, v in other.fitted.values().items() if n.startswith(f"{law.prefix}.")}
+    return fit(study, state.with_law(effect, law), [state.current.values() | own, *starts], state.current.fits[0])
 
 
 def widened(state: SearchState, done: SelectionStep, wider: RankedCandidate, found: Hypothesis) -> SearchState:

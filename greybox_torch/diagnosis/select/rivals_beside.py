@@ -11,8 +11,8 @@ from itertools import islice
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, sound
-from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.choice import priced_score
+from greybox_torch.diagnosis.select.flexed import in_its_place
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
@@ -21,10 +21,12 @@ from greybox_torch.mechanisms.attachment import Attachment
 def rivalled_beside_others(study: Study, state: SearchState, effect: Attachment) -> bool:
     """Whether a rival of ``effect`` comes as far in its place, beside the effects that were found after it."""
     least = priced_score(state.current, study.settings) + study.settings.least_gain
-    return any(priced_score(h, study.settings) < least for h in in_its_place(study, state, effect))
+    return any(priced_score(h, study.settings) < least for h in rivals_in_its_place(study, state, effect))
 
 
-def in_its_place(study: Study, state: SearchState, effect: Attachment, margin: float = 0.0) -> Iterator[Hypothesis]:
+def rivals_in_its_place(
+    study: Study, state: SearchState, effect: Attachment, margin: float = 0.0
+) -> Iterator[Hypothesis]:
     """The hypothesis of ``state`` with each rival of ``effect`` instead that came near it in the step that took it, the best first.
 
     Args:
@@ -34,9 +36,8 @@ def in_its_place(study: Study, state: SearchState, effect: Attachment, margin: f
     if done is None or done.taken is None or effect.mechanism.free:
         return
     for rival in islice(_near(study, state, effect, done, margin), study.budget.front_runners):
-        fitted = (
-            rival.fitted if state.effects == (*done.parent.effects, effect) else _refitted(study, state, effect, rival)
-        )
+        there = state.current.values() | rival.fitted.values()
+        fitted = in_its_place(study, state, effect, done, rival, [there])
         if fitted is not None:
             yield fitted
 
@@ -51,12 +52,3 @@ def _near(
         there = r.unknown or r.candidate.attachment.prefix in state.prefixes
         if not there and r.fitted.score - reached < max(reached - state.current.score, margin) and sound(study, r):
             yield r
-
-
-def _refitted(study: Study, state: SearchState, effect: Attachment, rival: RankedCandidate) -> Hypothesis | None:
-    """The hypothesis of ``state`` with a rival in the place of ``effect``."""
-    law = rival.candidate.attachment
-    study.working_on(f"trying {law.prefix} in the place of {effect.prefix}")
-    theirs, now = rival.fitted.values(), state.current.values()
-    own = {n: v for n, v in theirs.items() if n.startswith(f"{law.prefix}.")}
-    return fit(study, state.with_law(effect, law), [now | own, now | theirs], state.current.fits[0])

@@ -11,7 +11,7 @@ from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.promotion import promote_for_a_rival
 from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
-from greybox_torch.diagnosis.select.rivals_beside import in_its_place, rivalled_beside_others
+from greybox_torch.diagnosis.select.rivals_beside import rivalled_beside_others, rivals_in_its_place
 from greybox_torch.diagnosis.select.search import revise
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
@@ -62,8 +62,8 @@ def test_what_lost_by_more_than_was_missing_is_not_asked_again(told) -> None:
     lost = step.ranked[1]
     fits = tuple(replace(f, mean_square=1e6 * f.mean_square) for f in lost.fitted.fits)
     far = replace(step, ranked=(step.ranked[0], replace(lost, fitted=replace(lost.fitted, fits=fits))))
-    assert list(in_its_place(search.study, state, laws["coulomb_friction"]))
-    assert not list(in_its_place(search.study, replace(state, steps=(far,)), laws["coulomb_friction"]))
+    assert list(rivals_in_its_place(search.study, state, laws["coulomb_friction"]))
+    assert not list(rivals_in_its_place(search.study, replace(state, steps=(far,)), laws["coulomb_friction"]))
 
 
 def test_held_out_experiments_that_speak_for_a_rival_join_those_to_choose_with(told) -> None:
