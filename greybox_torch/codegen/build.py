@@ -20,6 +20,7 @@ from greybox_torch.errors import UserError
 
 FLAGS = (
     "-O1",
+    "-fexpensive-optimizations",
     "-march=native",
     "-fno-math-errno",
     "-fno-trapping-math",

@@ -22,15 +22,15 @@ def emit(equations: Equations, precision: str) -> str:
     rate_rows = [(f"dx[{i}]", node) for i, node in enumerate(equations.rates)]
     n_t = equations.n_tangent
     state_entries = _entries(equations.rates_by_state[:n_t])
-    parameter_entries = _entries(equations.rates_by_parameter[:n_t])
     output_rows = [(f"y[{i}]", node) for i, node in enumerate(equations.outputs)]
     output_states = _entries(equations.outputs_by_state)
     output_parameters = _entries(equations.outputs_by_parameter)
     column = {equations.graph.leaf("p", p): k for k, p in enumerate(equations.sensitive)}
+    parameter_entries = sorted(_entries(equations.rates_by_parameter[:n_t]), key=lambda entry: column[entry[1]])
     row_of_state = {equations.graph.leaf("x", i): i for i in range(n_x)}
 
     stored_a = [(f"A[{k}]", node) for k, (_, _, node) in enumerate(state_entries)]
-    stored_b = [(f"B[{column[leaf]}][{i}]", node) for i, leaf, node in parameter_entries]
+    stored_b = [(f"B[{k}][0]", node) for k, (_, _, node) in enumerate(parameter_entries)]
     stored_c = [(f"C[{k}]", node) for k, (_, _, node) in enumerate(output_states)]
     stored_d = [(f"D[{column[leaf]}][{i}]", node) for i, leaf, node in output_parameters]
     functions = {
@@ -38,8 +38,10 @@ def emit(equations: Equations, precision: str) -> str:
         "RATES_JACOBIAN": body.statements(rate_rows + stored_a + stored_b),
         "OUTPUTS": body.statements(output_rows),
         "OUTPUTS_JACOBIAN": body.statements(output_rows + stored_c + stored_d),
-        "TANGENT": _products("k", n_t, state_entries, row_of_state, "A", "b", body),
-        "TANGENT_OUTPUT": _products("s", n_y, output_states, row_of_state, "C", "d", body),
+        "TIMES_JACOBIAN": _times_jacobian(n_t, state_entries, row_of_state, body),
+        "PROPAGATE": _propagate(n_t),
+        "TANGENT_OUTPUT": _tangent_output(n_y, output_states, row_of_state, body),
+        **_forced_rows([(i, column[leaf]) for i, leaf, _ in parameter_entries], n_p),
     }
     text = PROGRAM
     for name, code in {**functions, "PROLOGUE": body.prologue()}.items():
@@ -52,6 +54,7 @@ def emit(equations: Equations, precision: str) -> str:
         "NP": max(equations.n_parameters, 1),
         "NS": n_p,
         "NA": max(len(state_entries), 1),
+        "NB": max(len(parameter_entries), 1),
         "NC": max(len(output_states), 1),
         "NH": max(body.hoisted_count, 1),
     }
@@ -167,23 +170,53 @@ class _Body:
         raise AssertionError(f"no C++ form of '{operation}'")
 
 
-def _products(
-    result: str,
-    rows: int,
-    entries: list[tuple[int, int, int]],
-    row_of_state: dict[int, int],
-    matrix: str,
-    forcing: str,
-    body: _Body,
-) -> str:
-    """Statements of ``result = matrix · s + forcing`` with a sparse matrix whose constant entries are written out."""
+def _tangent_output(n_y: int, entries: list[tuple[int, int, int]], row_of_state: dict[int, int], body: _Body) -> str:
+    """Statements of ``s = C · z + d`` with the sparse matrix C whose constant entries are written out."""
     lines = []
-    for row in range(rows):
-        terms = [f"{forcing}[{row}]"]
-        for k, (i, leaf, node) in enumerate(entries):
-            if i != row:
-                continue
-            value, source = body.is_constant(node), f"z[{row_of_state[leaf]}]"
-            terms.append(source if value == 1.0 else f"-{source}" if value == -1.0 else f"{matrix}[{k}] * {source}")
-        lines.append(f"{result}[{row}] = {' + '.join(terms)};".replace("+ -", "- "))
+    for row in range(n_y):
+        of_row = [(k, leaf, node) for k, (i, leaf, node) in enumerate(entries) if i == row]
+        terms = [_scaled(f"z[{row_of_state[leaf]}]", f"C[{k}]", body.is_constant(node)) for k, leaf, node in of_row]
+        lines.append(_assigned(f"s[{row}]", [f"d[{row}]", *terms]))
     return "\n".join(lines)
+
+
+def _times_jacobian(n_t: int, entries: list[tuple[int, int, int]], row_of_state: dict[int, int], body: _Body) -> str:
+    """Statements of ``R = M · A``, by columns, with the sparse Jacobian A whose constant entries are written out."""
+    lines = []
+    for column in range(n_t):
+        of_column = [(k, i, node) for k, (i, leaf, node) in enumerate(entries) if row_of_state[leaf] == column]
+        terms = [_scaled(f"M[{i}][i]", f"A[{k}]", body.is_constant(node)) for k, i, node in of_column]
+        assigned = _assigned(f"R[{column}][i]", terms or ["vec{}"])
+        lines.append(f"UNROLL for (int i = 0; i < NT; i++) {assigned}")
+    return "\n".join(lines)
+
+
+def _propagate(n_t: int) -> str:
+    """Statements of ``q = S · q + sum of M[s] · b[s]`` over the stages s, with the partial derivatives b by parameter c."""
+    states = range(n_t)
+    lines = [f"vec w{i} = {' + '.join(f'S[{j}][{i}] * q[{j}]' for j in states)};" for i in states]
+    lines.append("for (long k = first[c]; k < first[c + 1]; k++) {")
+    lines.append("const long r = row[k];")
+    for s in range(4):
+        lines.append(f"const vec b{s} = B[k][{s}];")
+    for i in states:
+        lines.append(f"w{i} += {' + '.join(f'M[{s}][r][{i}] * b{s}' for s in range(4))};")
+    return "\n".join([*lines, "}", *(f"q[{i}] = w{i};" for i in states)])
+
+
+def _scaled(source: str, entry: str, constant: float | None) -> str:
+    return source if constant == 1.0 else f"-{source}" if constant == -1.0 else f"{entry} * {source}"
+
+
+def _assigned(target: str, terms: list[str]) -> str:
+    return f"{target} = {' + '.join(terms)};".replace("+ -", "- ")
+
+
+def _forced_rows(entries: list[tuple[int, int]], n_p: int) -> dict[str, str]:
+    """Of entries (row, parameter) in the order of parameters: where those of each begin, with one more for none, and their rows."""
+    first = [sum(parameter < k for _, parameter in entries) for k in range(n_p + 1)]
+    return {"FIRST_ROWS": _listed([*first, first[-1]]), "ROWS": _listed([i for i, _ in entries] or [0])}
+
+
+def _listed(numbers: list[int]) -> str:
+    return ", ".join(map(str, numbers))

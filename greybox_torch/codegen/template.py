@@ -59,7 +59,7 @@ INLINE void prologue(const vec *p, vec *h) {
 static __attribute__((noinline)) void rates(const vec *x, const vec *u, const vec *p, const vec *h, vec *dx) {
 /*RATES*/
 }
-static __attribute__((noinline)) void rates_jacobian(const vec *x, const vec *u, const vec *p, const vec *h, vec *dx, vec *A, vec (*B)[NT]) {
+static __attribute__((noinline)) void rates_jacobian(const vec *x, const vec *u, const vec *p, const vec *h, vec *dx, vec *A, vec (*B)[4]) {
 /*RATES_JACOBIAN*/
 }
 INLINE void outputs(const vec *x, const vec *u, const vec *p, const vec *h, vec *y) {
@@ -68,11 +68,32 @@ INLINE void outputs(const vec *x, const vec *u, const vec *p, const vec *h, vec 
 INLINE void outputs_jacobian(const vec *x, const vec *u, const vec *p, const vec *h, vec *y, vec *C, vec (*D)[NY]) {
 /*OUTPUTS_JACOBIAN*/
 }
-INLINE void tangent(const vec *A, const vec *b, const vec *z, vec *k) {
-/*TANGENT*/
+INLINE void times_jacobian(const vec (*M)[NT], const vec *A, vec (*R)[NT]) {
+/*TIMES_JACOBIAN*/
+}
+// Partial derivatives by parameters are kept without zeros: those by parameter c are B[first[c]] to B[first[c + 1] - 1], in rows row[...]; by a
+// start state, none.
+static const short first[NS + 2] = {/*FIRST_ROWS*/}, row[NB] = {/*ROWS*/};
+// One Runge-Kutta step is linear in the tangents: q goes over to S q + sum of M[s] b[s], b[s] the partial derivatives by a parameter in stage s.
+// Matrices are stored by columns. They are computed once a step, backwards through the stages; then every direction costs one product with S.
+INLINE void transition(vec H, const vec (*A)[NA], vec (*M)[NT][NT], vec (*S)[NT]) {
+  vec P[NT][NT];
+  const vec sixth = H / (real)6, third = H / (real)3, half = H * (real)0.5;
+  for (int j = 0; j < NT; j++) UNROLL for (int i = 0; i < NT; i++) M[3][j][i] = i == j ? sixth : vec{}, S[j][i] = splat(i == j);
+  for (int s = 3; s >= 0; s--) {
+    times_jacobian(M[s], A[s], P);
+    for (int j = 0; j < NT; j++) UNROLL for (int i = 0; i < NT; i++) {
+      S[j][i] += P[j][i];
+      if (s) M[s - 1][j][i] = (s == 3 ? H : half) * P[j][i] + (i != j ? vec{} : s == 1 ? sixth : third);
+    }
+  }
 }
 INLINE void tangent_output(const vec *C, const vec *d, const vec *z, vec *s) {
 /*TANGENT_OUTPUT*/
+}
+// Written out: arrays that a loop of unknown length adds to would not live in registers.
+INLINE void propagate(const vec (*S)[NT], const vec (*M)[NT][NT], const vec (*B)[4], long c, vec *q) {
+/*PROPAGATE*/
 }
 
 struct Job {
@@ -121,8 +142,9 @@ INLINE void accumulate(const vec *rows, long count, long width, vec *normal, con
 
 template <bool TANGENTS> static void run_group(const Job &job, long g) {
   vec x[NX], y[NY], u0[NU], u1[NU], uh[NU], h[NH];
-  vec A[4][NA], C[NC];
-  static thread_local vec B[4][NS + 1][NT], D[NS + 1][NY];
+  vec A[4][NA], C[NC], M[4][NT][NT], S[NT][NT];
+  vec B[NB][4];  // by stage
+  static thread_local vec D[NS + 1][NY];
   const long nd = job.directions;
   const vec *p = (const vec *)job.p + g * NP;
   vec *gx = (vec *)job.x + g * NX, *gdx = (vec *)job.dx + g * nd * NT;
@@ -135,7 +157,6 @@ template <bool TANGENTS> static void run_group(const Job &job, long g) {
   long filled = 0;
   if (rows) for (long k = 0; k < width * CHUNK * NY; k++) rows[k] = vec{};
   prologue(p, h);
-  for (int s = 0; s < 4; s++) for (int k = 0; k <= NS; k++) UNROLL for (int i = 0; i < NT; i++) B[s][k][i] = vec{};
   for (int k = 0; k <= NS; k++) UNROLL for (int i = 0; i < NY; i++) D[k][i] = vec{};
   UNROLL for (int i = 0; i < NX; i++) x[i] = gx[i];
   for (long n = 0; n < job.steps; n++) {
@@ -183,25 +204,19 @@ template <bool TANGENTS> static void run_group(const Job &job, long g) {
         uh[i] = u0[i] + middle * (u1[i] - u0[i]);
         b[i] = u0[i] + to * (u1[i] - u0[i]);
       }
-      if (TANGENTS) rates_jacobian(x, a, p, h, k1, A[0], B[0]); else rates(x, a, p, h, k1);
+      if (TANGENTS) rates_jacobian(x, a, p, h, k1, A[0], (vec (*)[4])&B[0][0]); else rates(x, a, p, h, k1);
       UNROLL for (int i = 0; i < NX; i++) z[i] = x[i] + (real)0.5 * H * k1[i];
-      if (TANGENTS) rates_jacobian(z, uh, p, h, k2, A[1], B[1]); else rates(z, uh, p, h, k2);
+      if (TANGENTS) rates_jacobian(z, uh, p, h, k2, A[1], (vec (*)[4])&B[0][1]); else rates(z, uh, p, h, k2);
       UNROLL for (int i = 0; i < NX; i++) z[i] = x[i] + (real)0.5 * H * k2[i];
-      if (TANGENTS) rates_jacobian(z, uh, p, h, k3, A[2], B[2]); else rates(z, uh, p, h, k3);
+      if (TANGENTS) rates_jacobian(z, uh, p, h, k3, A[2], (vec (*)[4])&B[0][2]); else rates(z, uh, p, h, k3);
       UNROLL for (int i = 0; i < NX; i++) z[i] = x[i] + H * k3[i];
-      if (TANGENTS) rates_jacobian(z, b, p, h, k4, A[3], B[3]); else rates(z, b, p, h, k4);
+      if (TANGENTS) rates_jacobian(z, b, p, h, k4, A[3], (vec (*)[4])&B[0][3]); else rates(z, b, p, h, k4);
       UNROLL for (int i = 0; i < NX; i++) x[i] += H / (real)6 * (k1[i] + (real)2 * (k2[i] + k3[i]) + k4[i]);
-      if (TANGENTS) for (long d = 0; d < nd; d++) {
-        vec *q = gdx + d * NT, w[NT], k1[NT], k2[NT], k3[NT], k4[NT];
-        const long c = job.column[d];
-        tangent(A[0], B[0][c], q, k1);
-        UNROLL for (int i = 0; i < NT; i++) w[i] = q[i] + (real)0.5 * H * k1[i];
-        tangent(A[1], B[1][c], w, k2);
-        UNROLL for (int i = 0; i < NT; i++) w[i] = q[i] + (real)0.5 * H * k2[i];
-        tangent(A[2], B[2][c], w, k3);
-        UNROLL for (int i = 0; i < NT; i++) w[i] = q[i] + H * k3[i];
-        tangent(A[3], B[3][c], w, k4);
-        UNROLL for (int i = 0; i < NT; i++) q[i] += H / (real)6 * (k1[i] + (real)2 * (k2[i] + k3[i]) + k4[i]);
+      if (TANGENTS) {
+        transition(H, A, M, S);
+        for (long d = 0; d < nd; d++) {
+          propagate(S, M, B, job.column[d], gdx + d * NT);
+        }
       }
     }
   }
