@@ -18,6 +18,13 @@ AT_BOUND = 1e-6
 LEAST_PERIODS = 2.0
 """Periods within the travel (or the record) that a law which repeats has to go through to be seen to repeat."""
 
+WHOLE = 0.02
+"""How near a whole number an order per turn has to be for its law to be one of a round machine (poles, slots, teeth): of curves that only
+look like a wave, one in twenty-five comes so near by chance."""
+
+LEAST_PERIODS_OF_WHOLE = 0.75
+"""Periods within the travel that a law of such an order has to go through."""
+
 LEAST_SAMPLES = 3.0
 """Samples that a time constant has to last to be seen."""
 
@@ -28,15 +35,20 @@ LONGEST = 2.0
 def lost_in_its_deviation(
     names: Sequence[str], values: Mapping[str, float], deviations: Mapping[str, float]
 ) -> str | None:
-    """Every amplitude of ``names`` is zero, or smaller than its standard deviation (or that is not a number): zero is as good."""
+    """Every amplitude of ``names`` is zero, or smaller than its standard deviation (or that is not a number): zero is as good.
+
+    Of several amplitudes chance makes some larger: then the largest counts in as many deviations as their number lets expect.
+    """
     stated = [name for name in names if name in values]
     if stated and all(values[name] == 0.0 for name in stated):
         return f"{' and '.join(stated)} = 0"
     known = [name for name in names if name in deviations]
-    if not known or any(abs(values[name]) > deviations[name] for name in known):
+    expected = np.sqrt(1.0 + 2.0 * np.log(max(len(known), 1)))
+    if not known or any(abs(values[name]) > expected * deviations[name] for name in known):
         return None
     worst = max(known, key=lambda name: abs(values[name]))
-    return f"{worst} = {values[worst]:.3g} is smaller than its standard deviation {deviations[worst]:.3g}"
+    times = f"{expected:.2g} times " if len(known) > 1 else ""
+    return f"{worst} = {values[worst]:.3g} is smaller than {times}its standard deviation {deviations[worst]:.3g}"
 
 
 def at_a_bound(
@@ -96,13 +108,24 @@ def not_seen_to_repeat(order: float, around: Surroundings) -> str | None:
     """An order per turn goes through too few periods in the travel, or passes faster than sampling resolves at the usual speed."""
     if "position" in around.ranges:
         periods = abs(order) * around.ranges["position"].span / (2 * np.pi)
-        if periods < LEAST_PERIODS:
-            return f"order = {order:.3g} repeats {periods:.2g} times in the travel; {LEAST_PERIODS:g} are needed to see that it does"
+        least = LEAST_PERIODS_OF_WHOLE if _whole_per_turn(order, around) else LEAST_PERIODS
+        if periods < least:
+            return f"order = {order:.3g} repeats {periods:.2g} times in the travel; {least:g} are needed to see that it does"
     if "speed" in around.ranges:
         samples = 2 * np.pi / max(abs(order) * around.ranges["speed"].rms * around.sample_time, 1e-300)
         if samples < 2.0:
             return f"order = {order:.3g} leaves {samples:.2g} samples a period at the usual speed; 2 are the least that sampling resolves"
     return None
+
+
+def _whole_per_turn(order: float, around: Surroundings) -> bool:
+    """Whether an order is a whole number of periods per turn, more than one: once per turn is what weight does."""
+    return is_angle(around) and abs(order) > 1.5 and abs(order - round(order)) < WHOLE
+
+
+def is_angle(around: Surroundings) -> bool:
+    """Whether positions are angles, as far as the model says."""
+    return around.units.get("position", "rad") == "rad"
 
 
 def not_a_frequency_of_the_record(name: str, omega: float, around: Surroundings) -> str | None:

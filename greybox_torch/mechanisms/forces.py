@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import torch
 
-from greybox_torch.mechanisms.degenerate import beyond, not_a_frequency_of_the_record, not_seen_to_repeat
+from greybox_torch.mechanisms.degenerate import beyond, is_angle, not_a_frequency_of_the_record, not_seen_to_repeat
 from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.order_of_curve import order_of_curve
@@ -28,6 +28,9 @@ rubber buffer's; of stops that were told where none is, 0.35."""
 
 MARGIN = 0.1
 """Share of the travel, as a model without a stop has it, by which the machine may have gone farther before it met one."""
+
+LIKE_WEIGHT = 0.02
+"""By how much an order may differ from once per turn for a ripple to be no other law than weight: what a model lacks shifts it so far."""
 
 
 class ConstantBias(LinearLaw):
@@ -87,7 +90,10 @@ class TorqueRipple(Mechanism):
         return self if order is None else TorqueRipple(order)
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        return not_seen_to_repeat(values["order"], around)
+        order = values["order"]
+        if is_angle(around) and abs(order - 1.0) < LIKE_WEIGHT:
+            return f"order = {order:.4g}: once per turn is what weight does"
+        return not_seen_to_repeat(order, around)
 
 
 class EndStop(Mechanism):

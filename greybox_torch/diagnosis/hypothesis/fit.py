@@ -86,6 +86,7 @@ def hypothesis(
     frozen: frozenset[str] = frozenset(),
     early: Sequence[Mapping[str, float]] = (),
     before: Hypothesis | None = None,
+    beside: Hypothesis | None = None,
     rough: bool = False,
     places: Places = NOWHERE,
 ) -> Hypothesis | None:
@@ -97,6 +98,8 @@ def hypothesis(
         starts: parameter values by name, of the base and of the effects.
         early: further ones, for the shortest windows only.
         before: a rougher fit of the same effects with the same free parameters, which is carried on at the lengths that it has.
+        beside: a fit of other effects. Over windows of every length but the shortest a trial begins with its values and start states: what
+            short windows do not determine wanders off there, and start states of those do not lead back.
         at: window lengths; by default :func:`window_lengths`.
         limits: how far the best of the starts is followed; by default ``budget.window_iterations``.
         shorter: a fit on shorter windows that the start states are taken from.
@@ -109,6 +112,7 @@ def hypothesis(
     model = augmented(base, effects, surroundings)
     problems = [without_free(problem_for(base, model, start), frozen) for start in starts]
     first = [without_free(problem_for(base, model, start), frozen) for start in early]
+    there = None if beside is None else without_free(problem_for(base, model, beside.values()), frozen)
     simulator = simulator or Simulator.of(model, problems[0].free_names, options)
     limits, fits = limits or budget.window_iterations, []
     as_far = partial(_as_far_as_counts, base, limits, settings, budget, rough)
@@ -119,7 +123,9 @@ def hypothesis(
     for length in at:
         known = None if before is None else _over(cut(base.records, length), before.fits)
         trials = _distinct([f.problem for f in fits[-1:]] + problems + ([] if fits else first), known)
-        fit = _best_fit(trials, known, simulator, length, shorter, as_far, at_end, budget)
+        stood = None if beside is None or not fits else _over(cut(base.records, length), beside.fits)
+        also = None if there is None or stood is None else (there, stood)
+        fit = _best_fit(trials, known, simulator, length, shorter, as_far, at_end, budget, also)
         if fit is None:
             return None
         if fits and reaches_noise(base, fits[-1], settings) and not reaches_noise(base, fit, settings):
@@ -159,11 +165,13 @@ def _best_fit(
     limits_of: Callable[[WindowFit], Settings],
     at_end: Callable[[WindowFit], bool],
     budget: SearchBudget,
+    beside: tuple[Problem, WindowFit] | None = None,
 ) -> WindowFit | None:
     """The best that the trials lead to.
 
     Args:
         at_end: whether no other start could lead farther.
+        beside: one more trial, and the fit that its start states come from.
     """
     begin = partial(fit_windows, simulator=simulator, length=length, shorter=shorter, settings=budget.first_iterations)
     leading, others = known, trials
@@ -173,6 +181,11 @@ def _best_fit(
         others = []
     rival = None if leading is None else Rival(leading.mean_square, budget.rival_pace)
     begun = [leading, *side_by_side(partial(begin, t, rival=rival) for t in others)]
+    if beside is not None and others:
+        problem, stood = beside
+        begun.append(
+            fit_windows(problem, simulator, length, shorter=stood, settings=budget.first_iterations, rival=rival)
+        )
     found = sorted((fit for fit in begun if fit is not None), key=lambda f: f.mean_square)
     if not found:
         return None

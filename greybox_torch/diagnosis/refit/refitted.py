@@ -19,13 +19,21 @@ def refitted(
 
     None where it cannot be simulated from any of them.
     """
-    return fit(study, effects, [start.values(), {**start.values(), **study.card}, *starts], start.fits[0])
+    begun = [start.values(), {**start.values(), **study.card}, *starts]
+    return fit(study, effects, begun, start.fits[0], beside=start)
 
 
-def polished(study: Study, fitted: Hypothesis, starts: Sequence[Mapping[str, float]] = ()) -> Hypothesis:
-    """``fitted`` refitted to convergence, also from further start values; the better of the two."""
+def polished(
+    study: Study, fitted: Hypothesis, starts: Sequence[Mapping[str, float]] = (), beside: Hypothesis | None = None
+) -> Hypothesis:
+    """``fitted`` refitted to convergence, also from further start values; the better of the two.
+
+    Args:
+        beside: a fit of other effects, whose values and start states are tried too.
+    """
     simulator, before = (None, None) if fitted.frozen else (fitted.simulator, fitted)
-    again = fit(study, fitted.effects, [fitted.values(), *starts], fitted.fits[0], simulator=simulator, before=before)
+    begun, shorter = [fitted.values(), *starts], fitted.fits[0]
+    again = fit(study, fitted.effects, begun, shorter, simulator=simulator, before=before, beside=beside)
     return fitted if again is None or again.score > fitted.score else again
 
 

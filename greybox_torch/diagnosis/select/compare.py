@@ -42,7 +42,7 @@ def compare(
     pairs = zip(front, polish, strict=True)
     polish = side_by_side(partial(_from_there, study, r, fitted, best, parent.problem.names) for r, fitted in pairs)
     best = min(polish, key=lambda fitted: fitted.score)
-    again = _polished(study, parent, [best.values(), {**best.values(), **study.card}])
+    again = _polished(study, parent, [best.values(), {**best.values(), **study.card}], best)
     parent = again if again.score < parent.score else parent
     rest = [r for r in ranked if all(r is not one for one in front)]
     fitted = [*polish, *(r.fitted for r in rest)]
@@ -70,6 +70,8 @@ def _from_there(
     return _polished(study, fitted, [{**fitted.values(), **{n: values[n] for n in names}}])
 
 
-def _polished(study: Study, fitted: Hypothesis, starts: Sequence[dict[str, float]]) -> Hypothesis:
+def _polished(
+    study: Study, fitted: Hypothesis, starts: Sequence[dict[str, float]], beside: Hypothesis | None = None
+) -> Hypothesis:
     study.working_on(f"polishing {' + '.join(e.prefix for e in fitted.effects) or 'the model as it stands'}")
-    return polished(study, fitted, starts)
+    return polished(study, fitted, starts, beside)
