@@ -22,9 +22,12 @@ def fits(stub, monkeypatch):
 
     polished: list[tuple[str, list[dict[str, float]]]] = []
 
-    def polish(study: Any, one: Any, starts: list[dict[str, float]]) -> Any:
+    beside: list[Any] = []
+
+    def polish(study: Any, one: Any, starts: list[dict[str, float]], there: Any = None) -> Any:
         name = one.effects[0].prefix if one.effects else ""
         polished.append((name, starts))
+        beside.append((name, there))
         return min([one, *(fitted(name, s["J"]) for s in starts)], key=lambda h: h.score)
 
     def judged(candidate: Any, parent: Any, one: Any, settings: Any) -> Any:
@@ -34,7 +37,7 @@ def fits(stub, monkeypatch):
     monkeypatch.setattr(module, "restarts", lambda study, screened, ranked: [])
     monkeypatch.setattr(module, "judged", judged)
     monkeypatch.setattr(module, "in_order", lambda ranked, settings: sorted(ranked, key=lambda r: r.fitted.score))
-    return stub(fitted=fitted, polished=polished)
+    return stub(fitted=fitted, polished=polished, beside=beside)
 
 
 def test_rivals_are_refitted_from_where_the_best_one_has_the_models_parameters(stub, fits) -> None:
@@ -53,6 +56,8 @@ def test_rivals_are_refitted_from_where_the_best_one_has_the_models_parameters(s
     assert compared.ranked[0].fitted.values() == {"J": 2.0, "asymmetry.size": 1.0}
     assert compared.ranked[2].fitted is curve
     assert compared.parent.values() == {"J": 2.0}
+    (parent_beside,) = (there for name, there in fits.beside if name == "")
+    assert parent_beside is compared.ranked[0].fitted, "with the start states of the best one too"
 
 
 def test_what_gains_nothing_is_compared_as_it_is(stub, fits) -> None:
