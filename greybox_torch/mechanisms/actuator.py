@@ -109,6 +109,9 @@ class InputGain(LinearLaw):
     def law(self, s: Signals, size: Any) -> Any:
         return size * s.input
 
+NEARLY_CLAMP = 0.05
+"""Softness below which a limit is a clamp but for its corner."""
+
 
 class TorqueSaturation(ByDirection):
     """The input that acts is limited: u / (1 + |u / l|^n)^(1/n), with n = 1 / ``softness``.
@@ -153,6 +156,14 @@ class TorqueSaturation(ByDirection):
             for limit in limits
             if limit < spread.reach
         ]
+
+    def degenerate(
+        self, around: Surroundings, values: Mapping[str, float], deviations: Mapping[str, float]
+    ) -> str | None:
+        """A limit at the largest input that is nearly a clamp rounds its tips off: there it lets pass what a clamp of that height does."""
+        nearly_clamp = 0.0 < values["softness"] < NEARLY_CLAMP
+        height = values["limit"] * (2.0 ** -values["softness"] if nearly_clamp else 1.0)
+        return super().degenerate(around, {**values, "limit": height}, deviations)
 
 
 class ActuatorDeadzone(ByDirection):
