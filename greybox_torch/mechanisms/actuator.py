@@ -109,6 +109,7 @@ class InputGain(LinearLaw):
     def law(self, s: Signals, size: Any) -> Any:
         return size * s.input
 
+
 NEARLY_CLAMP = 0.05
 """Softness below which a limit is a clamp but for its corner."""
 

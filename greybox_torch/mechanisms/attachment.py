@@ -21,6 +21,9 @@ class Attachment:
     shifted_state: str = ""
     """For a kinematic mechanism: the state that carries the change of deflection, ``+name`` or ``-name``."""
 
+    substeps: int = 1
+    """Runge-Kutta steps per sample that its law needs at the least: dry friction that holds a light body is stiff."""
+
     @property
     def prefix(self) -> str:
         """What the names of its parameters and states begin with."""

@@ -67,6 +67,7 @@ class AugmentedModel(GreyBoxModel):
         self.ports = list(base.ports)
         added = added_parameters(self.attachments, self.surroundings, self.shared)
         self.declared_parameters = tuple(started_at(p, start or {}) for p in (*base.declared_parameters, *added))
+        self.least_substeps = max([base.least_substeps, *(a.substeps for a in self.attachments)])
         super().__init__()
         self.base = base
 

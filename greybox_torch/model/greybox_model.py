@@ -39,6 +39,8 @@ class GreyBoxModel(torch.nn.Module):
     """Whether every start state is estimated, also those that the states declare as fixed; a card that speaks of one still wins."""
     shows_forces: ClassVar[bool] = False
     """Whether the outputs are handed the forces at the ports: defined as ``output(self, x, u, p, port)``."""
+    least_substeps: int = 1
+    """Runge-Kutta steps per sample that a simulation makes at the least."""
     loaded_as: str = ""
     """The name that :func:`greybox_torch.load_model` found the model by; empty where it was made in Python."""
 

@@ -37,6 +37,8 @@ class Simulator:
 
     stepper: Stepper
     options: SimulationOptions = DEFAULT
+    least_substeps: int = 1
+    """What the model asks for, whatever the options say."""
 
     @staticmethod
     def of(
@@ -55,7 +57,8 @@ class Simulator:
         Raises:
             UserError: the model's equations branch on a signal or do not return what the model declares.
         """
-        return Simulator(make_stepper(model, sensitive, at_zero=at_zero, options=options), options)
+        stepper = make_stepper(model, sensitive, at_zero=at_zero, options=options)
+        return Simulator(stepper, options, model.least_substeps)
 
     def for_model(
         self, model: GreyBoxModel, sensitive: Sequence[str] = (), *, at_zero: Sequence[str] = ()
@@ -89,7 +92,7 @@ class Simulator:
     @property
     def substeps(self) -> int:
         """Runge-Kutta steps per sample."""
-        return self.options.substeps
+        return max(self.options.substeps, self.least_substeps)
 
     def run(self, records: Records, asked: Pass) -> Run:
         """Advance all windows of a pass.
@@ -98,7 +101,7 @@ class Simulator:
             TimeIsUp: what asks for it has no time left, see :func:`greybox_torch.deadline.until`.
         """
         check_time()
-        return self.stepper.run(records, asked, self.options.substeps)
+        return self.stepper.run(records, asked, self.substeps)
 
 
 def make_stepper(

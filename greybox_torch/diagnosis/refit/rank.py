@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 
+import numpy as np
+
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, augmented, score_of, window_lengths, without_free
 from greybox_torch.diagnosis.refit.behind_curve import laws_behind_curve
 from greybox_torch.diagnosis.refit.finalists import Trial, finalists, leading_and_rest
@@ -12,12 +14,18 @@ from greybox_torch.diagnosis.refit.order import in_better_order, in_both_orders,
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.refit.twins import from_twin
-from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of
+from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of, with_substeps
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.problem import problem_for
 from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import cut
+
+MOST_PROMISED = 0.99
+"""Share of the error beyond which a screen promises no more."""
+
+Tried = tuple[Candidate, Simulator, Hypothesis | None]
+"""A candidate, what it is simulated with, and its trial."""
 
 Shown = tuple[float, Hypothesis, int]
 """How far a trial is from the hypothesis before it (negative: better), the trial, and the length of its windows in samples."""
@@ -106,6 +114,20 @@ def rank(
         return again if again is not None and (own is None or again.score < own.score) else own
 
     reached = side_by_side(partial(tried_again, *pair, own) for pair, own in zip(pairs, reached, strict=True))
+    over_current = partial(_score_over, current, steps[middle])
+
+    def in_finer_steps(candidate: Candidate, simulator: Simulator, own: Hypothesis | None) -> Tried:
+        """Its trial with more sub-steps, where that is dry friction which comes to less than promised, if it comes farther so."""
+        if not _less_than_promised(study, candidate, over_current(), own):
+            return candidate, simulator, own
+        finer = with_substeps(candidate, budget.substeps_of_dry_friction * simulator.options.substeps)
+        (there,) = _compiled(study, current, [finer], frozen)
+        again = tried(finer, there)
+        farther = again is not None and again.score < min(over_current(), np.inf if own is None else own.score)
+        return (finer, there, again) if farther else (candidate, simulator, own)
+
+    all_tried = side_by_side(partial(in_finer_steps, *pair, own) for pair, own in zip(pairs, reached, strict=True))
+    pairs, reached = [(one, simulator) for one, simulator, _ in all_tried], [own for *_, own in all_tried]
     shown = side_by_side(partial(where_it_shows, *pair, own) for pair, own in zip(pairs, reached, strict=True))
     rounds = _finalists_of(study, shown, pairs)
     if others := {one[2] for one in shown if one is not None} - {middle}:
@@ -120,6 +142,17 @@ def rank(
         longest_first = sorted(some, key=lambda entry: not entry[1].unknown)
         final += [r for r in side_by_side(partial(in_full, *entry[1:]) for entry in longest_first) if r is not None]
     return in_order([*final, *laws_behind_curve(study, current, final, frozen)], study.settings)
+
+
+def _less_than_promised(study: Study, candidate: Candidate, before: float, own: Hypothesis | None) -> bool:
+    """Whether dry friction came to less than half of what the screen promises (logarithms of the error): its steps may be too long.
+
+    Where it holds a light body its tangents grow from step to step, and no refit moves.
+    """
+    if not candidate.attachment.mechanism.rubs or candidate.explained < study.budget.promise_of_dry_friction:
+        return False
+    promised = -np.log1p(-min(candidate.explained, MOST_PROMISED))
+    return own is None or before - own.score < 0.5 * promised
 
 
 def _finalists_of(

@@ -143,6 +143,11 @@ def _with_ties(study: Study, ranked: Sequence[ScreenScore]) -> list[ScreenScore]
     return list(ranked[: min(max(study.budget.named_per_length, tied), study.budget.most_screen_ties)])
 
 
+def with_substeps(candidate: Candidate, count: int) -> Candidate:
+    """The candidate, simulated with so many Runge-Kutta steps per sample at the least."""
+    return replace(candidate, attachment=replace(candidate.attachment, substeps=count))
+
+
 def with_motion(found: Sequence[Candidate], from_motion: Sequence[Candidate]) -> list[Candidate]:
     """Candidates of the screen, with further start values that the measured motion gives some of them, and what it adds to them."""
     added = {identity_of(c.attachment): c for c in from_motion}

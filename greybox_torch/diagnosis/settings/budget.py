@@ -155,6 +155,20 @@ class SearchBudget:
     )
 
     trial_starts: int = count(2, "Start values of a candidate that are tried.", chosen_by=TIME)
+    substeps_of_dry_friction: int = count(
+        16,
+        "Runge-Kutta steps per sample with which dry friction is tried again that comes to less than the screen promises: where it holds a "
+        "light body it is stiff.",
+        unit="times those of the model",
+        chosen_by="a valve's packing at 500 Hz: with 4 its trial fails, with 16 it leads",
+    )
+    promise_of_dry_friction: float = share(
+        0.3,
+        "Share of the residual that the screen has to promise of dry friction for it to be tried in finer steps where it comes to less "
+        "than half of that.",
+        unit="share of the residual's energy",
+        chosen_by=TIME,
+    )
     finalists: int = count(3, "Hypotheses that are refitted at every window length after their trial.", chosen_by=TIME)
     most_tied: int = count(6, "Named hypotheses that go on where they tie.", chosen_by=TIME)
     front_runners: int = count(3, "Hypotheses that are polished before they are compared.", chosen_by=TIME)
