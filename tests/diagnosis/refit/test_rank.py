@@ -220,3 +220,27 @@ def test_a_refit_in_full_also_begins_where_the_law_says_after_its_trial(dead_zon
     rank(search.study, search.plain, [Candidate(friction, (begun,), 0.5)])
     assert begun in early
     assert [e["rotor.coulomb_friction.v_0"] for e in early if e != begun] == [0.5]
+
+
+@pytest.mark.parametrize(("promise", "begun_with"), [(0.9, [1, 16, 16]), (0.2, [1, 1])])
+def test_dry_friction_that_comes_to_less_than_promised_is_tried_in_finer_steps(
+    dead_zone_search, monkeypatch, promise: float, begun_with: list[int]
+) -> None:
+    """Seen: the packing of a valve sampled at 500 Hz; in steps of a sample its tangents grew, and a ripple over the position was told."""
+    study, current, substeps = dead_zone_search.study, dead_zone_search.state.current, []
+    dry = attach(study.problem.model, "rotor", CoulombFriction())
+    start = {f"{dry.prefix}.{name}": value for name, value in (("F_c", 0.1), ("v_0", 0.05))}
+
+    def fit(study: Any, effects: Any, starts: Any, *, simulator: Any, at: Any = None, **how: Any) -> Any:
+        assert not effects or simulator.substeps == effects[-1].substeps
+        substeps.append(simulator.substeps)
+        better = 0.8 if simulator.substeps == 1 else 0.1
+        fits = current.fits[1:2] if at else current.fits
+        return replace(current, fits=tuple(replace(f, mean_square=better * f.mean_square) for f in fits))
+
+    monkeypatch.setattr("greybox_torch.diagnosis.refit.rank.fit", fit)
+    monkeypatch.setattr("greybox_torch.diagnosis.refit.rank._pays", lambda study, ranked: True)
+    candidate = Candidate(dry, (start,), promise, steps=current.fits[1].windows.steps)
+    (ranked,) = rank(study, current, [candidate])
+    assert substeps == begun_with
+    assert ranked.candidate.attachment.substeps == begun_with[-1]
