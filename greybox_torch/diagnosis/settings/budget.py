@@ -156,11 +156,11 @@ class SearchBudget:
 
     trial_starts: int = count(2, "Start values of a candidate that are tried.", chosen_by=TIME)
     substeps_of_dry_friction: int = count(
-        16,
+        8,
         "Runge-Kutta steps per sample with which dry friction is tried again that comes to less than the screen promises: where it holds a "
         "light body it is stiff.",
         unit="times those of the model",
-        chosen_by="a valve's packing at 500 Hz: with 4 its trial fails, with 16 it leads",
+        chosen_by="a valve's packing at 500 Hz: with 4 its trial fails, with 8 it leads, with 16 it takes twice as long",
     )
     promise_of_dry_friction: float = share(
         0.3,

@@ -222,7 +222,7 @@ def test_a_refit_in_full_also_begins_where_the_law_says_after_its_trial(dead_zon
     assert [e["rotor.coulomb_friction.v_0"] for e in early if e != begun] == [0.5]
 
 
-@pytest.mark.parametrize(("promise", "begun_with"), [(0.9, [1, 16, 16]), (0.2, [1, 1])])
+@pytest.mark.parametrize(("promise", "begun_with"), [(0.9, [1, 8, 8]), (0.2, [1, 1])])
 def test_dry_friction_that_comes_to_less_than_promised_is_tried_in_finer_steps(
     dead_zone_search, monkeypatch, promise: float, begun_with: list[int]
 ) -> None:
