@@ -117,13 +117,15 @@ def rank(
     over_current = partial(_score_over, current, steps[middle])
 
     def in_finer_steps(candidate: Candidate, simulator: Simulator, own: Hypothesis | None) -> Tried:
-        """Its trial with more sub-steps, where that is dry friction which comes to less than promised, if it comes farther so."""
-        if not _less_than_promised(study, candidate, over_current(), own):
+        """Its trial with more sub-steps, where dry friction comes to less than promised, if it comes much farther so: they cost."""
+        missing = _missing_of_promise(study, candidate, over_current(), own)
+        if missing is None:
             return candidate, simulator, own
         finer = with_substeps(candidate, budget.substeps_of_dry_friction * simulator.options.substeps)
         (there,) = _compiled(study, current, [finer], frozen)
         again = tried(finer, there)
-        farther = again is not None and again.score < min(over_current(), np.inf if own is None else own.score)
+        before = min(over_current(), np.inf if own is None else own.score)
+        farther = again is not None and again.score < before - budget.part_of_missing_promise * missing
         return (finer, there, again) if farther else (candidate, simulator, own)
 
     all_tried = side_by_side(partial(in_finer_steps, *pair, own) for pair, own in zip(pairs, reached, strict=True))
@@ -144,15 +146,16 @@ def rank(
     return in_order([*final, *laws_behind_curve(study, current, final, frozen)], study.settings)
 
 
-def _less_than_promised(study: Study, candidate: Candidate, before: float, own: Hypothesis | None) -> bool:
-    """Whether dry friction came to less than half of what the screen promises (logarithms of the error): its steps may be too long.
+def _missing_of_promise(study: Study, candidate: Candidate, before: float, own: Hypothesis | None) -> float | None:
+    """What dry friction lacks of what the screen promises (logarithms of the error), where that is more than half of it; else None.
 
-    Where it holds a light body its tangents grow from step to step, and no refit moves.
+    Its steps may be too long: where it holds a light body its tangents grow from step to step, and no refit moves.
     """
     if not candidate.attachment.mechanism.rubs or candidate.explained < study.budget.promise_of_dry_friction:
-        return False
-    promised = -np.log1p(-min(candidate.explained, MOST_PROMISED))
-    return own is None or before - own.score < 0.5 * promised
+        return None
+    promised = -float(np.log1p(-min(candidate.explained, MOST_PROMISED)))
+    missing = promised if own is None else promised - max(before - own.score, 0.0)
+    return missing if missing > 0.5 * promised else None
 
 
 def _finalists_of(

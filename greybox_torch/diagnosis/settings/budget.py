@@ -169,6 +169,12 @@ class SearchBudget:
         unit="share of the residual's energy",
         chosen_by=TIME,
     )
+    part_of_missing_promise: float = share(
+        0.25,
+        "Part of what it lacks of the promise that finer steps have to bring for its model to keep them: they cost as many times more.",
+        unit="share, as logarithms of the error",
+        chosen_by=TIME,
+    )
     finalists: int = count(3, "Hypotheses that are refitted at every window length after their trial.", chosen_by=TIME)
     most_tied: int = count(6, "Named hypotheses that go on where they tie.", chosen_by=TIME)
     front_runners: int = count(3, "Hypotheses that are polished before they are compared.", chosen_by=TIME)
