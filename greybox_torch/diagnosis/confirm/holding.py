@@ -48,7 +48,11 @@ def holding(
         empty, holds = _empty(study, state, judged.augmented, gains), judged.holds and _shown(state, others, judged)
         empty = empty or _drifting(study, state, judged)
         if empty is None and holds and not judged.unstable:
-            break
+            lighter = _much_better_without_weakest(study, state, others, gains, judged)
+            if lighter is None:
+                break
+            state, gains, judged = lighter
+            continue
         if empty is None:
             trial = partial(_better_by_windows, study, state, gains, judged, places())
             better, whole = or_else(trial, lambda: None) if holds else (trial(), True)
@@ -69,6 +73,29 @@ def holding(
         gains = held_out_gains(state, others) if others is not None else {}
         judged = judged.having(finish(state.current, study.settings, study.budget, study.recorded), places())
     return state, gains, judged, told, True
+
+
+def _much_better_without_weakest(
+    study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], judged: Judgement
+) -> tuple[SearchState, Mapping[str, Gain], Judgement] | None:
+    """What is left without the weakest of several effects, where much of the mismatch is left and free runs leave far less without it.
+
+    No worse than the model as it stands is not enough: laws that took up what a right one lacks may undo most of what that one brings.
+    """
+    settings = study.settings
+    if others is None or len(state.effects) < 2 or not judged.left(True)[0] > settings.left_to_doubt_of_several:
+        return None
+    if not state.compared_without:
+        state = result_of(drop_superfluous(study, state))
+    fewer = take_back_weakest(study, state, gains)
+    if not fewer.effects:
+        return None
+    final = finish(fewer.current, settings, study.budget, study.recorded)
+    without = judged.having(final, others.places(fewer.current))
+    stands = without.holds and not without.unstable
+    if not stands or without.mismatch(True) > settings.left_without_weakest * judged.mismatch(True):
+        return None
+    return fewer, held_out_gains(fewer, others), without
 
 
 def _shown(state: SearchState, others: HeldOut | None, judged: Judgement) -> bool:

@@ -66,6 +66,16 @@ class ConfirmationSettings:
         unit="share of the plain model's held-out mismatch",
         chosen_by="cases simulated elsewhere: what a law lacks to be the machine's stays below 0.005, effects begin at 0.05",
     )
+    left_to_doubt_of_several: float = share(
+        0.25,
+        "Part of the mismatch of free validation runs that several effects must leave for the weakest to be tried without.",
+        unit="share of the mean squared error of free validation runs beyond the noise",
+    )
+    left_without_weakest: float = share(
+        0.5,
+        "Part of that which must be left at most without it for it to be taken back.",
+        unit="share of what all effects leave",
+    )
     curve_far_ahead: float = ratio(
         3.0,
         "How many times what the best name gains a free curve that is no finding must gain for the name to be none either.",
