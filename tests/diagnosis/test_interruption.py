@@ -40,7 +40,8 @@ def fingerprint(value: Any) -> Any:
 def remembered() -> Any:
     """Every fit is made once, however often the same search is run: what is tested is what happens between the fits."""
     patch = pytest.MonkeyPatch()
-    patch.setenv("OMP_NUM_THREADS", "1")  # beside one another, two fits report in the order in which they happen to begin
+    # Two fits beside one another report in the order in which they happen to begin.
+    patch.setenv("OMP_NUM_THREADS", "1")
     kept: list[Any] = []
 
     def once(owner: Any, name: str, key: Callable[..., Any]) -> None:
