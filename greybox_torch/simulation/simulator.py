@@ -67,7 +67,7 @@ class Simulator:
         return Simulator.of(model, sensitive, self.options, at_zero=at_zero)
 
     def with_substeps(self, substeps: int) -> Simulator:
-        """The same stepper with so many Runge-Kutta steps per sample."""
+        """The same stepper with so many Runge-Kutta steps per sample, or as many as its model asks for at the least."""
         return replace(self, options=replace(self.options, substeps=substeps))
 
     def fine_enough(self, records: Records, p: np.ndarray, starts: np.ndarray) -> Simulator:

@@ -83,7 +83,8 @@ class HeldOut:
 
     def fits_at(self, hypothesis: Hypothesis, values: Mapping[str, float]) -> tuple[WindowFit, ...]:
         """The hypothesis with other parameters."""
-        # Not with the hypothesis's own sub-steps: an earlier search may have taken others, and what is compared is simulated alike.
+        # Not with the hypothesis's own sub-steps: an earlier search may have taken others, and what is compared is simulated
+        # alike, but for what a law that is stiff asks for.
         return held_out_fits(
             hypothesis,
             self.problem,
