@@ -20,7 +20,6 @@ from greybox_torch.errors import UserError
 
 FLAGS = (
     "-O1",
-    "-fexpensive-optimizations",
     "-march=native",
     "-fno-math-errno",
     "-fno-trapping-math",

@@ -6,15 +6,16 @@ from collections.abc import Mapping
 from functools import partial
 
 from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
+from greybox_torch.diagnosis.confirm.far_better import far_better, judged_anew
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.same_everywhere import drifts
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified
 from greybox_torch.diagnosis.confirm.standing import sizes
-from greybox_torch.diagnosis.confirm.take_back import held_out_gains, take_back_weakest
+from greybox_torch.diagnosis.confirm.take_back import take_back_weakest
 from greybox_torch.diagnosis.confirm.undone import not_undone
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
-from greybox_torch.diagnosis.hypothesis.final import Final, as_windows_have_it, finish
+from greybox_torch.diagnosis.hypothesis.final import Final, as_windows_have_it
 from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
@@ -48,10 +49,10 @@ def holding(
         empty, holds = _empty(study, state, judged.augmented, gains), judged.holds and _shown(state, others, judged)
         empty = empty or _drifting(study, state, judged)
         if empty is None and holds and not judged.unstable:
-            lighter = _much_better_without_weakest(study, state, others, gains, judged)
-            if lighter is None:
+            better_so = far_better(study, state, others, gains, judged)
+            if better_so is None:
                 break
-            state, gains, judged = lighter
+            state, gains, judged = better_so
             continue
         if empty is None:
             trial = partial(_better_by_windows, study, state, gains, judged, places())
@@ -69,33 +70,8 @@ def holding(
             told += said_of_windows(before, state, gains, judged, study.settings)
         if not state.effects:
             return state, {}, judged.without_effects(), told, True
-        # What one of several accounts for, others may take over.
-        gains = held_out_gains(state, others) if others is not None else {}
-        judged = judged.having(finish(state.current, study.settings, study.budget, study.recorded), places())
+        gains, judged = judged_anew(study, state, others, judged)
     return state, gains, judged, told, True
-
-
-def _much_better_without_weakest(
-    study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], judged: Judgement
-) -> tuple[SearchState, Mapping[str, Gain], Judgement] | None:
-    """What is left without the weakest of several effects, where much of the mismatch is left and free runs leave far less without it.
-
-    No worse than the model as it stands is not enough: laws that took up what a right one lacks may undo most of what that one brings.
-    """
-    settings = study.settings
-    if others is None or len(state.effects) < 2 or not judged.left(True)[0] > settings.left_to_doubt_of_several:
-        return None
-    if not state.compared_without:
-        state = result_of(drop_superfluous(study, state))
-    fewer = take_back_weakest(study, state, gains)
-    if not fewer.effects:
-        return None
-    final = finish(fewer.current, settings, study.budget, study.recorded)
-    without = judged.having(final, others.places(fewer.current))
-    stands = without.holds and not without.unstable
-    if not stands or without.mismatch(True) > settings.left_without_weakest * judged.mismatch(True):
-        return None
-    return fewer, held_out_gains(fewer, others), without
 
 
 def _shown(state: SearchState, others: HeldOut | None, judged: Judgement) -> bool:

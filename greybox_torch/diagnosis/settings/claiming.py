@@ -71,9 +71,14 @@ class ConfirmationSettings:
         "Part of the mismatch of free validation runs that several effects must leave for the weakest to be tried without.",
         unit="share of the mean squared error of free validation runs beyond the noise",
     )
-    left_without_weakest: float = share(
+    left_to_doubt_a_curve: float = share(
+        0.1,
+        "The same that a free curve must leave for names that it stood before to be tried in its place.",
+        unit="share of the mean squared error of free validation runs beyond the noise",
+    )
+    left_if_far_better: float = share(
         0.5,
-        "Part of that which must be left at most without it for it to be taken back.",
+        "Part of that which must be left at most by either to be told instead.",
         unit="share of what all effects leave",
     )
     curve_far_ahead: float = ratio(

@@ -122,28 +122,3 @@ def test_an_offset_that_drifts_is_taken_back_though_everything_else_holds(monkey
     monkeypatch.setattr(holding, "_without", lambda *args: stub(effects=()))
     left, gains, kept, told, whole = holding.holding(stub(settings=None, recorded=None), state, None, {}, judged)
     assert (left.effects, gains, kept, told, whole) == ((), {}, "plain", (), True)
-
-
-@pytest.mark.parametrize(
-    ("left", "without", "taken"), [(0.43, 0.02, True), (0.43, 0.30, False), (0.1, 0.001, False), (0.43, 1.2, False)]
-)
-def test_of_several_effects_the_weakest_goes_where_free_runs_are_much_better_without_it(
-    monkeypatch, stub, left: float, without: float, taken: bool
-) -> None:
-    """Seen: a positioning stage (EMPS), its friction told with a ripple and friction over the position beside it, validation 41 %; the
-    first alone has 93 %. Less than a quarter left is not asked about, nor is half of what is left enough.
-    """
-    state = stub(effects=("friction", "ripple"), compared_without=True, current="both")
-    fewer = stub(effects=("friction",), compared_without=True, current="friction")
-    alone = stub(holds=without < 1.0, unstable=(), mismatch=lambda effects: without)
-    judged = stub(
-        left=lambda effects: (left, 9.0, "pulses"), mismatch=lambda effects: left, having=lambda final, places: alone
-    )
-    monkeypatch.setattr(holding, "take_back_weakest", lambda *args: fewer)
-    monkeypatch.setattr(holding, "held_out_gains", lambda state, others: {"friction": "much"})
-    monkeypatch.setattr(holding, "finish", lambda hypothesis, *rest: hypothesis)
-    study = stub(settings=DiagnosisSettings(), budget=None, recorded=None)
-    others = stub(places=lambda hypothesis: {})
-    found = holding._much_better_without_weakest(study, state, others, {}, judged)
-    assert found == ((fewer, {"friction": "much"}, alone) if taken else None)
-    assert holding._much_better_without_weakest(study, fewer, others, {}, judged) is None, "one is left as it is"

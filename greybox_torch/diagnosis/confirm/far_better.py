@@ -1,0 +1,67 @@
+"""What stands in the place of effects where free runs of the validation experiments leave far less with it.
+
+No worse than the model as it stands is not enough: laws that took up what a right one lacks may undo most of what that one brings, and a
+curve that goes farther over windows may go astray where a record leaves the range that it was learned over.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
+from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.confirm.take_back import held_out_gains, take_back_weakest
+from greybox_torch.diagnosis.hypothesis.final import finish
+from greybox_torch.diagnosis.select.backward import drop_superfluous
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.stopping import result_of
+from greybox_torch.diagnosis.study import Study
+
+Standing = tuple[SearchState, Mapping[str, Gain], Judgement]
+"""A state, what its effects gain on held-out experiments, and its free runs."""
+
+
+def far_better(
+    study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], judged: Judgement
+) -> Standing | None:
+    """Names in the place of a free curve, or what is left without the weakest of several effects, where free runs leave far less with it.
+
+    None where neither does, or where too little is left to ask.
+    """
+    settings = study.settings
+    if others is None:
+        return None
+    left = judged.left(True)[0]
+    if state.has_curve and state.named is not None and left > settings.left_to_doubt_a_curve:
+        names = replace(state.named, plain=state.plain, named=None)
+        found = _standing(study, result_of(drop_superfluous(study, names)), others, judged)
+        if found is not None:
+            return found
+    if len(state.effects) < 2 or not left > settings.left_to_doubt_of_several:
+        return None
+    if not state.compared_without:
+        state = result_of(drop_superfluous(study, state))
+    return _standing(study, take_back_weakest(study, state, gains), others, judged)
+
+
+def _standing(study: Study, other: SearchState, others: HeldOut, judged: Judgement) -> Standing | None:
+    """``other`` if its free runs leave far less than those of ``judged``; None where they do not, or where it has no effects."""
+    if not other.effects:
+        return None
+    gains, by_it = judged_anew(study, other, others, judged)
+    far = by_it.mismatch(True) <= study.settings.left_if_far_better * judged.mismatch(True)
+    return (other, gains, by_it) if far and by_it.holds and not by_it.unstable else None
+
+
+def judged_anew(
+    study: Study, state: SearchState, others: HeldOut | None, judged: Judgement
+) -> tuple[Mapping[str, Gain], Judgement]:
+    """What the effects of a state gain on held-out experiments, and its free runs, beside the plain refit of ``judged``.
+
+    What one of several effects accounts for, others may take over once it is gone.
+    """
+    final = finish(state.current, study.settings, study.budget, study.recorded)
+    if others is None:
+        return {}, judged.having(final)
+    return held_out_gains(state, others), judged.having(final, others.places(state.current))
