@@ -96,12 +96,18 @@ def _promising(part: Problem, rows: np.ndarray, simulator: Simulator) -> np.ndar
     """Those of the start states ``rows`` (K, n_x) that simulate best, the states that are not tried from short windows."""
     others = part.initial_free & (np.ptp(rows, axis=0) == 0)
     rows = np.where(others, from_short_windows(part, simulator), rows)
+    return rows[np.argsort(free_run_energies(part, rows, simulator), kind="stable")[:MOST_TRIALS]]
+
+
+def free_run_energies(part: Problem, rows: np.ndarray, simulator: Simulator) -> np.ndarray:
+    """Sums of squared weighted errors (K,) of free runs of the one experiment of ``part`` from start states (K, n_x); infinite where one
+    overflows.
+    """
     first, last = (np.repeat(end, len(rows)) for end in (part.records.first, part.records.last))
     windows = Windows(first, last, int(part.records.lengths[0]))
     run = simulator.run(part.driving_records, Pass(windows, part.values, rows, weights=part.weights))
     assert run.normal is not None
-    energies = np.nan_to_num(run.normal[:, -1, -1], nan=np.inf)
-    return rows[np.argsort(energies, kind="stable")[:MOST_TRIALS]]
+    return np.nan_to_num(run.normal[:, -1, -1], nan=np.inf)
 
 
 def from_short_windows(part: Problem, simulator: Simulator) -> np.ndarray:

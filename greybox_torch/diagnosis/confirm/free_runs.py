@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.confirm.along_travel import begun_along_travel
 from greybox_torch.diagnosis.confirm.unstable import lost, parted
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.places import NOWHERE, Places
@@ -38,7 +39,7 @@ class FreeRuns:
 
         Args:
             places: start positions that no sensor shows, by experiment and state, as windows of the whole experiments have them; taken
-                where the first tenth of an experiment says nothing else.
+                where the first tenth of an experiment says nothing else, and its free run goes no nearer from elsewhere.
         """
         return self._compared(final.problem, final.problem.values, final, places)
 
@@ -65,6 +66,9 @@ class FreeRuns:
                 if name in started.records.names:  # else a stretch from within a recording
                     initial[started.records.names.index(name)] = row
             started = replace(started, initial=initial)
+            fitted = final.problem.records.names
+            asked = [e for e, name in enumerate(started.records.names) if name not in fitted]
+            started = begun_along_travel(started, simulator, asked)
         return compare(started, self.recordings, simulator, estimate_starts=False)
 
     def _simulated_as(self, like: Problem, values: np.ndarray) -> tuple[Problem, Simulator]:

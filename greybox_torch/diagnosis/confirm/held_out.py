@@ -10,6 +10,7 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.along_free_runs import along_free_runs, free_run_states
+from greybox_torch.diagnosis.confirm.along_travel import begun_along_travel
 from greybox_torch.diagnosis.effect import Timeline
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, window_lengths
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
@@ -115,6 +116,7 @@ def held_out_fits(
         else problem.with_values(np.array([values[n] for n in problem.names]))
     )
     started = estimate_initial(restated.fixed, simulator)
+    started = begun_along_travel(started, simulator, range(len(started.records.first)))
     shortest, *longer = window_lengths(problem, budget)
     short = placed(started, simulator, shortest, budget) or along_free_runs(started, simulator, shortest, budget)
     if short is None or not longer:
