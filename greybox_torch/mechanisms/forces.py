@@ -214,6 +214,12 @@ class AdditionalMode(Mechanism):
         shares = (0.002, 0.003, 0.0045, 0.007, 0.01, 0.015, 0.022, 0.033, 0.05, 0.075, 0.11)
         return [Probe(("mass",), {"omega": share * nyquist, "zeta": 0.05}) for share in shares]
 
+    def begun_elsewhere(self, around: Surroundings, values: Mapping[str, float]) -> Sequence[Mapping[str, float]]:
+        """Half a decade below and above: between a mass that moves along and a resonance the error has a valley of its own."""
+        nyquist = torch.pi / around.sample_time
+        there = (values["omega"] * factor for factor in (1 / 3, 3.0))
+        return [{"omega": w, "zeta": 0.05} for w in there if 2e-4 * nyquist < w < 0.3 * nyquist]
+
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         if values["zeta"] >= 1.0:
             return f"its damping ratio of {values['zeta']:.3g} lets nothing resonate"

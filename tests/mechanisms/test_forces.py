@@ -79,6 +79,14 @@ def test_additional_mode_reacts_with_what_accelerates_its_mass(law, rates, anywh
     np.testing.assert_allclose(force, -0.5 * rates(AdditionalMode(), MODE, memory, speed=anywhere["speed"])[1])
 
 
+@pytest.mark.parametrize(("omega", "others"), [(30.0, [10.0, 90.0]), (1.5, [4.5]), (600.0, [200.0])])
+def test_a_mode_is_begun_half_a_decade_away_within_its_bounds(omega, others) -> None:
+    """Seen: a motor's mode of 93 rad/s, refitted from 31 rad/s, stayed there; one at the arm, beyond the excited band, was told (0.85)."""
+    around = Surroundings({"speed": Range(-3.0, 5.0, 2.0)}, {"speed": "rad/s"}, "N m", 1e-3)
+    found = AdditionalMode().begun_elsewhere(around, {"mass": 0.5, "omega": omega, "zeta": 0.3})
+    assert [v["omega"] for v in found] == pytest.approx(others) and {v["zeta"] for v in found} == {0.05}
+
+
 def test_additional_mode_is_a_mass_to_slow_motion_and_rings_at_its_frequency(law, rates) -> None:
     def simulated(speed, x, seconds, step=1e-4):
         forces = []
