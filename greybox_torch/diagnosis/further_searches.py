@@ -134,7 +134,7 @@ def find_what_is_slow(
     try:
         with until(end):
             first.study.working_on("searching again over longer windows for what acts slowly")
-            longer = partial(make_study, budget=budget)
+            longer = partial(make_study, budget=budget, more_is_missing=True)
             last = find_with_more(find(first.dataset, model, longer, clock, end), model, longer, clock, end)
             found = stands(last.study, *((f.state, f.gains, f.judged) for f in (first, last)))
     except (TimeIsUp, KeyboardInterrupt):

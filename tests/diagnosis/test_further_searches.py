@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -211,3 +212,18 @@ def test_what_no_free_run_follows_is_chosen_with(monkeypatch, stub, first, more,
     best = find_with_more(found, stub(), stub(), stub(), Deadline.after(60.0) if limited else Deadline())
     assert best.state is (again if replaced else found).state
     assert len(asked) == 1
+
+
+def test_over_longer_windows_nothing_that_is_left_is_too_little(monkeypatch, stub, first) -> None:
+    begun: list[dict[str, Any]] = []
+
+    def find(dataset: Any, model: Any, make_study: Any, *rest: Any) -> Selection:
+        begun.append(make_study.keywords)
+        raise TimeIsUp
+
+    monkeypatch.setattr(further_searches, "longer_windows", lambda *args: "longer")
+    monkeypatch.setattr(further_searches, "find", find)
+    first = replace(first, study=stub(working_on=lambda text: None))
+    found = further_searches.find_what_is_slow(judged(first, None), stub(), partial(stub), stub())
+    assert begun == [{"budget": "longer", "more_is_missing": True}]
+    assert not found.complete and found.cut == (further_searches.LONGER,)

@@ -108,7 +108,9 @@ def _sure(cost_before: Callable[[], float], ranked: RankedCandidate, settings: D
 def little_is_left(study: Study, state: SearchState) -> bool:
     """Whether what the effects so far leave of the mismatch is less than a finding is."""
     settings = study.settings
-    return bool(state.effects) and remaining_share(state.plain, state.current, settings) < settings.least_size
+    if not state.effects or study.more_is_missing:
+        return False
+    return remaining_share(state.plain, state.current, settings) < settings.least_size
 
 
 def with_better_fit(state: SearchState, fitted: Hypothesis) -> SearchState:

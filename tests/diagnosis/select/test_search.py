@@ -15,7 +15,7 @@ from greybox_torch.diagnosis.screen.score_test import ScreenScore, _sound
 from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
 from greybox_torch.diagnosis.select import choice
 from greybox_torch.diagnosis.select.choice import as_unsure_as_a_name, chosen, part_of_a_curve, simplest
-from greybox_torch.diagnosis.select.forward_step import substantial
+from greybox_torch.diagnosis.select.forward_step import little_is_left, substantial
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.window_fit import WindowFit
@@ -215,3 +215,12 @@ def test_what_is_left_is_counted_beyond_the_noise(ranked) -> None:
     assert (
         remaining_share(noise, noise, SETTINGS) == 1.0
     )  # where the plain model leaves noise alone there is no mismatch to have a share of
+
+
+@pytest.mark.parametrize("ranked", [LOUD], indirect=True)
+def test_little_is_not_little_where_free_runs_show_that_more_is_missing(stub, ranked) -> None:
+    """Seen: an arm's drag beside a delay: 0.1 % of the mismatch over windows, a quarter of it in free runs."""
+    plain, fitted = (ranked(ViscousFriction(), np.full(WINDOWS, e)).fitted for e in (1000.0, 1.2 * LOUD**2))
+    state = stub(effects=("friction",), plain=plain, current=fitted)
+    assert little_is_left(stub(settings=SETTINGS, more_is_missing=False), state)
+    assert not little_is_left(stub(settings=SETTINGS, more_is_missing=True), state)
