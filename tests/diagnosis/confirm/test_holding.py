@@ -37,7 +37,8 @@ def a_stop(stub: Any, found: Gain | None, law: Any = EndStop, over_windows: floa
     final = stub(values=lambda: named, deviations=lambda: dict.fromkeys(named, 50.0))
     current = stub(values=lambda: dict.fromkeys(named, over_windows))
     study = stub(surroundings={"link": around}, settings=DiagnosisSettings())
-    return _empty(study, stub(effects=(effect,), current=current), final, {} if found is None else {"link.law": found})
+    state, gains = stub(effects=(effect,), current=current), {} if found is None else {"link.law": found}
+    return _empty(study, state, final, gains) or holding._undone(study, state, gains)
 
 
 def test_what_held_out_experiments_prove_is_not_empty_whatever_trades_for_what(stub) -> None:
@@ -82,6 +83,7 @@ def test_where_whole_records_lead_astray_the_values_of_the_windows_may_stand(mon
     )
     monkeypatch.setattr(holding, "as_windows_have_it", lambda hypothesis, records: hypothesis)
     monkeypatch.setattr(holding, "_empty", lambda *args: None)
+    monkeypatch.setattr(holding, "_undone", lambda *args: None)
     monkeypatch.setattr(holding, "take_back_weakest", lambda *args: stub(effects=()))
     monkeypatch.setattr(holding, "said_of_windows", lambda *args: ())
     left, gains, kept, told, whole = holding.holding(stub(settings=None, recorded=None), state, None, {}, judged)
@@ -108,6 +110,7 @@ def test_values_that_hold_on_some_experiments_give_way_to_better_ones_and_are_no
     judged = stub(holds=True, unstable={"run 2"}, augmented="records", having=having, by_windows_alone=False)
     monkeypatch.setattr(holding, "as_windows_have_it", lambda hypothesis, records: hypothesis)
     monkeypatch.setattr(holding, "_empty", lambda *args: None)
+    monkeypatch.setattr(holding, "_undone", lambda *args: None)
     left, gains, kept, told, whole = holding.holding(stub(settings=None, recorded=None), state, None, {}, judged)
     assert left is state and whole is time
     assert (kept, told) == ((by_windows, (WINDOWS_STAND,)) if windows else (judged, ()))
@@ -118,7 +121,37 @@ def test_an_offset_that_drifts_is_taken_back_though_everything_else_holds(monkey
     state = stub(effects=(effect,), current="windows", compared_without=True, prefixes={"arm.constant_bias"})
     judged = stub(holds=True, unstable=(), augmented="records", by_windows_alone=False, without_effects=lambda: "plain")
     monkeypatch.setattr(holding, "_empty", lambda *args: None)
+    monkeypatch.setattr(holding, "_undone", lambda *args: None)
     monkeypatch.setattr(holding, "_drifting", lambda *args: "arm.constant_bias")
     monkeypatch.setattr(holding, "_without", lambda *args: stub(effects=()))
     left, gains, kept, told, whole = holding.holding(stub(settings=None, recorded=None), state, None, {}, judged)
     assert (left.effects, gains, kept, told, whole) == ((), {}, "plain", (), True)
+
+
+@pytest.mark.parametrize(("before", "after", "kept"), [(1e-4, 0.2, True), (1e-4, 0.01, False), (0.1, 0.5, False)])
+def test_what_free_runs_need_is_no_less_there_for_being_undone_over_short_windows(
+    monkeypatch, stub, before: float, after: float, kept: bool
+) -> None:
+    """Seen: a crane's boom, whose bias was taken back as undone, and with it its presliding. A model that leaves more anyway may lack
+    something else, for which the effect stands."""
+
+    def judgement(left: float) -> Any:
+        return stub(
+            left=lambda effects: (left, 9.0, "run 2"), holds=True, unstable=(), augmented=None, by_windows_alone=False
+        )
+
+    bias, slip = stub(prefix="boom.constant_bias"), stub(prefix="boom.presliding")
+    both = stub(effects=(bias, slip), compared_without=True, prefixes={bias.prefix, slip.prefix})
+    fewer = stub(effects=(slip,), compared_without=True, prefixes={slip.prefix})
+    first, then = judgement(before), judgement(after)
+    asked = {
+        "_empty": lambda *args: None,
+        "_undone": lambda study, state, gains, needed: bias.prefix if state is both and not needed else None,
+        "_without": lambda study, state, prefix: fewer,
+        "judged_anew": lambda *args: ("gains", then),
+        "far_better": lambda *args: None,
+    }
+    for name, step in asked.items():
+        monkeypatch.setattr(holding, name, step)
+    left, _, judged, _, _ = holding.holding(stub(settings=DiagnosisSettings()), both, None, {}, first)
+    assert (left, judged) == ((both, first) if kept else (fewer, then))
