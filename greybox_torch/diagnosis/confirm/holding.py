@@ -152,7 +152,7 @@ def _far_worse(study: Study, fewer: SearchState, others: HeldOut | None, judged:
     """Whether free runs leave next to nothing of the mismatch with the effects of ``judged``, and as much as a finding is without one.
 
     Short windows may hide what an offset does beside friction; where a model is as complete as that, nothing else is missing for which one
-    of its effects could stand. Seen: a crane's boom, whose bias was taken back as undone, and its presliding with it: 18 % left, not 0.01 %.
+    of its effects could stand. Seen: the bias of a crane's boom, taken back as undone, and its presliding with it: 18 % left, not 0.01 %.
     """
     least = study.settings.least_size
     if judged.left(True)[0] >= least:
