@@ -147,7 +147,7 @@ def rank(
 
 
 def _missing_of_promise(study: Study, candidate: Candidate, before: float, own: Hypothesis | None) -> float | None:
-    """What dry friction lacks of what the screen promises (logarithms of the error), where that is more than half of it; else None.
+    """What dry friction lacks of what the screen promises (logarithms of the error), where that is much of it; else None.
 
     Its steps may be too long: where it holds a light body its tangents grow from step to step, and no refit moves.
     """
@@ -155,7 +155,7 @@ def _missing_of_promise(study: Study, candidate: Candidate, before: float, own: 
         return None
     promised = -float(np.log1p(-min(candidate.explained, MOST_PROMISED)))
     missing = promised if own is None else promised - max(before - own.score, 0.0)
-    return missing if missing > 0.5 * promised else None
+    return missing if missing > study.budget.most_of_promise_missing * promised else None
 
 
 def _finalists_of(

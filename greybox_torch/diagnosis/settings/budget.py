@@ -164,10 +164,13 @@ class SearchBudget:
     )
     promise_of_dry_friction: float = share(
         0.3,
-        "Share of the residual that the screen has to promise of dry friction for it to be tried in finer steps where it comes to less "
-        "than half of that.",
+        "Share of the residual that the screen has to promise of dry friction for it to be tried in finer steps where it lacks much of "
+        "that.",
         unit="share of the residual's energy",
         chosen_by=TIME,
+    )
+    most_of_promise_missing: float = share(
+        0.5, "Part of the promise that it then has to lack.", unit="share, as logarithms of the error", chosen_by=TIME
     )
     part_of_missing_promise: float = share(
         0.25,
