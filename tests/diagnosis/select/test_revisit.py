@@ -219,6 +219,8 @@ def test_what_no_rival_came_near_is_not_chosen_once_more(two_lacking, monkeypatc
     first = state.effects[0]
     state = result_of(drop_superfluous(search.study, state))
     assert len(state.effects) == 2
+    # A force at the rotor is a bias of the voltage there, to the last digit: which of the two is taken is not what is asked here.
+    monkeypatch.setattr("greybox_torch.diagnosis.select.search.rivalled_beside_others", lambda *given: False)
     monkeypatch.setattr("greybox_torch.diagnosis.select.search.separated", lambda *given: True)
     assert beyond_doubt(search.study, state, first) and result_of(revise(search.study, state)).current is state.current
     monkeypatch.setattr("greybox_torch.diagnosis.select.search.separated", lambda *given: False)
