@@ -9,8 +9,8 @@ import pytest
 
 from experiments.speed.diagnosis.cases import ARM, DEMO, PENDULUM, cases, development_cases
 from experiments.speed.diagnosis.profiled import CARRYING, PURPOSES, purpose_of
-from experiments.speed.diagnosis.timed import Timed, checked_out
-from experiments.speed.rows.diagnosis import _entry, _targets
+from experiments.speed.diagnosis.timed import Timed, checked_out, stood_from
+from experiments.speed.rows.diagnosis import _entry, _leading, _targets
 
 PACKAGE = Path(__file__).resolve().parents[2] / "greybox_torch"
 
@@ -50,11 +50,28 @@ def test_targets_count_what_did_not_end_as_missed() -> None:
 
 def test_a_case_is_told_with_what_took_longest_and_how_it_compares() -> None:
     passes = {"trials": {"seconds": 2.0}, "polishing": {"seconds": 3.0}}
-    slow, fast = (Timed(s, s + 4.0, {}, passes, "rotor coulomb_friction") for s in (10.0, 5.0))
+    slow, fast = (Timed(s, s + 4.0, {}, passes, "rotor coulomb_friction", 1.5) for s in (10.0, 5.0))
     entry = _entry("demo, at abc", slow, fast)
     assert (entry.seconds, entry.compile_seconds, entry.ours) == (10.0, 4.0, False)
-    assert entry.note == "2.00 times as long; rotor coulomb_friction; polishing 3.0 s, trials 2.0 s"
+    assert (
+        entry.note == "2.00 times as long; rotor coulomb_friction (leads from 1.5 s on); polishing 3.0 s, trials 2.0 s"
+    )
     assert _entry("demo", None).seconds is None
+
+
+def test_a_finding_leads_from_when_nothing_else_took_its_place() -> None:
+    lag, delay, stop = ("actuator", "input_lag"), ("sensor", "output_delay"), ("cart", "end_stop")
+    effect = {"port": "actuator", "mechanism": "input_lag"}
+    heard = [(1.0, [lag]), (2.0, [stop]), (3.0, [delay]), (4.0, []), (5.0, [stop, lag])]
+    assert stood_from(heard, {"effects": [effect]}, 9.0) == 5.0
+    both = {**effect, "one_of": {"members": [{"port": p, "mechanism": m} for p, m in (lag, delay)]}}
+    assert stood_from(heard, {"effects": [both]}, 9.0) == 3.0, "what it cannot be told from leads as well"
+    assert stood_from([], {"effects": [effect]}, 9.0) == stood_from(heard, {"effects": []}, 9.0) == 9.0
+
+
+def test_the_share_of_cases_that_lead_in_time_counts_what_failed() -> None:
+    details = {"one": [{"leading": 3.0}], "two": [{"leading": 11.0}], "three": [None], "four": [{"leading": 10.0}]}
+    assert _leading(details).measured == 50.0 and not _leading(details).met
 
 
 def test_the_demo_is_always_there_and_an_unknown_commit_is_said() -> None:

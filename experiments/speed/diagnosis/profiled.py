@@ -100,11 +100,34 @@ def watch(passes: Passes) -> None:
     native.library = library
 
 
+Heard = list[tuple[float, list[tuple[str, str]]]]
+"""After how many seconds which effects, as ports and mechanisms, were told as the leading finding."""
+
+
+def hear(began: float) -> Heard:
+    """What a diagnosis tells of its leading finding from now on; nothing where the package does not tell it yet."""
+    heard: Heard = []
+    try:
+        from greybox_torch.diagnosis.progress import Journal
+    except ImportError:
+        return heard
+    plain = Journal._tell
+
+    def tell(self: Any, **changes: Any) -> None:
+        if "effects" in changes:
+            heard.append((time.perf_counter() - began, [tuple(e) for e in changes["effects"]]))
+        plain(self, **changes)
+
+    Journal._tell = tell
+    return heard
+
+
 def main(card: str, out: str, *more: str) -> int:
     """Diagnose ``card`` into the folder ``out`` as from the shell; the passes by purpose go to its ``passes.json``."""
     began = time.perf_counter()
     passes = Passes()
     watch(passes)
+    heard = hear(began)
     from greybox_torch.cli import main as command
 
     imported, processor = time.perf_counter() - began, time.process_time()
@@ -119,6 +142,7 @@ def main(card: str, out: str, *more: str) -> int:
         "seconds": time.perf_counter() - began,
         "processor": time.process_time() - processor,
         "passes": passes.by_purpose,
+        "heard": heard,
     }
     if code == 0:
         (Path(out) / "passes.json").write_text(json.dumps(took, indent=1))

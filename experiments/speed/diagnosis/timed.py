@@ -7,7 +7,7 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -21,13 +21,17 @@ LIMIT = 900
 
 @dataclass(frozen=True)
 class Timed:
-    """Seconds of a diagnosis with cached machine code and without, its stages and passes in the former, and what it said."""
+    """Seconds of a diagnosis with cached machine code and without, its stages and passes in the former, and what it said.
+
+    ``leading``: after how many seconds a finding of the verdict stood on the screen, and one did from then on (see :func:`stood_from`).
+    """
 
     seconds: float
     cold: float
     stages: dict[str, float]
     passes: dict[str, dict[str, float]]
     said: str
+    leading: float = float("inf")
 
     def as_json(self) -> dict[str, Any]:
         return asdict(self)
@@ -52,7 +56,29 @@ def timed(tree: Path, card: Path, time_limit: float | None = None) -> Timed | No
     verdict, took = warm
     effects = [f"{e['port']} {e['mechanism']}" for e in verdict["effects"]]
     said = ", ".join(effects) or ("missing, no name" if verdict["mismatch"] else "nothing")
-    return Timed(verdict["seconds"], cold[0]["seconds"], verdict["stages"], took["passes"], said)
+    leading = stood_from(took.get("heard", []), verdict, took["seconds"])
+    return Timed(verdict["seconds"], cold[0]["seconds"], verdict["stages"], took["passes"], said, leading)
+
+
+def stood_from(
+    heard: Sequence[tuple[float, Sequence[Sequence[str]]]], verdict: Mapping[str, Any], whole: float
+) -> float:
+    """After how many seconds one of a verdict's findings, or what it cannot be told from, led on the screen and did so to the end.
+
+    Args:
+        heard: after how many seconds which effects led.
+        whole: seconds of the whole diagnosis, where nothing was found or nothing of it was told.
+    """
+    told = {(e["port"], e["mechanism"]) for e in verdict["effects"]}
+    told |= {
+        (m["port"], m["mechanism"]) for e in verdict["effects"] for m in (e.get("one_of") or {}).get("members", ())
+    }
+    since = whole
+    for seconds, effects in reversed(heard):
+        if effects and not told & {(port, mechanism) for port, mechanism in effects}:
+            break
+        since = seconds if effects else since
+    return since
 
 
 def _run(
