@@ -34,6 +34,8 @@ class Gain:
     timelines: tuple[Timeline, ...] = ()
     size: float = float("nan")
     """Share of the plain model's held-out mismatch that leaving the effect out brings back."""
+    untouched: bool = False
+    """Whether nothing changes there without the effect, all else as it is, such as a limit that is never reached."""
 
     @property
     def errors_away(self) -> float:
@@ -42,7 +44,7 @@ class Gain:
 
     def unexercised(self, settings: DiagnosisSettings) -> bool:
         """Whether held-out experiments do not exercise the effect: with it and without it they come out alike."""
-        return abs(self.share) + self.error < settings.unexercised
+        return self.untouched or abs(self.share) + self.error < settings.unexercised
 
     @property
     def interval(self) -> tuple[float, float]:

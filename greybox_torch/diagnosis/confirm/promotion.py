@@ -16,6 +16,7 @@ from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.select.rivals_beside import rivals_in_its_place
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.attachment import Attachment
 
 
 @dataclass(frozen=True)
@@ -119,21 +120,35 @@ def serves(others: HeldOut, before: SearchState, after: SearchState) -> bool:
     shows an effect that they need not show, such as a stop that they never reach. Against nothing the latter is enough.
     """
     fits, fits_before = others.fits(after.current), others.fits(before.current)
-    adds = not before.effects or before.prefixes < after.prefixes
+    further = len(before.effects) < len(after.effects) and all(_there(e, after) for e in before.effects)
+    adds = not before.effects or further
     better = bool(before.effects) and gain(fits_before, fits).share > 0
-    return better or (adds and _no_worse(others, before, after))
+    return better or (adds and (_no_worse(others, before, after) or _hardly_worse(others, before, after)))
+
+
+def _there(effect: Attachment, state: SearchState) -> bool:
+    """Whether a state has an effect, or one of the same nature: which of its look-alikes it is, a larger effect may have decided.
+
+    Seen: a motor's lag, told as a dead time until the stop was found that another experiment shows.
+    """
+    nature = effect.mechanism.nature
+    return effect.prefix in state.prefixes or (
+        bool(nature) and any(e.mechanism.nature == nature for e in state.effects)
+    )
 
 
 def _no_worse(others: HeldOut, before: SearchState, after: SearchState) -> bool:
-    """Whether the model of ``after`` predicts held-out experiments no worse than that of ``before``, beyond chance.
+    """Whether the model of ``after`` predicts held-out experiments no worse than that of ``before``, beyond chance."""
+    further = gain(others.fits(after.current), others.fits(before.current))
+    return further.errors_away < others.study.settings.held_out_beyond_chance
 
-    Or, where that has no effects, worse by less than a finding beside the mismatch that the plain model leaves there once it is estimated
-    from what was taken: what the law of a stop lacks to be the machine's bends the parameters a little.
+
+def _hardly_worse(others: HeldOut, before: SearchState, after: SearchState) -> bool:
+    """Whether it is worse by less than a finding beside the mismatch that the plain model leaves there once it is estimated from what was
+    taken: what the law of a stop lacks to be the machine's bends the parameters a little.
     """
     settings, old, new = others.study.settings, others.fits(before.current), others.fits(after.current)
-    if gain(new, old).errors_away < settings.held_out_beyond_chance:
-        return True
-    return not before.effects and size(others.fits(after.plain), new, old, settings) < settings.least_size
+    return size(others.fits(after.plain), new, old, settings) < settings.least_size
 
 
 def _complete(others: HeldOut, state: SearchState) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -94,15 +96,29 @@ def test_where_one_more_experiment_shows_that_nothing_is_missing_that_is_the_ans
 def test_what_adds_to_what_was_found_need_not_show_in_the_experiments_that_are_left(monkeypatch, stub) -> None:
     """Seen: dry friction, and a stop that one validation experiment alone reached; the two left to judge said neither yes nor no."""
     alike, worse = Gain(-0.01, 0.01), Gain(-0.3, 0.01)
-    found = {"current": "friction", "effects": ("friction",), "prefixes": {"friction"}}
-    more = {"current": "both", "effects": ("friction", "stop"), "prefixes": {"friction", "stop"}}
-    other = {"current": "other", "effects": ("stop",), "prefixes": {"stop"}}
+    friction, stop, lag, delay = (
+        stub(prefix=p, mechanism=stub(nature=n))
+        for p, n in (("friction", "dry friction"), ("stop", ""), ("lag", "a time shift"), ("delay", "a time shift"))
+    )
+
+    def state(*effects: Any) -> dict[str, Any]:
+        prefixes = {e.prefix for e in effects}
+        return {"current": "+".join(sorted(prefixes)), "effects": effects, "prefixes": prefixes, "plain": "plain"}
+
+    found, more, other = state(friction), state(friction, stop), state(stop)
+    monkeypatch.setattr(promotion, "size", lambda *args: 0.5)
     others = stub(fits=lambda hypothesis: hypothesis, study=stub(settings=DiagnosisSettings()))
-    for after, by_more, takes in ((more, alike, True), (other, alike, False), (more, worse, False)):
-        better_before = Gain(-by_more.share, by_more.error)
-        gains = {("friction", after["current"]): by_more, (after["current"], "friction"): better_before}
+    for before, after, by_more, takes in (
+        (found, more, alike, True),
+        (found, other, alike, False),
+        (found, more, worse, False),
+        (state(delay), state(lag, stop), alike, True),  # which of the two it is, the stop has decided
+        (state(delay), state(friction, stop), alike, False),
+    ):
+        better_before, names = Gain(-by_more.share, by_more.error), (before["current"], after["current"])
+        gains = {names: by_more, names[::-1]: better_before}
         monkeypatch.setattr(promotion, "gain", lambda old, new, gains=gains: gains[old, new])
-        assert serves(others, stub(**found), stub(**after)) is takes
+        assert serves(others, stub(**before), stub(**after)) is takes
 
 
 def test_what_only_the_last_experiment_shows_is_said_to_be_missing_without_a_name(drag_at_speed, motor) -> None:
@@ -145,7 +161,7 @@ def test_the_same_effects_estimated_from_what_cannot_score_as_well_are_preferred
     assert replaces(others, before, after, settles) is takes
 
 
-@pytest.mark.parametrize(("lost", "found", "takes"), [(0.003, (), True), (0.3, (), False), (0.003, ("other",), False)])
+@pytest.mark.parametrize(("lost", "found", "takes"), [(0.003, (), True), (0.3, (), False), (0.003, ("lag",), True)])
 def test_what_was_taken_shows_an_effect_that_lacks_a_little_to_be_the_machines(
     monkeypatch, stub, lost, found, takes
 ) -> None:
@@ -153,8 +169,9 @@ def test_what_was_taken_shows_an_effect_that_lacks_a_little_to_be_the_machines(
 
     The model as it stands, estimated from what was taken, left 700 times the noise there.
     """
-    before = stub(current="before", effects=found, prefixes=set(found))
-    after = stub(current="after", plain="plain", effects=(*found, "stop"), prefixes={*found, "stop"})
+    effects = tuple(stub(prefix=p, mechanism=stub(nature="")) for p in found)
+    before = stub(current="before", effects=effects, prefixes=set(found))
+    after = stub(current="after", plain="plain", effects=(*effects, "stop"), prefixes={*found, "stop"})
     others = stub(fits=lambda hypothesis: hypothesis, study=stub(settings=DiagnosisSettings()))
     monkeypatch.setattr(promotion, "gain", lambda old, new: Gain(0.9 if new == "before" else -9.0, 0.03))
     shares = {("plain", "after", "before"): lost}

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greybox_torch.diagnosis.confirm import take_back
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified, with_simpler_laws
 from greybox_torch.diagnosis.confirm.take_back import _idle, goes_farther_in_most_windows
@@ -150,3 +151,25 @@ def test_one_window_beyond_its_range_does_not_decide_against_a_curve(stub, by_na
     assert goes_farther_in_most_windows(*mixed, settings) is False, "in a third of them it is no better"  # type: ignore[arg-type]
     few = [side[1:] for side in given]
     assert goes_farther_in_most_windows(*few, settings) is False, "five windows are too few"  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("share", "own", "untouched"), [(0.004, 0.0, True), (0.004, 0.01, False), (0.3, 0.0, False)])
+def test_what_is_never_reached_on_held_out_experiments_is_not_taken_back_by_them(
+    monkeypatch, stub, share: float, own: float, untouched: bool
+) -> None:
+    """Seen: an amplifier's limit, reached in one experiment alone. What frees the other parameters by much is no such thing."""
+    asked = {("refit", "full"): Gain(share, 0.003), ("same values", "full"): Gain(own, 0.0)}
+    monkeypatch.setattr(take_back, "gain", lambda before, after: asked[before, after])
+    monkeypatch.setattr(take_back, "size", lambda *args: 0.0)
+    monkeypatch.setattr(take_back, "timelines", lambda *args: ())
+    fits = {"plain": "plain", "with it": "full", "without": "refit"}
+    others = stub(
+        fits=fits.__getitem__,
+        fits_at=lambda hypothesis, values: {"without": "same values"}[hypothesis],
+        study=stub(settings=DiagnosisSettings()),
+    )
+    current = stub(values=dict)
+    fits[current] = "full"
+    state = stub(plain="plain", current=current, without={"actuator.torque_saturation": "without"})
+    (found,) = take_back.held_out_gains(state, others).values()
+    assert found.untouched is found.unexercised(DiagnosisSettings()) is untouched
