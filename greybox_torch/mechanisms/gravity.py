@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import torch
 
+from greybox_torch.mechanisms.degenerate import is_angle
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
 
@@ -51,6 +52,11 @@ class Gravity(Mechanism):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(tuple(p.name for p in self.parameters(around)))]
+
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        if is_angle(around):
+            return None
+        return f"weight goes with the sine of an angle, and position is in {around.units['position']}"
 
     def _ends(self) -> list[tuple[str, str]]:
         """What the names and the descriptions of the amplitudes end with."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 import torch
 
 from greybox_torch.mechanisms.gravity import Gravity
@@ -45,3 +46,11 @@ def test_torques_of_a_chain_are_the_slopes_of_one_potential() -> None:
 def test_a_chain_is_made_again_from_its_options() -> None:
     law = Gravity(["first", "second"])
     assert Gravity(**law.options()).links == ("first", "second")
+
+
+@pytest.mark.parametrize(("unit", "said"), [("rad", None), ("m", "position is in m")])
+def test_weight_goes_with_an_angle(unit: str, said: str | None) -> None:
+    """Seen: a constant force on a stage, told as gravity (0.77)."""
+    around = Surroundings({"position": Range(-0.2, 0.2, 0.1)}, {"position": unit}, "N", 1e-3)
+    found = Gravity().degenerate(around, {"a": 0.1, "b": -2.0}, {})
+    assert found is None if said is None else said in str(found)
