@@ -6,13 +6,16 @@ import pytest
 
 from greybox_torch.diagnosis.confirm import far_better as module
 from greybox_torch.diagnosis.confirm.far_better import far_better, judged_anew
+from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
+
+SURE = Gain(0.9, 0.01, size=0.9)
 
 
 @pytest.fixture
 def study(stub, monkeypatch):
-    monkeypatch.setattr(module, "held_out_gains", lambda state, others: {"friction": "much"})
+    monkeypatch.setattr(module, "held_out_gains", lambda state, others: {"friction": SURE})
     monkeypatch.setattr(module, "finish", lambda hypothesis, *rest: hypothesis)
     return stub(settings=DiagnosisSettings(), budget=None, recorded=None)
 
@@ -44,7 +47,7 @@ def test_of_several_effects_the_weakest_goes_where_free_runs_are_much_better_wit
     monkeypatch.setattr(module, "take_back_weakest", lambda *args: fewer)
     others = stub(places=lambda hypothesis: {})
     found = far_better(study, state, others, {}, judged)
-    assert found == ((fewer, {"friction": "much"}, alone) if taken else None)
+    assert found == ((fewer, {"friction": SURE}, alone) if taken else None)
     assert far_better(study, fewer, others, {}, judged) is None, "one is left as it is"
 
 
@@ -73,7 +76,17 @@ def test_names_go_before_a_curve_that_free_runs_follow_far_less(
         assert found is None
         return
     told, gains, judged = found
-    assert told.current is friction and told.named is None and judged is named and gains == {"friction": "much"}
+    assert told.current is friction and told.named is None and judged is named and gains == {"friction": SURE}
+
+
+def test_what_windows_do_not_bear_out_stands_in_no_place(monkeypatch, stub, study) -> None:
+    """Seen: an arm's mode in the place of a bump along its speed, whose curve one free run of four does not follow."""
+    state = stub(effects=("friction", "ripple"), compared_without=True, current="both", has_curve=False)
+    fewer = stub(effects=("friction",), compared_without=True, current="friction", has_curve=False)
+    monkeypatch.setattr(module, "take_back_weakest", lambda *args: fewer)
+    monkeypatch.setattr(module, "held_out_gains", lambda state, others: {"friction": Gain(-0.13, 0.07)})
+    judged = judgement(stub, 0.43, judgement(stub, 0.02))
+    assert far_better(study, state, stub(places=lambda hypothesis: {}), {}, judged) is None
 
 
 def test_without_held_out_experiments_nothing_stands_in_the_place_of_what_was_found(stub, study) -> None:
