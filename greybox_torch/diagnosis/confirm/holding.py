@@ -8,6 +8,7 @@ from functools import partial
 from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
 from greybox_torch.diagnosis.confirm.far_better import far_better, judged_anew
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
+from greybox_torch.diagnosis.confirm.joint_deviation import within_one_deviation
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.same_everywhere import drifts
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified
@@ -114,12 +115,13 @@ def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[st
 
     Deviations are asked only where held-out experiments do not show by themselves that zero is not as good: of two amplitudes that trade
     for one another, as the stiffness and the damping of a hard stop, neither may be determined. What they show is the effect as windows
-    have it; where whole records leave next to nothing of that, it proves nothing.
+    have it; where whole records leave next to nothing of that, or amplitudes that even together are chance, it proves nothing.
     """
     values, deviations, over_windows = augmented.values(), augmented.deviations(), state.current.values()
     for e in state.effects:
         vanished = _share_kept(study, e, over_windows, values) < study.settings.least_share_kept
-        proven = not e.mechanism.essential and not vanished and _proven(gains.get(e.prefix), study.settings)
+        shown = not vanished and not within_one_deviation(augmented, e, study.surroundings)
+        proven = not e.mechanism.essential and shown and _proven(gains.get(e.prefix), study.settings)
         if degenerate(e, study.surroundings, values, {} if proven else deviations) is not None:
             return e.prefix
     return None

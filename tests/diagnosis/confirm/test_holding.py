@@ -34,7 +34,10 @@ def a_stop(stub: Any, found: Gain | None, law: Any = EndStop, over_windows: floa
     effect = stub(prefix="link.law", port="link", mechanism=law())
     values = {p.name: p.value if p.fixed else 0.5 for p in law().parameters(around)}
     named = {f"link.law.{n}": v for n, v in values.items()}
-    final = stub(values=lambda: named, deviations=lambda: dict.fromkeys(named, 50.0))
+    deviations = dict.fromkeys(named, 50.0)
+    final = stub(
+        values=lambda: named, deviations=lambda: deviations, uncertainty=None, problem=stub(free_names=tuple(named))
+    )
     current = stub(values=lambda: dict.fromkeys(named, over_windows))
     study = stub(surroundings={"link": around}, settings=DiagnosisSettings())
     state, gains = stub(effects=(effect,), current=current), {} if found is None else {"link.law": found}
