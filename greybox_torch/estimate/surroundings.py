@@ -48,6 +48,8 @@ def _around(
                 values["load"] = _evaluated(body.load, x, u, p, times)
     if isinstance(port, Actuator | Coupling) and (body := driving_body(model.ports)) is not None:
         values["speed"] = _evaluated(body.speed, x, u, p, times)
+        if isinstance(port, Actuator) and body.position is not None:
+            values["position"] = _evaluated(body.position, x, u, p, times)
     if isinstance(port, Sensor):
         row = [o.name for o in model.outputs].index(port.output)
         values["output"] = problem.records.y[row][~np.isnan(problem.records.y[row])]
@@ -109,6 +111,8 @@ def _units(model: GreyBoxModel, port: Port) -> dict[str, str]:
     body = driving_body(model.ports)
     if isinstance(port, Actuator | Coupling) and body is not None and isinstance(body.speed, str):
         units["speed"] = of[body.speed]
+    if isinstance(port, Actuator) and body is not None and body.position is not None:
+        units["position"] = position_unit(model, body)
     if isinstance(port, Sensor):
         units["output"] = next(o.unit for o in model.outputs if o.name == port.output)
     units["time"] = "s"

@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import torch
-
 from greybox_torch.mechanisms.degenerate import not_seen_to_repeat
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
+from greybox_torch.mechanisms.waves import HARMONICS, amplitudes_up_to, slope_of_waves, wave_parameters, waves
 from greybox_torch.model import Parameter, Signals
 
 
 class TransmissionError(Mechanism):
-    """The spring sees the deflection plus e(θ) = a cos nθ + b sin nθ, with θ the position of the driving body.
+    """The spring sees the deflection plus e(θ) = a cos nθ + b sin nθ, with θ the position of the driving body, and ``harmonics`` of it.
+
+    A wheel off its centre gives the order of its turns, one that is oval twice that.
 
     By virtual work that body feels de/dθ times the spring's force as well; ``reaction`` is the share of it that acts (an error on the
     far side of a reduction reaches the near side divided by the ratio), where the model says what load the body carries. Where the
@@ -30,17 +31,13 @@ class TransmissionError(Mechanism):
     source = "T. Tuttle, W. Seering, IEEE Trans. Robotics and Automation 12(3), 1996"
     experiment = "slow constant speed over several turns, in both directions"
 
-    def __init__(self, order: float = 1.0) -> None:
-        self.order = order
+    def __init__(self, order: float = 1.0, harmonics: int = 1) -> None:
+        self.order, self.harmonics = order, harmonics
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         unit = around.units.get("deflection", "")
         return [
-            Parameter("a", 0.0, unit, description="cosine amplitude"),
-            Parameter("b", 0.0, unit, description="sine amplitude"),
-            Parameter(
-                "order", self.order, "", lower=0.8 * self.order, upper=1.25 * self.order, description="periods per turn"
-            ),
+            *wave_parameters(around, self.order, self.harmonics, unit),
             *(
                 [
                     Parameter(
@@ -58,19 +55,22 @@ class TransmissionError(Mechanism):
         ]
 
     def deflection(self, s: Signals, p: Signals) -> Any:
-        angle = p.order * s.position
-        return s.deflection + p.a * torch.cos(angle) + p.b * torch.sin(angle)
+        return s.deflection + waves(s.position, p, self.harmonics)
 
     def reaction(self, s: Signals, p: Signals) -> Any:
-        return -p.reaction * _slope(s, p) * s.load if "reaction" in p and "load" in s else None
+        return -p.reaction * self._slope(s, p) * s.load if "reaction" in p and "load" in s else None
 
     def damped(self, s: Signals, p: Signals) -> Any:
-        return p.damping * _slope(s, p) * s.speed if "damping" in p and "speed" in s else None
+        return p.damping * self._slope(s, p) * s.speed if "damping" in p and "speed" in s else None
+
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """With harmonics of the order found."""
+        return () if self.harmonics > 1 else ((TransmissionError(values["order"], HARMONICS), dict(values)),)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         fixed = {"order": self.order, **({"damping": 0.0} if "speed" in around.ranges else {})}
         shares: list[dict[str, float]] = [{"reaction": 0.0}, {"reaction": 1.0}] if self._reacts(around) else [{}]
-        return [Probe(("a", "b"), {**fixed, **share}) for share in shares]
+        return [Probe(amplitudes_up_to(self.harmonics), {**fixed, **share}) for share in shares]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return not_seen_to_repeat(values["order"], around)
@@ -78,8 +78,6 @@ class TransmissionError(Mechanism):
     def _reacts(self, around: Surroundings) -> bool:
         return "load" in around.ranges
 
-
-def _slope(s: Signals, p: Signals) -> Any:
-    """The slope de/dθ of a periodic error."""
-    angle = p.order * s.position
-    return p.order * (p.b * torch.cos(angle) - p.a * torch.sin(angle))
+    def _slope(self, s: Signals, p: Signals) -> Any:
+        """The slope de/dθ of the error."""
+        return slope_of_waves(s.position, p, self.harmonics)

@@ -23,13 +23,18 @@ def amplitudes_up_to(harmonics: int) -> tuple[str, ...]:
     return tuple(name for k in range(1, harmonics + 1) for name in amplitudes(k))
 
 
-def wave_parameters(around: Surroundings, order: float, harmonics: int) -> list[Parameter]:
-    """Amplitudes, zero to begin with, and the order: periods per turn."""
+def wave_parameters(around: Surroundings, order: float, harmonics: int, unit: str | None = None) -> list[Parameter]:
+    """Amplitudes, zero to begin with, and the order: periods per turn.
+
+    Args:
+        unit: of the amplitudes; by default that of a force at the port.
+    """
+    size = around.force_unit if unit is None else unit
     told = {"a": "cosine amplitude", "b": "sine amplitude"}
     waves = [(n, k) for k in range(1, harmonics + 1) for n in amplitudes(k)]
     return [
         *(
-            Parameter(n, 0.0, around.force_unit, description=f"{told[n[0]]}{f' at {k} orders' if k > 1 else ''}")
+            Parameter(n, 0.0, size, description=f"{told[n[0]]}{f' at {k} orders' if k > 1 else ''}")
             for n, k in waves
         ),
         Parameter("order", order, "", lower=0.8 * order, upper=1.25 * order, description="periods per turn"),
@@ -42,4 +47,13 @@ def waves(position: Any, p: Signals, harmonics: int) -> Any:
     for k in range(1, harmonics + 1):
         angle, (cosine, sine) = k * p.order * position, amplitudes(k)
         total = total + p[cosine] * torch.cos(angle) + p[sine] * torch.sin(angle)
+    return total
+
+
+def slope_of_waves(position: Any, p: Signals, harmonics: int) -> Any:
+    """The derivative of :func:`waves` by the position."""
+    total = 0.0
+    for k in range(1, harmonics + 1):
+        angle, (cosine, sine) = k * p.order * position, amplitudes(k)
+        total = total + k * p.order * (p[sine] * torch.cos(angle) - p[cosine] * torch.sin(angle))
     return total

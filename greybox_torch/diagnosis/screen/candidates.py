@@ -27,15 +27,16 @@ FLEXIBLE = {
     "coupling": ("deflection", "rate"),
     "balance": ("level",),
     "actuator": ("input",),
+    "sensor": ("output",),
 }
 """Signals that the flexible curve is tried over, by kind of port."""
 
 GAINS = {
-    "actuator": (("time", "input"), ("speed", "input")),
+    "actuator": (("time", "input"), ("speed", "input"), ("position", "input")),
     "coupling": (("speed", "rate"), ("position", "deflection")),
 }
 """By kind of port, signals over which the gain of another may change: a battery that sags, a motor whose field weakens with its speed,
-a damper whose oil is torn along, a rope or a belt whose free length changes with where the load is.
+a voice coil that leaves its gap, a damper whose oil is torn along, a rope or a belt whose free length changes with where the load is.
 """
 
 
