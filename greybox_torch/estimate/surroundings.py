@@ -8,8 +8,10 @@ import torch
 from greybox_torch.estimate.free_run import visited_states
 from greybox_torch.estimate.measured_range import as_measured, farther, no_farther
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.shifted_states import shifted_state
 from greybox_torch.mechanisms.added_declarations import position_unit
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
+from greybox_torch.mechanisms.spring_force import moved_states, spring_force
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
 from greybox_torch.model.joined_bodies import turns_with
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
@@ -44,8 +46,8 @@ def _around(
                 values["position"] = _evaluated(body.position, x, u, p, times)
             else:
                 values["position"] = _integrated(_evaluated(body.speed, x, u, p, times), problem)
-            if body.load is not None and turns_with(port, body, x, u, p):
-                values["load"] = _evaluated(body.load, x, u, p, times)
+            if turns_with(port, body, x, u, p):
+                values |= _load(model, port, body, x, u, p, times, problem)
     if isinstance(port, Actuator | Coupling) and (body := driving_body(model.ports)) is not None:
         values["speed"] = _evaluated(body.speed, x, u, p, times)
         if isinstance(port, Actuator) and body.position is not None:
@@ -66,6 +68,27 @@ def _around(
     if isinstance(port, Body) and port.position is not None and _is_measured(model, port.position):
         ranges["position"] = no_farther(ranges["position"], as_measured(model, port.position, x, u, problem))
     return Surroundings(ranges, units, _force_unit(port, units), float(np.median(problem.records.dt)), hidden)
+
+
+def _load(
+    model: GreyBoxModel,
+    port: Coupling,
+    body: Body,
+    x: Signals,
+    u: Signals,
+    p: Signals,
+    times: np.ndarray,
+    problem: Problem,
+) -> dict[str, np.ndarray]:
+    """What the driving body carries, or else what a coupling transmits, where a state carries the change of its deflection."""
+    if body.load is not None:
+        return {"load": _evaluated(body.load, x, u, p, times)}
+    shifted = shifted_state(model, problem, port)
+    if body.position is None or not shifted:
+        return {}
+    none = Signals("port", {q.name: torch.zeros((), dtype=torch.float64) for q in model.all_ports})
+    force = spring_force(model, port.name, shifted, moved_states(model, port.name, none), x, u, p, none)
+    return {"load": np.broadcast_to(np.asarray(force.detach(), dtype=float), times.shape)}
 
 
 def _is_measured(model: GreyBoxModel, signal: Signal) -> bool:

@@ -131,6 +131,7 @@ class AugmentedModel(GreyBoxModel):
             local, own, memory = self._given(a, seen, reaching.get(a.prefix, acting), p)
             if not a.mechanism.kinematic and not isinstance(site, Actuator):
                 forces[a.port] = forces[a.port] + self._share(a, p) * a.mechanism.force(local, own, memory)
+            local = self.local.with_load(a, local, seen, acting, p)
             for place, force in (*_kinematic_forces(a, local, own), *a.mechanism.elsewhere(local, own, memory).items()):
                 forces[place] = forces[place] + self._share(a, p) * force
         return Signals("port", forces)

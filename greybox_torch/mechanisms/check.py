@@ -15,7 +15,7 @@ SIGNALS: dict[str, tuple[str, ...]] = {
     "body": ("speed", "position", "load", "time"),
     "coupling": ("deflection", "rate", "position", "load", "speed", "time"),
     "balance": ("level", "time"),
-    "actuator": ("input", "delayed", "speed", "time", "sample_time"),
+    "actuator": ("input", "delayed", "speed", "position", "time", "sample_time"),
     "sensor": ("output", "time", "sample_time"),
 }
 """The signals at a port, by kind of port."""

@@ -10,6 +10,7 @@ import torch
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.delayed_input import channels
 from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.mechanisms.spring_force import moved_states, spring_force
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Signals
 from greybox_torch.model.ports import Actuator, Port, Sensor, driving_body, value_of
 
@@ -24,6 +25,7 @@ class LocalSignals:
         self.attachments = tuple(attachments)
         self.surroundings = surroundings
         self.ports: dict[str, Port] = {port.name: port for port in base.all_ports}
+        self._moved: dict[str, list[str]] = {}
         self._grouped: tuple[tuple[str, ...], dict[str, dict[str, str]]] = ((), {})
 
     def at(self, a: Attachment, x: Any, u: Any, p: Any, forces: Signals | None = None) -> Signals:
@@ -34,7 +36,7 @@ class LocalSignals:
         }
         if "position" in a.mechanism.needs or getattr(a.mechanism, "signal", "") == "position":
             values["position"] = self._position(a.position, x, u, p)
-        if isinstance(site, Coupling) and a.position and "load" in self.surroundings[a.port].ranges:
+        if isinstance(site, Coupling) and a.position and self._shows_load(a):
             values["load"] = value_of(self.body(a.position).signals["load"], x, u, p)
         if a.mechanism.kinematic and a.position:
             values["speed"] = value_of(self.body(a.position).speed, x, u, p)
@@ -56,6 +58,21 @@ class LocalSignals:
         values |= {f"position@{link}": self._position(link, x, u, p) for link in a.mechanism.links}
         values |= self.clock(x)
         return Signals("signal", values)
+
+    def with_load(self, a: Attachment, local: Signals, x: Signals, u: Signals, p: Signals) -> Signals:
+        """The signals ``local`` of a law that follows a body's position, with what a coupling carries where the model does not tell."""
+        if not (a.mechanism.kinematic and a.position and a.shifted_state) or "load" in local:
+            return local
+        if "load" not in self.surroundings[a.port].ranges:
+            return local
+        none = self.no_forces()
+        if a.port not in self._moved:
+            self._moved[a.port] = moved_states(self.base, a.port, none)
+        return local.replaced(load=spring_force(self.base, a.port, a.shifted_state, self._moved[a.port], x, u, p, none))
+
+    def _shows_load(self, a: Attachment) -> bool:
+        """Whether the model tells what the body of an attachment carries."""
+        return "load" in self.surroundings[a.port].ranges and "load" in self.body(a.position).signals
 
     def sampling(self, port: str) -> dict[str, Any]:
         """The sample time in s, for laws of actuators and sensors that may act within a sample."""

@@ -17,8 +17,9 @@ class TransmissionError(Mechanism):
     A wheel off its centre gives the order of its turns, one that is oval twice that.
 
     By virtual work that body feels de/dθ times the spring's force as well; ``reaction`` is the share of it that acts (an error on the
-    far side of a reduction reaches the near side divided by the ratio), where the model says what load the body carries. Where the
-    body's speed ω is known, the coupling's damper answers the rate of the error, with ``damping`` · e'(θ) ω.
+    far side of a reduction reaches the near side divided by the ratio). The force is the load that the model says the body carries, or
+    else what the model's spring transmits. Where the body's speed ω is known, the coupling's damper answers the rate of the error, with
+    ``damping`` · e'(θ) ω.
     """
 
     name = "transmission_error"

@@ -33,10 +33,7 @@ def wave_parameters(around: Surroundings, order: float, harmonics: int, unit: st
     told = {"a": "cosine amplitude", "b": "sine amplitude"}
     waves = [(n, k) for k in range(1, harmonics + 1) for n in amplitudes(k)]
     return [
-        *(
-            Parameter(n, 0.0, size, description=f"{told[n[0]]}{f' at {k} orders' if k > 1 else ''}")
-            for n, k in waves
-        ),
+        *(Parameter(n, 0.0, size, description=f"{told[n[0]]}{f' at {k} orders' if k > 1 else ''}") for n, k in waves),
         Parameter("order", order, "", lower=0.8 * order, upper=1.25 * order, description="periods per turn"),
     ]
 

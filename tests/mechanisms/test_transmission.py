@@ -82,6 +82,21 @@ def test_transmission_error_is_periodic_in_position_and_leaves_the_rest(law) -> 
     assert np.abs(here).max() == pytest.approx(0.005, rel=0.01)
 
 
+def test_harmonics_of_a_transmission_error(law) -> None:
+    """Seen: the wheel of a drum off its centre and oval; what the first order left was told as an input that changes along the way."""
+    (form, start), position = (
+        TransmissionError(4.5).richer({"a": 0.003, "b": 0.004, "order": 4.4})[0],
+        np.linspace(0.0, 3.0, 241),
+    )
+    assert start == {"a": 0.003, "b": 0.004, "order": 4.4} and not form.richer(start)
+    given = {"a": 0.003, "a_2": 0.001, "b_3": 0.002, "order": 4.4}
+    error = law(form, given, deflection=TWIST, position=position) - TWIST
+    angle = 4.4 * position
+    np.testing.assert_allclose(
+        error, 0.003 * np.cos(angle) + 0.001 * np.cos(2 * angle) + 0.002 * np.sin(3 * angle), atol=1e-15
+    )
+
+
 SLIP = {"F": 1.5, "z_0": 0.01}
 
 

@@ -119,10 +119,11 @@ def memory_candidates(
 
     With ``knots``, those of one state with a curve in front.
 
-    Not of a position that would have to be integrated from the speed: what it begins at would not be known.
+    Not of a position that would have to be integrated from the speed: what it begins at would not be known. Nor at sensors, whose memory
+    has names: lags and delays.
     """
     found = []
-    for port in model.all_ports:
+    for port in (q for q in model.all_ports if q.kind in UnknownWithMemory.kinds):
         for signal in FLEXIBLE.get(port.kind, ()):
             if signal in surroundings[port.name].ranges and not (signal == "position" and _integrated(model, port)):
                 kinds = (

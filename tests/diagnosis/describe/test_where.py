@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.confirm.held_out import timelines
-from greybox_torch.diagnosis.describe.effects import where
+from greybox_torch.diagnosis.describe.effects import signal_name, where
 from greybox_torch.diagnosis.effect import Profile, Timeline
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.windows import cut
+from tests.machines.geared_drum import GearedDrum
 
 STEP = 0.5
 
@@ -63,3 +64,20 @@ def test_in_words() -> None:
     assert where([profile], [long]) == where([profile], []) == told
     assert where([], []) == "everywhere along the records"
     assert where([], [long, short]) == "everywhere along the records, strongest in Validation 2"
+
+
+@pytest.mark.parametrize(
+    ("port", "signal", "name"),
+    [
+        ("gear", "position", "motor"),
+        ("actuator", "position", "motor"),
+        ("actuator", "speed", "w_m"),
+        ("actuator", "input", "torque"),
+        ("sensor.drum", "output", "drum"),
+        ("gear", "deflection", "gear.deflection"),
+    ],
+)
+def test_signals_by_the_names_that_the_model_gives_them(port, signal, name) -> None:
+    drum = GearedDrum()
+    (site,) = (p for p in drum.all_ports if p.name == port)
+    assert signal_name(drum, site, signal) == name

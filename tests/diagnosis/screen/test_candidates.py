@@ -60,6 +60,7 @@ def test_curves(arm_search) -> None:
         ("actuator", "input", ""),
         ("actuator", "time", ""),
         ("actuator", "speed", ""),
+        ("sensor", "output", ""),
     }
 
 
@@ -134,3 +135,12 @@ def test_a_stiffness_that_changes_along_the_way_is_offered_where_the_way_is_know
     ]
     (along,) = (a for a in found if a.port == "rope" and "position" in a.mechanism.signals())
     assert along.position == "drum"
+
+
+def test_an_input_that_changes_along_the_way_is_offered_where_the_way_is_known() -> None:
+    """Seen: a voice coil that leaves its gap, told as a limit of its current (0.50) with 97 % of the mismatch left."""
+    hoist = Hoist()
+    around = Surroundings({s: Range(0.0, 1.0, 0.5) for s in ("position", "speed", "input", "time")}, {}, "N", 1e-2)
+    found = candidates(hoist, {}, dict.fromkeys([p.name for p in hoist.all_ports], around), flexible=True)
+    (along,) = (a for a in found if a.port == "actuator" and "position" in a.mechanism.signals())
+    assert along.mechanism.signals() == ("position", "input") and along.position == "drum"

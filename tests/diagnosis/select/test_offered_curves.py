@@ -26,7 +26,7 @@ def test_a_fine_curve_is_never_one_of_time(dead_zone_search) -> None:
     coarse = screen_scores(study, state, curves=True, fine=False)
     fine = screen_scores(study, state, curves=True, fine=True)
     assert all("time" in signals_of_curves(at) for at in coarse)
-    assert all(signals_of_curves(at) == {"speed", "position", "input"} for at in fine)
+    assert all(signals_of_curves(at) == {"speed", "position", "input", "output"} for at in fine)
 
 
 def test_a_curve_of_time_is_not_drawn_more_finely(dead_zone_search) -> None:
