@@ -61,6 +61,11 @@ def price_of_noise(best: Hypothesis, settings: DiagnosisSettings) -> float:
     return float(np.log(samples)) / samples if samples else 0.0
 
 
+def price_of_parameters(number: int, samples: int) -> float:
+    """By how much the likelihood's logarithm has to be higher for so many further parameters to be likely: half of log(N) each."""
+    return 0.5 * number * float(np.log(samples))
+
+
 def judged(
     candidate: Candidate, before: Hypothesis, fitted: Hypothesis, settings: DiagnosisSettings
 ) -> RankedCandidate:

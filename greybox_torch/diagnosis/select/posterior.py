@@ -12,9 +12,9 @@ from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.mismatch import negligible
-from greybox_torch.diagnosis.hypothesis.significance import overall_significance
+from greybox_torch.diagnosis.hypothesis.significance import overall_significance, white_samples
 from greybox_torch.diagnosis.one_of import Alternative
-from greybox_torch.diagnosis.refit.ranked import RankedCandidate
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, price_of_parameters
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
@@ -158,17 +158,20 @@ def by_comparison(without: Hypothesis, current: Hypothesis, settings: DiagnosisS
 def _weight(chosen: RankedCandidate, rival: RankedCandidate, settings: DiagnosisSettings) -> float:
     if rival.gain <= 0:
         return 0.0
-    behind = 0.0 if _twins(chosen, rival) else _behind(chosen, rival, settings)
     share = min(1.0, rival.gain / max(chosen.gain, 1e-12))
-    simpler = np.exp(-max(0, rival.size - chosen.size))
-    return float(np.exp(-0.5 * (behind / settings.windows_temperature) ** 2) * share * simpler)
+    simpler = float(np.exp(-max(0, rival.size - chosen.size)))
+    if _twins(chosen, rival):
+        return share * simpler
+    if chosen.cost is not None and rival.cost is not None:
+        ahead = _priced(rival, rival.cost, settings) - _priced(chosen, chosen.cost, settings)
+        return share * float(np.exp(-max(0.0, ahead) / settings.windows_temperature**2))
+    behind = overall_significance(rival.fitted, chosen.fitted, settings)
+    return share * simpler * float(np.exp(-0.5 * (behind / settings.windows_temperature) ** 2))
 
 
-def _behind(chosen: RankedCandidate, rival: RankedCandidate, settings: DiagnosisSettings) -> float:
-    """Standard errors by which the chosen one is better: by the likelihood of whole records, where that told them apart."""
-    if chosen.cost is None or rival.cost is None:
-        return overall_significance(rival.fitted, chosen.fitted, settings)
-    return float(np.sqrt(2.0 * max(0.0, rival.cost - chosen.cost)))
+def _priced(ranked: RankedCandidate, cost: float, settings: DiagnosisSettings) -> float:
+    """The cost of whole records with the price of the law's parameters: where they told hypotheses apart, they know its size as well."""
+    return cost + price_of_parameters(ranked.size, max(1, white_samples(ranked.fitted, settings)))
 
 
 def _twins(chosen: RankedCandidate, rival: RankedCandidate) -> bool:

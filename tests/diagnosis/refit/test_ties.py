@@ -61,6 +61,25 @@ def test_a_parameter_more_must_be_worth_its_price(monkeypatch, ranked, gravity, 
     assert {r.cost for r in found} == {100.0, gravity}
 
 
+@pytest.mark.parametrize(("further", "first"), [(0.5, "constant_bias"), (1.5, "gravity")])
+def test_odds_below_three_are_no_reason_for_a_parameter_more(monkeypatch, ranked, further, first) -> None:
+    """Seen: the gain of a cart's drive told as a mode (0.96), whose two further parameters were worth half a nat more than their price."""
+    price = 0.5 * np.log(SAMPLES)
+    costing(monkeypatch, constant_bias=100.0, gravity=100.0 - price - further)
+    found = rank_by_likelihood([ranked(Gravity(), 0.996, 2), ranked(ConstantBias(), 1.0)], SETTINGS, BUDGET)
+    assert names(found)[0] == first
+
+
+def test_further_parameters_have_the_same_price_in_the_probability(monkeypatch, ranked) -> None:
+    price = 0.5 * np.log(SAMPLES)
+    chosen, rival = (
+        replace(ranked(Gravity(), 0.996, 2), cost=100.0 - price - 1.5),
+        replace(ranked(ConstantBias(), 1.0), cost=100.0),
+    )
+    assert 0.4 < shared(chosen, [chosen, rival], SETTINGS)[0] < 0.75
+    assert shared(replace(chosen, cost=80.0 - price), [chosen, rival], SETTINGS)[0] > 0.95
+
+
 def test_what_does_not_tie_keeps_its_place_and_so_do_curves_and_what_goes_astray(monkeypatch, ranked) -> None:
     costing(monkeypatch, constant_bias=100.0, gravity=1e6, torque_ripple=0.0)
     curve, worse = ranked(Unknown("speed"), 0.99, 14), ranked(TorqueRipple(), 1.2, 3)
