@@ -10,6 +10,7 @@ from greybox_torch.diagnosis.confirm.far_better import far_better, judged_anew
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
 from greybox_torch.diagnosis.confirm.joint_deviation import within_one_deviation
 from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.confirm.not_asked import without_what_free_runs_do_not_need
 from greybox_torch.diagnosis.confirm.same_everywhere import drifts
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified
 from greybox_torch.diagnosis.confirm.standing import sizes
@@ -47,14 +48,18 @@ def holding(
     def places() -> Places:
         return NOWHERE if others is None else others.places(state.current)
 
+    if others is not None and not gains:
+        begun = state, judged
+        fewer = partial(without_what_free_runs_do_not_need, study, state, others, judged)
+        (state, judged), _ = or_else(fewer, lambda: begun)
     while state.effects:
         holds = judged.holds and _shown(state, others, judged)
         undone = _undone(study, state, gains, needed)
         empty = _empty(study, state, judged.augmented, gains) or undone or _drifting(study, state, judged)
         if empty is None and holds and not judged.unstable:
-            better_so = far_better(study, state, others, gains, judged)
+            better_so, whole = or_else(partial(far_better, study, state, others, gains, judged), lambda: None)
             if better_so is None:
-                break
+                return state, gains, judged, told, whole
             state, gains, judged = better_so
             continue
         if empty is None:
