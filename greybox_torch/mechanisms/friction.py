@@ -116,6 +116,10 @@ def _highest_at_a_speed(values: Mapping[str, float], around: Surroundings) -> st
     )
 
 
+LEAST_ASYMMETRY = 0.05
+"""Share of the mean level from which half the difference of two levels is worth a law: what dry friction lacks else is no less."""
+
+
 class CoulombAsymmetry(DryLaw):
     """−ΔF tanh(v / v_0)²: the Coulomb level is larger in one direction by 2 ΔF; ``with_level``, −F_c tanh(v / v_0) besides.
 
@@ -154,12 +158,13 @@ class CoulombAsymmetry(DryLaw):
         return uneven - p.F_c * sign if self.with_level else uneven
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        if not self.with_level or abs(values["delta"]) <= values["F_c"]:
+        half, level, unit = abs(values["delta"]), values.get("F_c", 0.0), around.force_unit
+        if not self.with_level or LEAST_ASYMMETRY * level <= half <= level:
             return None
-        unit = around.force_unit
-        return (
-            f"delta = {values['delta']:.3g} {unit} is more than F_c = {values['F_c']:.3g} {unit}: friction would push"
-        )
+        told = f"delta = {values['delta']:.3g} {unit} is"
+        if half > level:
+            return f"{told} more than F_c = {level:.3g} {unit}: friction would push"
+        return f"{told} less than {LEAST_ASYMMETRY:g} of F_c = {level:.3g} {unit}: the two levels hardly differ"
 
 
 class QuadraticDrag(LinearLaw):

@@ -66,6 +66,14 @@ def test_uneven_friction_with_a_level_has_one_for_each_direction(law) -> None:
 def test_a_difference_of_levels_larger_than_friction_is_not_friction(around, delta, pushes) -> None:
     told = CoulombAsymmetry(with_level=True).misplaced(around, {"F_c": 2.0, "delta": delta, "v_0": 0.1})
     assert ("friction would push" in (told or "")) is pushes
+
+
+@pytest.mark.parametrize(("delta", "told"), [(0.02, True), (-0.02, True), (0.06, False)])
+def test_levels_that_hardly_differ_are_one(around, delta, told) -> None:
+    """Seen: dry friction of a double pendulum's joint, 0.168 N m, told as friction that differs by direction for 0.003 N m (0.97)."""
+    law, values = CoulombAsymmetry(with_level=True), {"delta": delta, "F_c": 1.0, "v_0": 0.01}
+    assert ("hardly differ" in (law.misplaced(around, values) or "")) is told
+    assert CoulombAsymmetry().misplaced(around, values) is None
     assert CoulombAsymmetry().misplaced(around, {"delta": delta, "v_0": 0.1}) is None
 
 
