@@ -7,52 +7,106 @@ from typing import Any
 
 import torch
 
-from greybox_torch.mechanisms.degenerate import longer_than_the_travel
+from greybox_torch.mechanisms.degenerate import faster_than_it_went, longer_than_the_travel
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.slip import slip_share
 from greybox_torch.model import Parameter, Signals, State
 
 
+SUDDEN = 8
+"""Exponent of the share slipped in the form where slip sets in suddenly, for 1 in Dahl's: near the edge of an elasto-plastic element."""
+
+FASTEST = 1.1
+"""Share slipped beyond which that power grows no more: a step that overshoots must not be thrown back."""
+
+
 class PreslidingHysteresis(Mechanism):
-    """−F z / z_0 with dz/dt = v − |v| z / z_0 (Dahl)."""
+    """−F z / z_0 with dz/dt = v − |v| z / z_0 (Dahl).
+
+    ``sharp``, slip sets in at once: with r = z / z_0, dz/dt = v − |v| r (1 − m + m |r|⁷), m from 0 to 1 (Dupont's elasto-plastic element
+    as m goes to 1), and bristles damp by −σ dz/dt. ``falling``, the level falls with speed (LuGre): z_0 (1 + s exp(−(v / v_s)²)) takes
+    the place of the z_0 at which bristles slip, and F (1 + s) is the level near standstill.
+    """
 
     name = "presliding_hysteresis"
     kinds = ("body",)
     needs = ("speed",)
     generalises = ("coulomb_friction",)
     includes = generalises
-    natural = ("z_0.lower",)
+    natural = ("z_0.lower", "sharpness")
     rubs = True
     nature = "dry friction"
     explanation = "Before sliding, friction acts like a spring that yields (bristles bend, then slip)."
-    source = "P. R. Dahl, Aerospace Corp. TOR-0158, 1968; C. Canudas de Wit et al., IEEE TAC 40(3), 1995"
+    source = (
+        "P. R. Dahl, Aerospace Corp. TOR-0158, 1968; C. Canudas de Wit et al., IEEE TAC 40(3), 1995; "
+        "P. Dupont et al., IEEE TAC 47(5), 2002"
+    )
     experiment = "tiny reversals around standstill"
 
+    def __init__(self, sharp: bool = False, falling: bool = False) -> None:
+        self.sharp, self.falling = sharp, falling
+
     def parameters(self, around: Surroundings) -> list[Parameter]:
-        least = self._smallest(around)
-        unit = around.units.get("speed", "").replace("/s", "")
-        return [
+        least, reach = self._smallest(around), around.ranges["speed"].reach
+        speed = around.units.get("speed", "")
+        found = [
             Parameter("F", 0.0, around.force_unit, lower=0.0, description="level at full sliding"),
             Parameter(
-                "z_0", 4 * least, unit, lower=0.5 * least, upper=1e3 * least, description="deflection at which it slips"
+                "z_0",
+                4 * least,
+                speed.replace("/s", ""),
+                lower=0.5 * least,
+                upper=1e3 * least,
+                description="deflection at which it slips",
             ),
         ]
+        if self.sharp:
+            found += [
+                Parameter("sharpness", 0.0, "", lower=0.0, upper=1.0, description="how suddenly slip sets in"),
+                Parameter("sigma", 0.0, around.per("speed"), lower=0.0, description="damping of the bristles"),
+            ]
+        if self.falling:
+            found += [
+                Parameter("s", 0.0, "", lower=0.0, upper=5.0, description="level at standstill above that at speed"),
+                Parameter(
+                    "v_s", 0.1 * reach, speed, lower=1e-3 * reach, upper=reach, description="speed over which it falls"
+                ),
+            ]
+        return found
 
     def states(self, around: Surroundings) -> list[State]:
         return [State("bristle", around.units.get("speed", "").replace("/s", ""))]
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
-        return {"bristle": s.speed - torch.abs(s.speed) * slip_share(z.bristle, p.z_0)}
+        yields_at = p.z_0 * (1.0 + p.s * torch.exp(-((s.speed / p.v_s) ** 2))) if self.falling else p.z_0
+        share = slip_share(z.bristle, yields_at)
+        if self.sharp:
+            sudden = torch.clamp(torch.abs(share), max=FASTEST) ** (SUDDEN - 1)
+            share = share * (1.0 - p.sharpness + p.sharpness * sudden)
+        return {"bristle": s.speed - torch.abs(s.speed) * share}
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return -p.F * z.bristle / p.z_0
+        bent = -p.F * z.bristle / p.z_0
+        return bent - p.sigma * self.rates(s, p, z)["bristle"] if self.sharp else bent
+
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """With slip that sets in at once, with a level that falls with speed, and with both."""
+        forms = ((True, False), (False, True), (True, True))
+        further = [f for f in forms if f != (self.sharp, self.falling) and f[0] >= self.sharp and f[1] >= self.falling]
+        return [(PreslidingHysteresis(*form), {**_begun(*form), **values}) for form in further]
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(("F",), {"z_0": factor * self._smallest(around)}) for factor in (2, 8, 32)]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        return longer_than_the_travel("z_0", values["z_0"], around, "position")
+        too_fast = faster_than_it_went("v_s", values["v_s"], around) if self.falling else None
+        return too_fast or longer_than_the_travel("z_0", values["z_0"], around, "position")
 
     def _smallest(self, around: Surroundings) -> float:
         """A bristle deflection whose time constant the sampling still resolves."""
         return around.ranges["speed"].reach * around.sample_time
+
+
+def _begun(sharp: bool, falling: bool) -> dict[str, float]:
+    """Where the further parameters of a form begin: off their bounds, at which some have no effect."""
+    return ({"sharpness": 0.5} if sharp else {}) | ({"s": 0.3} if falling else {})
