@@ -12,7 +12,6 @@ from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.slip import slip_share
 from greybox_torch.model import Parameter, Signals, State
 
-
 SUDDEN = 8
 """Exponent of the share slipped in the form where slip sets in suddenly, for 1 in Dahl's: near the edge of an elasto-plastic element."""
 
