@@ -38,4 +38,17 @@ def likelier(cost_before: Callable[[], float], ranked: RankedCandidate, settings
     if not asked or not white_samples(ranked.fitted, settings):
         return False
     cost = cost_of(ranked.fitted) if ranked.cost is None else ranked.cost
-    return cost_before() - cost > 0.5 * settings.least_likelihood_significance**2
+    return _beyond_doubt(cost_before() - cost, settings)
+
+
+def needed_by_likelihood(without: Hypothesis, with_it: Hypothesis, settings: DiagnosisSettings) -> bool:
+    """Whether a hypothesis is surely better than one without an effect of its own, as for :func:`likelier`."""
+    gain = without.score - with_it.score
+    if gain <= settings.least_gain_by_likelihood or not white_samples(with_it, settings):
+        return False
+    return _beyond_doubt(cost_of(without) - cost_of(with_it), settings)
+
+
+def _beyond_doubt(further: float, settings: DiagnosisSettings) -> bool:
+    """Whether the likelihood's logarithm is so much higher that windows need not say so as well."""
+    return further > 0.5 * settings.least_likelihood_significance**2

@@ -14,6 +14,7 @@ from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
+from greybox_torch.mechanisms.unknown import Unknown
 
 
 def test_what_the_newest_effect_was_compared_with_is_not_refitted(dead_zone_search, monkeypatch) -> None:
@@ -70,3 +71,27 @@ def test_what_an_effect_had_made_up_for_is_asked_again_once_that_is_taken_back(
     assert result_of(drop(study, replace(there, without={lag.prefix: plain}), lag.prefix)).effects == ()
     twice = replace(state.at(both), made_up_for=((friction, both),), without={lag.prefix: having((friction,), 0.6)})
     assert result_of(drop(study, twice, lag.prefix)).effects == (friction,)
+
+
+@pytest.mark.parametrize(("by_likelihood", "curve", "kept"), [(True, False, 2), (False, False, 1), (True, True, 1)])
+def test_what_whole_records_surely_need_is_not_dropped_as_windows_are_few(
+    dead_zone_search, monkeypatch, by_likelihood, curve, kept
+) -> None:
+    """Seen: the cogging of a stage, taken by the likelihood of whole records and dropped by windows (2.9 standard errors)."""
+    study, plain = dead_zone_search.study, dead_zone_search.plain
+    friction = Attachment("rotor", CoulombFriction())
+    other = Attachment("load", Unknown("speed") if curve else StribeckFriction())
+
+    def having(effects, error):
+        fits = tuple(replace(f, mean_square=error * f.mean_square) for f in plain.fits)
+        return replace(plain, effects=effects, fits=fits)
+
+    errors = {(friction,): 0.5, (other,): 0.9, (friction, other): 0.2}
+    both = having((friction, other), 0.2)
+    monkeypatch.setattr(
+        backward, "window_significance", lambda without, *_: 9.0 if without.effects == (other,) else 2.9
+    )
+    monkeypatch.setattr(backward, "needed_by_likelihood", lambda *_: by_likelihood)
+    monkeypatch.setattr(backward, "absorbed", lambda *_: None)
+    monkeypatch.setattr(backward, "refitted", lambda study, effects, *_: having(effects, errors[effects]))
+    assert len(result_of(drop_superfluous(study, SearchState(plain, both))).effects) == kept
