@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
+
 from greybox_torch.deadline import Deadline
 from greybox_torch.diagnosis import findings, selection
 from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 
 def test_confirmation_that_is_cut_short_leaves_what_it_had_reached(monkeypatch, stub) -> None:
@@ -29,3 +32,29 @@ def test_final_fits_that_are_cut_short_leave_the_values_of_the_windows(monkeypat
     monkeypatch.setattr(findings, "from_longest_windows", lambda hypothesis: hypothesis)
     state = SearchState(stub(effects=()), stub(effects=(stub(),)))
     assert findings._finished(stub(working_on=working_on), state, Deadline()) == ((state.plain, state.current), False)
+
+
+@pytest.mark.parametrize(
+    ("left", "holds", "unknown", "stands"),
+    [(0.1, True, False, True), (0.6, True, False, False), (0.1, False, False, False), (0.1, True, True, False)],
+)
+def test_where_time_ends_what_led_the_search_stands_if_free_runs_bear_it_out(
+    monkeypatch, stub, left, holds, unknown, stands
+) -> None:
+    """Seen: 300 times the noise without a name, as four effects that came after the right statement were being taken back."""
+    gain, ripple = stub(prefix="actuator.gain"), stub(prefix="motor.ripple")
+    plain, alone, both = (stub(effects=e) for e in ((), (gain,), (gain, ripple)))
+    steps = (
+        stub(parent=plain, taken=stub(fitted=alone, unknown=unknown)),
+        stub(parent=alone, taken=stub(fitted=both, unknown=False)),
+    )
+    judged = stub(
+        having=lambda final, *_: stub(holds=holds, mismatch=lambda effects: left if effects else 1.0),
+        without_effects=lambda: None,
+    )
+    monkeypatch.setattr(findings, "from_longest_windows", lambda hypothesis: hypothesis)
+    monkeypatch.setattr(findings, "sound", lambda study, ranked: True)
+    study = stub(settings=DiagnosisSettings())
+    state, gains, _, _, whole = findings._found_first(study, SearchState(plain, both, steps), judged)
+    assert state.current is (alone if stands else plain) and not gains and not whole
+    assert findings._found_first(study, SearchState(plain, plain), judged)[0].current is plain
