@@ -14,7 +14,6 @@ from greybox_torch.mechanisms.friction import (
     StribeckFriction,
     ViscousFriction,
 )
-from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.varying_friction import FrictionWarmup, LoadDependentFriction, PositionDependentFriction
 
 SPEEDS = np.linspace(-15.0, 15.0, 301)
@@ -167,97 +166,3 @@ def test_what_varies_a_coulomb_level_does_not_drive_with_it(law, v, a, b, v_0, a
     assert (level + varied) * v <= 1e-12
     level = law(CoulombFriction(), {"F_c": abs(a), "v_0": v_0}, speed=v)
     assert (level + law(CoulombAsymmetry(), {"delta": a, "v_0": v_0}, speed=v)) * v <= 0
-
-
-BRISTLE = {"F": 2.0, "z_0": 0.05}
-
-
-@given(v=speeds, z=st.floats(-1.0, 1.0))
-def test_bristle_only_stores_and_dissipates(law, rates, v, z) -> None:
-    v, memory = np.array(v), {"bristle": np.array(z * 0.05)}
-    force = law(PreslidingHysteresis(), BRISTLE, memory, speed=v)
-    rate = rates(PreslidingHysteresis(), BRISTLE, memory, speed=v)[0]
-    stored = 2.0 / 0.05 * memory["bristle"] * rate  # d/dt of F z² / (2 z_0)
-    assert force * v + stored <= 1e-12
-    assert abs(z) < 1.0 or z * rate <= 1e-9  # bent by no more than z_0
-
-
-def test_bristle_dissipates_over_a_closed_cycle(law, rates) -> None:
-    step, bristle, work = 1e-4, 0.0, []
-    for t in np.arange(0.0, 4.0, step):
-        v, memory = np.array(3.0 * np.cos(2 * np.pi * t)), {"bristle": np.array(bristle)}
-        work.append(float(law(PreslidingHysteresis(), BRISTLE, memory, speed=v) * v) * step)
-        bristle += step * float(rates(PreslidingHysteresis(), BRISTLE, memory, speed=v)[0])
-    per_cycle = np.array(work).reshape(4, -1).sum(axis=1)
-    assert per_cycle[3] == pytest.approx(per_cycle[2], rel=1e-3)
-    travel = 4 * 3.0 / (2 * np.pi)
-    assert -2.0 * travel < per_cycle[3] < -0.8 * 2.0 * travel  # at most that of full sliding, and a good part of it
-
-
-SHARP = {**BRISTLE, "sharpness": 0.7, "sigma": 0.3}
-
-
-@given(v=speeds, z=st.floats(-1.0, 1.0), m=st.floats(0.0, 1.0), s=st.floats(0.0, 3.0))
-def test_richer_bristles_only_store_and_dissipate(law, rates, v, z, m, s) -> None:
-    """Within the deflection at which they slip at any speed; the damping of bristles that yield faster than the body moves would push."""
-    richer, values = PreslidingHysteresis(True, True), {**SHARP, "sharpness": m, "sigma": 0.0, "s": s, "v_s": 4.0}
-    v, memory = np.array(v), {"bristle": np.array(z * 0.05)}
-    force, rate = law(richer, values, memory, speed=v), rates(richer, values, memory, speed=v)[0]
-    assert force * v + 2.0 / 0.05 * memory["bristle"] * rate <= 1e-12
-
-
-def _slid(law, rates, mechanism, values, v: float, steps: int = 4000) -> list[float]:
-    """The force while a body begins to move at a speed."""
-    bristle, forces = 0.0, []
-    for _ in range(steps):
-        memory = {"bristle": np.array(bristle)}
-        forces.append(float(law(mechanism, values, memory, speed=np.array(v))))
-        bristle += 1e-4 * float(rates(mechanism, values, memory, speed=np.array(v))[0])
-    return forces
-
-
-def test_slip_sets_in_at_once(law, rates) -> None:
-    """As an elasto-plastic element: a spring up to nearly the level, where Dahl's has long begun to yield."""
-    plain = _slid(law, rates, PreslidingHysteresis(), BRISTLE, 1.0)
-    sharp = _slid(law, rates, PreslidingHysteresis(sharp=True), {**BRISTLE, "sharpness": 1.0, "sigma": 0.0}, 1.0)
-    spring = [-2.0 * 1e-4 * k / 0.05 for k in range(350)]  # 0.7 of the level
-    np.testing.assert_allclose(sharp[:350], spring, rtol=0.02, atol=1e-9)
-    assert abs(plain[349]) < 0.8 * abs(spring[-1]) and sharp[-1] == pytest.approx(-2.0, rel=1e-3)
-
-
-@pytest.mark.parametrize("v", [0.5, 2.0, -2.0])
-def test_the_level_of_sliding_falls_with_speed(law, rates, v) -> None:
-    values = {**BRISTLE, "s": 0.6, "v_s": 1.5}
-    slid = _slid(law, rates, PreslidingHysteresis(falling=True), values, v, 20_000)[-1]
-    assert slid == pytest.approx(-2.0 * np.sign(v) * (1.0 + 0.6 * np.exp(-((v / 1.5) ** 2))), rel=1e-3)
-
-
-def test_bristles_damp_by_their_own_rate(law, rates) -> None:
-    memory, damped = {"bristle": np.array(0.01)}, PreslidingHysteresis(sharp=True)
-    rate = rates(damped, SHARP, memory, speed=np.array(3.0))[0]
-    undamped = law(damped, {**SHARP, "sigma": 0.0}, memory, speed=np.array(3.0))
-    assert law(damped, SHARP, memory, speed=np.array(3.0)) == pytest.approx(undamped - 0.3 * rate)
-
-
-def test_richer_forms_of_presliding_begin_where_it_was_found() -> None:
-    """Seen: an arm's friction on an elastic seat, told with an unknown at the actuator beside it (0.50; 5 % left, 89 s; now 0.2 %, 9 s)."""
-    forms = PreslidingHysteresis().richer(BRISTLE)
-    assert [form.options() for form, _ in forms] == [
-        {"sharp": True, "falling": False},
-        {"sharp": False, "falling": True},
-        {"sharp": True, "falling": True},
-    ]
-    assert all(start | BRISTLE == start for _, start in forms)
-    assert [f.options() for f, _ in PreslidingHysteresis(sharp=True).richer(SHARP)] == [
-        {"sharp": True, "falling": True}
-    ]
-    assert not PreslidingHysteresis(True, True).richer(SHARP)
-
-
-def test_bristle_becomes_coulomb_in_sliding(law, rates) -> None:
-    bristle = 0.0
-    for _ in range(4000):
-        bristle += 1e-4 * float(rates(PreslidingHysteresis(), BRISTLE, {"bristle": np.array(bristle)}, speed=1.0)[0])
-    assert law(PreslidingHysteresis(), BRISTLE, {"bristle": np.array(bristle)}, speed=1.0) == pytest.approx(
-        -2, rel=1e-3
-    )
