@@ -156,7 +156,9 @@ def test_networks_come_back_as_they_were(
     with torch.no_grad():
         rates = [own.model.rates(x, u, p) for own in (problem, found, base)]
     assert torch.equal(rates[0], rates[1])
-    assert not torch.equal(rates[0], rates[2])  # small weights move the rates little
+    assert not torch.allclose(
+        rates[0], rates[2], rtol=1e-3 * min(1.0, size), atol=0.0
+    )  # small weights move them little
 
 
 @pytest.fixture

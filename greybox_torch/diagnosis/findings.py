@@ -81,8 +81,8 @@ def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
     if state.effects:
         judged = judged.having(augmented, {} if others is None else others.places(state.current))
     with until(selection.schedule.judging):
-        found, whole = or_else(lambda: holding(study, state, others, selection.gains, judged), lambda: None)
-    return found if whole and found is not None else _found_first(study, state, judged)
+        found, _ = or_else(lambda: holding(study, state, others, selection.gains, judged), lambda: None)
+    return _found_first(study, state, judged) if found is None else found
 
 
 def _found_first(study: Study, state: SearchState, judged: Judgement) -> Judged:

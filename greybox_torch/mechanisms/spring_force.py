@@ -49,9 +49,8 @@ def spring_force(
     sign, name = (1.0 if shifted_state[0] == "+" else -1.0), shifted_state[1:]
     released = x.replaced(**{name: x[name] - sign * deflection})
     here, without = (base.derivative(s, u, p, none) for s in (x, released))
-    pushed = base.derivative(
-        released, u, p, _with_one(none, coupling)
-    )  # where a force of one is not lost beside the spring's
+    # Where the spring is released, as beside its force one of one would be lost to rounding.
+    pushed = base.derivative(released, u, p, _with_one(none, coupling))
     along = {s: pushed[s] - without[s] for s in moved}
     return sum((here[s] - without[s]) * along[s] for s in moved) / sum(a * a for a in along.values())
 

@@ -61,9 +61,9 @@ def price_of_noise(best: Hypothesis, settings: DiagnosisSettings) -> float:
     return float(np.log(samples)) / samples if samples else 0.0
 
 
-def price_of_parameters(number: int, samples: int) -> float:
-    """By how much the likelihood's logarithm has to be higher for so many further parameters to be likely: half of log(N) each."""
-    return 0.5 * number * float(np.log(samples))
+def priced_cost(ranked: RankedCandidate, samples: int) -> float:
+    """The cost of a hypothesis, zero where it is not known, with a price of half of log(N) for every parameter of its law."""
+    return (0.0 if ranked.cost is None else ranked.cost) + 0.5 * ranked.size * float(np.log(samples))
 
 
 def judged(

@@ -13,7 +13,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.significance import white_samples
 from greybox_torch.diagnosis.refit.likelihood import cost_of
-from greybox_torch.diagnosis.refit.ranked import RankedCandidate, price_of_parameters
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, priced_cost
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 
 BARE_MENTION = float(np.log(3.0))
@@ -29,9 +29,8 @@ def rank_by_likelihood(
     """``ranked`` with the named ones that tie at the noise in the order of their likelihood, less a price for every parameter.
 
     The price is half the logarithm of the number of samples; of laws between which that leaves odds below three the simplest comes first.
-    One whose free run is farther behind than windows that tie promise keeps its
-    place, and counts as far behind as that: whole records do not speak for it. One whose free run is lost (a machine that is nearly
-    bistable) is judged by its windows alone.
+    One whose free run is farther behind than windows that tie promise keeps its place, and counts as far behind as that: whole records do
+    not speak for it. One whose free run is lost (a machine that is nearly bistable) is judged by its windows alone.
 
     Source: G. Schwarz, "Estimating the dimension of a model", Annals of Statistics 6, 1978; R. E. Kass, A. E. Raftery, "Bayes factors",
     Journal of the American Statistical Association 90, 1995.
@@ -49,7 +48,7 @@ def rank_by_likelihood(
     weighed = {id(r): replace(r, cost=cost) for r, cost in zip(tied, costs, strict=True) if cost <= within}
     lost = min(costs) + 0.5 * float(np.log(LOST)) * samples
     behind = {id(r): replace(r, cost=within) for r, cost in zip(tied, costs, strict=True) if within < cost <= lost}
-    in_turn = iter(_simplest_first(sorted(weighed.values(), key=lambda r: _priced(r, samples)), samples))
+    in_turn = iter(_simplest_first(sorted(weighed.values(), key=lambda r: priced_cost(r, samples)), samples))
     ordered = [next(in_turn) if id(r) in weighed else r for r in ranked]
     first = next(r for r in ordered if not r.unknown)
     return ordered if first.cost is None else [behind.get(id(r), r) for r in ordered]
@@ -57,11 +56,6 @@ def rank_by_likelihood(
 
 def _simplest_first(in_order: Sequence[RankedCandidate], samples: int) -> list[RankedCandidate]:
     """Hypotheses in the order of their priced cost, of those that come as near to the first as makes no odds the simplest before it."""
-    near = [r for r in in_order if _priced(r, samples) <= _priced(in_order[0], samples) + BARE_MENTION]
+    near = [r for r in in_order if priced_cost(r, samples) <= priced_cost(in_order[0], samples) + BARE_MENTION]
     simplest = min(near, key=lambda r: r.size)
     return [simplest, *(r for r in in_order if r is not simplest)]
-
-
-def _priced(ranked: RankedCandidate, samples: int) -> float:
-    """The cost of a hypothesis with the price of its parameters."""
-    return (0.0 if ranked.cost is None else ranked.cost) + price_of_parameters(ranked.size, samples)

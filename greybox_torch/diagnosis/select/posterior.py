@@ -14,7 +14,7 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.mismatch import negligible
 from greybox_torch.diagnosis.hypothesis.significance import overall_significance, white_samples
 from greybox_torch.diagnosis.one_of import Alternative
-from greybox_torch.diagnosis.refit.ranked import RankedCandidate, price_of_parameters
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, priced_cost
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
@@ -163,15 +163,11 @@ def _weight(chosen: RankedCandidate, rival: RankedCandidate, settings: Diagnosis
     if _twins(chosen, rival):
         return share * simpler
     if chosen.cost is not None and rival.cost is not None:
-        ahead = _priced(rival, rival.cost, settings) - _priced(chosen, chosen.cost, settings)
+        own, rivals = (priced_cost(r, max(1, white_samples(r.fitted, settings))) for r in (chosen, rival))
+        ahead = rivals - own
         return share * float(np.exp(-max(0.0, ahead) / settings.windows_temperature**2))
     behind = overall_significance(rival.fitted, chosen.fitted, settings)
     return share * simpler * float(np.exp(-0.5 * (behind / settings.windows_temperature) ** 2))
-
-
-def _priced(ranked: RankedCandidate, cost: float, settings: DiagnosisSettings) -> float:
-    """The cost of whole records with the price of the law's parameters: where they told hypotheses apart, they know its size as well."""
-    return cost + price_of_parameters(ranked.size, max(1, white_samples(ranked.fitted, settings)))
 
 
 def _twins(chosen: RankedCandidate, rival: RankedCandidate) -> bool:
