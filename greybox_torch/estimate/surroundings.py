@@ -12,6 +12,7 @@ from greybox_torch.estimate.shifted_states import shifted_state
 from greybox_torch.mechanisms.added_declarations import position_unit
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.spring_force import moved_states, spring_force
+from greybox_torch.mechanisms.unknown import INPUT
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
 from greybox_torch.model.joined_bodies import turns_with
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
@@ -52,6 +53,8 @@ def _around(
         values["speed"] = _evaluated(body.speed, x, u, p, times)
         if isinstance(port, Actuator) and body.position is not None:
             values["position"] = _evaluated(body.position, x, u, p, times)
+    if isinstance(port, Body) and len(model.inputs) > 1:
+        values |= {f"{INPUT}{one.name}": np.asarray(u[one.name], dtype=float) for one in model.inputs}
     if isinstance(port, Sensor):
         row = [o.name for o in model.outputs].index(port.output)
         values["output"] = problem.records.y[row][~np.isnan(problem.records.y[row])]
@@ -129,6 +132,7 @@ def _units(model: GreyBoxModel, port: Port) -> dict[str, str]:
     units = {name: of[signal] for name, signal in port.signals.items() if isinstance(signal, str) and signal in of}
     if isinstance(port, Body):
         units["position"] = position_unit(model, port)
+        units |= {f"{INPUT}{one.name}": one.unit for one in model.inputs}
     if isinstance(port, Actuator):
         units["input"] = of[port.input]
     body = driving_body(model.ports)

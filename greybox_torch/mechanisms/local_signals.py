@@ -54,7 +54,7 @@ class LocalSignals:
             for names in channels(a.mechanism):
                 value, slope, at = (u[f"{a.prefix}.{n}"] for n in names)
                 values[names[0]] = value + (p[f"{a.prefix}.T"] - at) * slope
-        values |= {f"input@{name}": u[name] for name in a.mechanism.drives}
+        values |= {f"input@{name}": u[name] for name in (*a.mechanism.drives, *a.mechanism.reads)}
         values |= {f"position@{link}": self._position(link, x, u, p) for link in a.mechanism.links}
         values |= self.clock(x)
         return Signals("signal", values)

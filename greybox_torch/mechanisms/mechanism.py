@@ -47,6 +47,8 @@ class Mechanism:
     """Bodies of a chain whose positions the law uses, as signals ``position@BODY``."""
     drives: tuple[str, ...] = ()
     """Further inputs of the model that a law at an actuator changes as well, as signals ``input@NAME``."""
+    reads: tuple[str, ...] = ()
+    """Inputs of the model that a law sees at whatever port, as signals ``input@NAME``."""
     kinematic: bool = False
     """Whether the law changes a coupling's deflection (:meth:`deflection`) instead of adding a force."""
     fades: ClassVar[bool] = False

@@ -18,11 +18,16 @@ FAR = 10.5
 """Spacings from a bump beyond which it and its neighbours are below 1e-18; exp(2 · 10.5)⁴ is still a number in single precision."""
 
 
+INPUT = "input@"
+"""Beginning of the name of a signal that is an input of the model."""
+
+
 class Unknown(Mechanism):
     """A sum of smooth bumps over the range of one signal.
 
     ``knots`` bumps exp(−((s − s_k) / w)²) with centres spread evenly over where the signal moved; beyond that the curve stays level.
-    With a ``factor`` the curve is what that other signal is multiplied by: a gain that changes. Bumps that are ``left_out`` are zero.
+    With a ``factor`` the curve is what that other signal is multiplied by: a gain that changes. The factor may be an input of the model,
+    ``input@NAME``, also where it does not act. Bumps that are ``left_out`` are zero.
     """
 
     name = "unknown"
@@ -35,6 +40,7 @@ class Unknown(Mechanism):
         self.signal = signal
         self.knots = knots
         self.factor = factor
+        self.reads = (factor.removeprefix(INPUT),) if factor.startswith(INPUT) else ()
         self.left_out = tuple(left_out)
 
     @property
@@ -49,7 +55,7 @@ class Unknown(Mechanism):
             Parameter(
                 f"w_{k}",
                 0.0,
-                "" if self.factor else around.force_unit,
+                self.force_unit(around),
                 description=f"height at {centres[k]:g}",
                 shrunk=True,
             )
@@ -58,6 +64,12 @@ class Unknown(Mechanism):
         first = Parameter("first", centres[0], unit, fixed=True, description="first centre")
         spacing = Parameter("spacing", centres[1] - centres[0], unit, fixed=True, description="distance of the centres")
         return [*heights, first, spacing]
+
+    def force_unit(self, around: Surroundings) -> str:
+        """The unit of the heights: of the force at the port, or of what turns the factor into it."""
+        if not self.factor:
+            return around.force_unit
+        return "" if self.factor == "input" else around.per(self.factor)
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         curve = self.curve(s, p)

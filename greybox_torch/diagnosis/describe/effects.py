@@ -22,7 +22,7 @@ from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.model import Coupling, GreyBoxModel
 from greybox_torch.model.ports import Actuator, Port, driving_body
 
@@ -152,6 +152,8 @@ def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:
         return given
     if signal in ("input", "output"):
         return str(getattr(site, signal, signal))
+    if signal.startswith(INPUT):
+        return signal.removeprefix(INPUT)
     body = driving_body(model.all_ports)
     if signal in ("speed", "position") and isinstance(site, Actuator | Coupling) and body is not None:
         return signal_name(model, body, signal)

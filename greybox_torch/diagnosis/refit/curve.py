@@ -29,9 +29,14 @@ def laws_on_curve(
     surroundings: Mapping[str, Surroundings],
     card: Mapping[str, float],
 ) -> list[Candidate]:
-    """The named laws without memory that depend on the curve's signal alone, least-squares fitted to the curve, best matches first."""
+    """The named laws without memory that depend on the curve's signal alone, least-squares fitted to the curve, best matches first.
+
+    None where the curve is what another signal is multiplied by.
+    """
     unknown, around = curve.mechanism, surroundings[curve.port]
     assert isinstance(unknown, Unknown)
+    if unknown.factor:
+        return []
     grid, target = _drawn(fitted, curve, around)
     site = next(q for q in model.all_ports if q.name == curve.port)
     there = {e.mechanism.name for e in fitted.effects if e.port == curve.port}

@@ -12,7 +12,7 @@ from greybox_torch.mechanisms.gravity import Gravity
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.mechanisms.transmission_error import TransmissionError
-from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Port
@@ -32,11 +32,13 @@ FLEXIBLE = {
 """Signals that the flexible curve is tried over, by kind of port."""
 
 GAINS = {
+    "body": (("position", "speed"),),
     "actuator": (("time", "input"), ("speed", "input"), ("position", "input")),
     "coupling": (("speed", "rate"), ("position", "deflection")),
 }
 """By kind of port, signals over which the gain of another may change: a battery that sags, a motor whose field weakens with its speed,
-a voice coil that leaves its gap, a damper whose oil is torn along, a rope or a belt whose free length changes with where the load is.
+a voice coil that leaves its gap, a damper whose oil is torn along, a rope or a belt whose free length changes with where the load is, a
+brake that acts over a part of the way.
 """
 
 
@@ -110,6 +112,9 @@ def _curves(model: GreyBoxModel, port: Port, knots: int) -> Iterable[Unknown]:
     for signal, factor in GAINS.get(port.kind, ()):
         if signal != "position" or not _integrated(model, port):
             yield Unknown(signal, knots, factor)
+    if isinstance(port, Body) and port.position is not None and len(model.inputs) > 1:
+        # One input's gain over the position is a curve at its actuator. Of several, one may be no drive: a flow, a pressure, a load.
+        yield from (Unknown("position", knots, f"{INPUT}{one.name}") for one in model.inputs)
 
 
 def memory_candidates(

@@ -168,6 +168,7 @@ def identity_of(attachment: Attachment) -> tuple:
         mechanism.name,
         attachment.label,
         getattr(mechanism, "signal", ""),
+        getattr(mechanism, "factor", ""),
         getattr(mechanism, "modes", 0),
         None if order is None else round(order, 2),
     )

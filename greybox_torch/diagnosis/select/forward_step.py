@@ -11,21 +11,18 @@ from greybox_torch.diagnosis.refit.likelihood import cost_of, likelier
 from greybox_torch.diagnosis.refit.rank import rank
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, sound
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
-from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist, with_motion
 from greybox_torch.diagnosis.select.choice import as_unsure_as_a_name, chosen, least_gain, part_of_a_curve
 from greybox_torch.diagnosis.select.compare import Comparison, compare
-from greybox_torch.diagnosis.select.finer_curve import with_finer_curve
+from greybox_torch.diagnosis.select.finer_curve import with_finer_curve, with_tied_curves_finer
 from greybox_torch.diagnosis.select.found_before import with_found_before
-from greybox_torch.diagnosis.select.offered import from_card, from_motion, screen_scores
+from greybox_torch.diagnosis.select.offered import Screened, from_card, from_motion, screen_scores
 from greybox_torch.diagnosis.select.posterior import believed
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
-
-Screened = tuple[tuple[ScreenScore, ...], ...]
 
 
 def forward_step(
@@ -83,7 +80,8 @@ def _take(study: Study, state: SearchState, screened: Screened, compared: Compar
     """Take the best of the compared candidates if it pays."""
     settings = study.settings
     state = with_better_fit(state, compared.parent)
-    in_turn = rank_by_likelihood([r for r in compared.ranked if sound(study, r)], settings, study.budget)
+    ranked = with_tied_curves_finer(study, compared.parent, compared.ranked)
+    in_turn = rank_by_likelihood([r for r in ranked if sound(study, r)], settings, study.budget)
     cost_before = cache(partial(cost_of, compared.parent))
     paying = [r for r in in_turn if r.gain > least_gain(r.fitted, settings) and _sure(cost_before, r, settings)]
     if little_is_left(study, state):

@@ -85,19 +85,6 @@ class ScreenSettings:
     screen_tie: float = share(
         0.97, "Share of the best candidate's from which another ties with it.", unit="share of what the best explains"
     )
-    least_screen_share_of_fine_curve: float = share(
-        0.3,
-        "The same for a fine curve beside named effects: forty knots always take up something.",
-        unit="share of the residual's energy",
-    )
-    least_screen_share_beside_curve: float = share(
-        0.1, "The same for an effect beside a free curve, where refits are slow.", unit="share of the residual's energy"
-    )
-    curve_promise: float = share(
-        0.5,
-        "Part of what a free curve has to remove that it must promise in the screen to be refitted.",
-        unit="share of least_curve_share",
-    )
     bent_travel: float = ratio(
         3.0,
         "How many times as far as with the card's values the fitted model has to move a signal for its fit to be taken as bent: then the "
@@ -189,26 +176,11 @@ class SelectionSettings:
         unit=SIGMA,
         chosen_by="40 complete models (up to 9.1, of all laws looked at), effects that windows missed (11 to 20)",
     )
-    least_curve_share: float = share(
-        0.02, "Part of the plain model's error that a free curve has to remove at some window length.", unit=GAIN
-    )
-    least_curve_share_beside_names: float = share(
-        0.05,
-        "The same beside named effects, whose laws are never exactly the machine's.",
-        unit=GAIN,
-        chosen_by="cases simulated elsewhere: effects begin at 0.05",
-    )
     same_share: float = share(
         1e-5,
         "Share of the mismatch by which two laws have to differ for the one with more parameters to be preferred.",
         unit="share of the mismatch",
         chosen_by="a motor's gain told as gravity (an overwhelming effect: their difference is 2e-7 of it)",
-    )
-    curve_margin: float = number(
-        0.1, "How much better a free curve must be than every name to be preferred.", unit=LOG_ERROR
-    )
-    curve_gain_ratio: float = ratio(
-        1.5, "How many times the gain of the best name a free curve must gain to be preferred.", unit="times the gain"
     )
     named_share: float = share(
         0.85,

@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.settings.choosing import (
     SelectionSettings,
 )
 from greybox_torch.diagnosis.settings.claiming import ConfirmationSettings, ProbabilitySettings, ResidualSettings
+from greybox_torch.diagnosis.settings.curves import CurveSettings
 from greybox_torch.diagnosis.settings.fields import check
 from greybox_torch.diagnosis.settings.searching_again import SearchingAgainSettings
 
@@ -23,6 +24,7 @@ class DiagnosisSettings(
     CardSettings,
     SearchingAgainSettings,
     ConfirmationSettings,
+    CurveSettings,
     SelectionSettings,
     ComparisonSettings,
     ScreenSettings,

@@ -1,0 +1,52 @@
+"""Thresholds of free curves: when they are looked for, how fine they are, and when they stand before a name."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greybox_torch.diagnosis.settings.choosing import GAIN, LOG_ERROR
+from greybox_torch.diagnosis.settings.fields import number, ratio, share
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurveSettings:
+    """When a free curve is asked for, and what it has to be worth."""
+
+    screen_complete: float = share(
+        0.9,
+        "Share that the best of a screen explains from which no curve of many knots is looked for along the way.",
+        unit="share of the residual's energy",
+    )
+    left_by_narrow: float = share(
+        0.5,
+        "Part of what a curve of few knots leaves in the screen that one of many may leave to go in its place.",
+        unit="share of the residual's energy",
+    )
+    least_screen_share_of_fine_curve: float = share(
+        0.3,
+        "Share of the residual that a fine curve has to explain in the screen beside named effects: forty knots always take up something.",
+        unit="share of the residual's energy",
+    )
+    least_screen_share_beside_curve: float = share(
+        0.1, "The same for an effect beside a free curve, where refits are slow.", unit="share of the residual's energy"
+    )
+    curve_promise: float = share(
+        0.5,
+        "Part of what a free curve has to remove that it must promise in the screen to be refitted.",
+        unit="share of least_curve_share",
+    )
+    least_curve_share: float = share(
+        0.02, "Part of the plain model's error that a free curve has to remove at some window length.", unit=GAIN
+    )
+    least_curve_share_beside_names: float = share(
+        0.05,
+        "The same beside named effects, whose laws are never exactly the machine's.",
+        unit=GAIN,
+        chosen_by="cases simulated elsewhere: effects begin at 0.05",
+    )
+    curve_margin: float = number(
+        0.1, "How much better a free curve must be than every name to be preferred.", unit=LOG_ERROR
+    )
+    curve_gain_ratio: float = ratio(
+        1.5, "How many times the gain of the best name a free curve must gain to be preferred.", unit="times the gain"
+    )
