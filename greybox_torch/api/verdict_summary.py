@@ -56,7 +56,7 @@ def _rows(effect: Effect) -> Iterator[list[str | float]]:
     """A line for every parameter of a law or a response; one for a curve, whose heights mean little one by one."""
     first: list[str | float] = [effect.port, effect.mechanism, effect.probability, 100.0 * effect.explained]
     if not effect.shown_parameters:
-        yield [*first, f"curve over {', '.join(effect.signals)}", "", "", ""]
+        yield [*first, f"curve over {', times '.join(effect.signals)}", "", "", ""]
         return
     for name, entry in effect.shown_parameters.items():
         yield [*first, name, float(entry["value"]), _deviation(entry.get("std")), entry.get("unit", "")]
