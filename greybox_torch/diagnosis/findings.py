@@ -12,6 +12,7 @@ from functools import partial
 from typing import Any
 
 from greybox_torch.deadline import Deadline, until
+from greybox_torch.diagnosis.confirm.curve_instead import curve_instead
 from greybox_torch.diagnosis.confirm.holding import Judged, holding
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.effect import Effect
@@ -73,7 +74,7 @@ def _finished(study: Study, state: SearchState, deadline: Deadline) -> tuple[tup
 def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
     """Effects taken back, the weakest first, until those left hold on the validation experiments, and whether there was time for that.
 
-    Where there is none, the effect that was found first is left if that holds by itself, else nothing.
+    Where there is none, the effect that was found first is left if that holds by itself, else nothing. Where none holds, a free curve may.
     """
     study, state, others = selection.study, selection.state, selection.others
     study.working_on("judging on the validation experiments")
@@ -82,7 +83,12 @@ def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
         judged = judged.having(augmented, {} if others is None else others.places(state.current))
     with until(selection.schedule.judging):
         found, _ = or_else(lambda: holding(study, state, others, selection.gains, judged), lambda: None)
-    return _found_first(study, state, judged) if found is None else found
+        if found is None:
+            return _found_first(study, state, judged)
+        if found[0].effects:
+            return found
+        curve, whole = or_else(partial(curve_instead, study, found[0], others, found[2]), lambda: None)
+    return (*found[:4], found[4] and whole) if curve is None else (*curve, found[3], whole)
 
 
 def _found_first(study: Study, state: SearchState, judged: Judgement) -> Judged:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import torch
 
+from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Signals
 
@@ -45,6 +46,24 @@ def test_a_curve_with_a_factor_is_a_gain_that_changes(law, around, anywhere) -> 
     assert law(gain, heights, time=time) == pytest.approx(law(force, heights, time=time)), (
         "without the factor: the gain itself"
     )
+
+
+@pytest.mark.parametrize(
+    ("signal", "factor", "unit"),
+    [
+        ("speed", "", "N m"),
+        ("time", "input", ""),
+        ("position", "speed", "N m/(rad/s)"),
+        ("position", "input@q", "N m/(Pa)"),
+    ],
+)
+def test_heights_have_the_unit_of_what_turns_the_factor_into_a_force(signal, factor, unit) -> None:
+    ranges = dict.fromkeys(("speed", "position", "time"), Range(-1.0, 1.0, 0.5))
+    around = Surroundings(ranges, {"speed": "rad/s", "input@q": "Pa"}, "N m", 1e-3)
+    curve = Unknown(signal, 6, factor)
+    assert {p.unit for p in curve.parameters(around) if p.shrunk} == {unit}
+    assert curve.reads == (("q",) if factor == "input@q" else ())
+    assert Unknown(**curve.options()).reads == curve.reads
 
 
 def test_bumps_that_are_left_out_are_zero_and_have_no_parameters(law, around) -> None:

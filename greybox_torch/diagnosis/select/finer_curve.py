@@ -49,6 +49,16 @@ def with_tied_curves_finer(
     return in_order([*rest, *drawn], study.settings)
 
 
+def as_fine_as_pays(study: Study, parent: Hypothesis, ranked: RankedCandidate) -> RankedCandidate:
+    """A free curve, as it was compared with its parent, with twice the knots, and so on, as long as that pays and means anything."""
+    while _may_be_finer(study, ranked.fitted):
+        drawn = _judged_finer(study, parent, ranked)
+        if drawn.gain < ranked.gain + study.settings.curve_margin:
+            break
+        ranked = drawn
+    return ranked
+
+
 def _judged_finer(study: Study, parent: Hypothesis, ranked: RankedCandidate) -> RankedCandidate:
     """A curve with twice the knots compared with the hypothesis before it; as it is where that is no better."""
     fitted = _drawn_finer(study, ranked.fitted)

@@ -1,0 +1,58 @@
+"""A free curve in the place of nothing, where no name lasted and held-out experiments bear the curve out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+
+from greybox_torch.diagnosis.confirm.far_better import judged_anew
+from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
+from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, sound
+from greybox_torch.diagnosis.select.finer_curve import as_fine_as_pays
+from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.diagnosis.study import Study
+from greybox_torch.simulation.side_by_side import side_by_side
+
+
+def curve_instead(
+    study: Study, state: SearchState, others: HeldOut | None, judged: Judgement
+) -> tuple[SearchState, Mapping[str, Gain], Judgement] | None:
+    """``state``, of which nothing was left, with the free curve that led its first step, drawn as finely as pays; None where free runs do
+    not leave half of the mismatch or less with it, or windows do not bear it out beyond chance.
+
+    A name of many amplitudes may go farther than a curve of few knots, and what joins it takes up what it lacks. Seen: a dip and a bump of
+    a rail, told as a ripple of six harmonics and a curve; neither lasted, and 56 times the noise was left without a name.
+    """
+    settings = study.settings
+    step = next((s for s in state.steps if not s.parent.effects and _curves(study, s)), None)
+    if others is None or step is None or times_noise(study.problem, state.plain, settings) <= settings.above_noise:
+        return None
+    study.working_on("asking held-out experiments about a curve in the place of names")
+    drawn = in_order(
+        side_by_side(partial(as_fine_as_pays, study, step.parent, r) for r in _curves(study, step)), settings
+    )
+    best = drawn[0]
+    curve = replace(
+        state.at(best.fitted),
+        steps=(*state.steps, SelectionStep(step.screened, step.parent, tuple(drawn), best)),
+        without={best.candidate.attachment.prefix: state.plain},
+    )
+    gains, by_it = judged_anew(study, curve, others, judged)
+    return (curve, gains, by_it) if _borne_out(gains, by_it, settings) else None
+
+
+def _curves(study: Study, step: SelectionStep) -> list[RankedCandidate]:
+    """The free curves of a step that gain about as much as the best of them, and more than chance."""
+    settings = study.settings
+    found = [r for r in step.ranked if r.unknown and sound(study, r) and r.gain > settings.curve_margin]
+    return [r for r in found if r.gain > settings.polish_share * found[0].gain]
+
+
+def _borne_out(gains: Mapping[str, Gain], judged: Judgement, settings: DiagnosisSettings) -> bool:
+    sure = all(g.errors_away > settings.held_out_beyond_chance for g in gains.values())
+    far = judged.mismatch(True) <= settings.left_if_far_better * judged.mismatch(False)
+    return sure and far and judged.holds and not judged.unstable
