@@ -104,7 +104,7 @@ def test_units(arm_search) -> None:
         **dict.fromkeys(("motor", "gearbox", "arm", "gear_spring", "arm_spring", "actuator"), "N m"),
         "sensor": "rad/s",
     }
-    assert around["motor"].units == {"speed": "rad/s", "position": "rad", "time": "s"}
+    assert around["motor"].units == {"speed": "rad/s", "position": "rad", "time": "s", "input@torque": "N m"}
     assert around["gear_spring"].units["rate"] == "rad/s"
     assert around["motor"].per("speed") == "N m/(rad/s)" and around["motor"].per("speed", 2) == "N m/(rad/s)^2"
     assert around["motor"].sample_time == pytest.approx(1e-3)

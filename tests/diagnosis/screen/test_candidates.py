@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import ClassVar
 
+import pytest
+
 from greybox_torch.diagnosis.screen.candidates import candidates, periodic_candidates
+from greybox_torch.diagnosis.screen.shortlist import identity_of
 from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
@@ -144,3 +147,27 @@ def test_an_input_that_changes_along_the_way_is_offered_where_the_way_is_known()
     found = candidates(hoist, {}, dict.fromkeys([p.name for p in hoist.all_ports], around), flexible=True)
     (along,) = (a for a in found if a.port == "actuator" and "position" in a.mechanism.signals())
     assert along.mechanism.signals() == ("position", "input") and along.position == "drum"
+
+
+class HoistInWind(Hoist):
+    """The same with a recorded wind."""
+
+    inputs: ClassVar = [Input("force", "N"), Input("wind", "Pa")]
+
+
+@pytest.mark.parametrize(
+    ("model", "products"),
+    [(Hoist(), {"speed"}), (HoistInWind(), {"speed", "input@force", "input@wind"})],
+    ids=["one input", "two inputs"],
+)
+def test_what_acts_along_a_part_of_the_way_may_grow_with_the_speed_or_with_one_of_several_inputs(
+    model, products
+) -> None:
+    """Seen: a brake over a part of a gate's arc, told without a name; a wing that stalls, told at the input."""
+    signals = ("speed", "position", "input", "input@force", "input@wind")
+    around = Surroundings({s: Range(0.0, 1.0, 0.5) for s in signals}, {}, "N", 1e-2)
+    found = candidates(model, {}, dict.fromkeys([p.name for p in model.all_ports], around), flexible=True)
+    along = [a for a in found if a.port == "drum" and a.mechanism.signals()[0] == "position"]
+    assert {a.mechanism.factor for a in along} == {"", *products}
+    assert all(a.position == "drum" for a in along)
+    assert len({identity_of(a) for a in along}) == len(along), "each is a hypothesis of its own"

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+
+import pytest
 
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
-from greybox_torch.diagnosis.select.finer_curve import with_finer_curve
+from greybox_torch.diagnosis.select import finer_curve as module
+from greybox_torch.diagnosis.select.finer_curve import as_fine_as_pays, with_finer_curve, with_tied_curves_finer
 from greybox_torch.diagnosis.select.forward_step import substantial
 from greybox_torch.diagnosis.select.offered import screen_scores
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.unknown import Unknown
 
@@ -47,3 +51,57 @@ def test_beside_named_effects_a_curve_has_to_remove_more(dead_zone_search, stub)
     for effects, pays in (((), True), (("a law",), False)):
         state = stub(plain=stub(fits=before.fits[:1]), current=stub(fits=before.fits[:1]), effects=effects)
         assert substantial(stub(settings=settings), state, curve) is pays
+
+
+@pytest.fixture
+def drawn(stub, monkeypatch):
+    """Curves whose score falls to that of another list with twice the knots: those at the wing gain, those at the actuator do not."""
+    further = {"wing": 2.0, "actuator": 0.05}
+
+    def candidate(port: str, gain: float, *, unknown: bool = True, knots: int = 14):
+        effect = stub(port=port, mechanism=Unknown("position", knots))
+        fitted = stub(score=-gain, effects=(effect,), problem=stub(free_names=["J"]))
+        return stub(candidate=Pair(effect), fitted=fitted, gain=gain, unknown=unknown)
+
+    def finer(study, fitted):
+        effect = fitted.effects[-1]
+        return candidate(effect.port, -fitted.score + further[effect.port], knots=2 * effect.mechanism.knots).fitted
+
+    def judged(pair, parent, fitted, settings):
+        return stub(candidate=pair, fitted=fitted, gain=-fitted.score, unknown=True)
+
+    monkeypatch.setattr(module, "_drawn_finer", finer)
+    monkeypatch.setattr(module, "judged", judged)
+    monkeypatch.setattr(module, "in_order", lambda ranked, settings: sorted(ranked, key=lambda r: -r.gain))
+    return candidate
+
+
+@dataclass(frozen=True)
+class Pair:
+    """What a candidate attaches."""
+
+    attachment: object
+
+
+@pytest.mark.parametrize(
+    ("behind", "noise", "first"),
+    [(0.05, 5.0, "wing"), (0.5, 5.0, "actuator"), (0.05, 1.0, "actuator")],
+    ids=["tied", "far behind", "only noise is left"],
+)
+def test_curves_that_tie_are_drawn_finer_before_one_is_preferred(
+    drawn, stub, monkeypatch, behind, noise, first
+) -> None:
+    """Seen: a wing that stalls, told as a gain of the flow for 0.05 in the logarithm of the error."""
+    monkeypatch.setattr(module, "times_noise", lambda *args: noise)
+    study = stub(settings=DiagnosisSettings(), budget=SearchBudget(), problem=None)
+    ranked = [drawn("actuator", 6.7), drawn("wing", 6.7 - behind), drawn("wing", 1.0, unknown=False)]
+    found = with_tied_curves_finer(study, stub(), ranked)
+    assert found[0].candidate.attachment.port == first and len(found) == 3
+    assert (found is ranked) is (first == "actuator")
+
+
+def test_a_curve_is_drawn_finer_as_long_as_that_pays(drawn, stub) -> None:
+    study = stub(settings=DiagnosisSettings(), budget=SearchBudget(), problem=None)
+    assert as_fine_as_pays(study, stub(), drawn("wing", 1.0)).gain == 7.0, "14, 28, 56 and 112 knots"
+    little = drawn("actuator", 1.0)
+    assert as_fine_as_pays(study, stub(), little) is little

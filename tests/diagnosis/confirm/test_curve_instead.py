@@ -1,0 +1,65 @@
+"""A free curve in the place of nothing, where free runs and held-out windows bear it out."""
+
+from __future__ import annotations
+
+import pytest
+
+from greybox_torch.diagnosis.confirm import curve_instead as module
+from greybox_torch.diagnosis.confirm.curve_instead import curve_instead
+from greybox_torch.diagnosis.confirm.held_out import Gain
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+
+SURE, CHANCE = Gain(0.9, 0.1, size=0.9), Gain(0.9, 0.5, size=0.9)
+
+
+def candidate(stub, prefix: str, gain: float, *, unknown: bool = True):
+    effect = stub(prefix=prefix)
+    return stub(
+        candidate=stub(attachment=effect),
+        fitted=stub(effects=(effect,), score=-gain, name=prefix),
+        gain=gain,
+        unknown=unknown,
+    )
+
+
+@pytest.mark.parametrize(
+    ("left", "held_out", "noise", "stands"),
+    [(0.2, SURE, 50.0, True), (0.6, SURE, 50.0, False), (0.2, CHANCE, 50.0, False), (0.2, SURE, 1.0, False)],
+    ids=["borne out", "too much is left", "chance", "nothing is missing"],
+)
+def test_the_best_curve_of_the_first_step_stands_if_held_out_experiments_say_so(
+    monkeypatch, stub, left, held_out, noise, stands
+) -> None:
+    """Seen: a dip and a bump of a rail, told as a ripple of six harmonics that did not last, and then as nothing with a name."""
+    plain, rippled = stub(effects=()), stub(effects=("ripple",))
+    ripple = candidate(stub, "cart.ripple", 2.9, unknown=False)
+    curves = [candidate(stub, "cart.unknown", 2.4), candidate(stub, "actuator.unknown", 0.3)]
+    steps = (
+        stub(parent=plain, ranked=(ripple, *curves), taken=ripple, screened=()),
+        stub(parent=rippled, ranked=(candidate(stub, "sensor.unknown", 9.0),), taken=None, screened=()),
+    )
+    by_it = stub(mismatch=lambda effects: left if effects else 1.0, holds=True, unstable=())
+    monkeypatch.setattr(module, "as_fine_as_pays", lambda study, parent, ranked: ranked)
+    monkeypatch.setattr(module, "sound", lambda study, ranked: True)
+    monkeypatch.setattr(module, "in_order", lambda ranked, settings: sorted(ranked, key=lambda r: -r.gain))
+    monkeypatch.setattr(module, "times_noise", lambda *args: noise)
+    monkeypatch.setattr(module, "judged_anew", lambda study, state, *rest: ({"cart.unknown": held_out}, by_it))
+    study = stub(settings=DiagnosisSettings(), problem=None, working_on=lambda text: None)
+    found = curve_instead(study, SearchState(plain, plain, steps), stub(), stub())
+    assert (found is not None) is stands
+    if found is not None:
+        state, gains, judged = found
+        assert state.current is curves[0].fitted and judged is by_it and gains == {"cart.unknown": SURE}
+        assert state.steps[-1].taken is curves[0] and state.steps[-1].ranked == (curves[0],)
+
+
+def test_no_curve_is_asked_where_none_was_tried_or_there_is_nothing_to_ask(monkeypatch, stub) -> None:
+    monkeypatch.setattr(module, "times_noise", lambda *args: 50.0)
+    monkeypatch.setattr(module, "sound", lambda study, ranked: True)
+    plain = stub(effects=())
+    ripple = candidate(stub, "cart.ripple", 2.9, unknown=False)
+    state = SearchState(plain, plain, (stub(parent=plain, ranked=(ripple,), taken=ripple, screened=()),))
+    study = stub(settings=DiagnosisSettings(), problem=None)
+    assert curve_instead(study, state, stub(), stub()) is None
+    assert curve_instead(study, state, None, stub()) is None
