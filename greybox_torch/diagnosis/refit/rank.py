@@ -133,7 +133,7 @@ def rank(
     shown = side_by_side(partial(where_it_shows, *pair, own) for pair, own in zip(pairs, reached, strict=True))
     rounds = _finalists_of(study, shown, pairs)
     if others := {one[2] for one in shown if one is not None} - {middle}:
-        over_middle = [one if one is not None and one[2] == middle else None for one in shown]
+        over_middle = [next(iter(compared(own, middle)), None) for own in reached]
         shown = side_by_side(partial(where_others_show, *pair, own) for pair, own in zip(pairs, shown, strict=True))
         rounds = _both(_finalists_of(study, shown, pairs), _finalists_of(study, over_middle, pairs))
     final: list[RankedCandidate] = []
