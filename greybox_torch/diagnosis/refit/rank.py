@@ -74,10 +74,10 @@ def rank(
         there = [n for n in shows if n != middle]
         return [shown for n in there for shown in compared(tried(candidate, simulator, length=n), n)]
 
-    def where_it_shows(candidate: Candidate, simulator: Simulator, own: Hypothesis | None) -> Shown | None:
+    def where_it_shows(candidate: Candidate, simulator: Simulator, own: Shown | None) -> Shown | None:
         """Its trial over windows of middle length, or over those where the screen promises much of it if it does not show there."""
-        found = compared(own, middle)
-        if not (found and found[0][0] < -allowance):
+        found = [] if own is None else [own]
+        if not (own is not None and own[0] < -allowance):
             found += over_promised(candidate, simulator, at)
         return min(found, key=lambda shown: shown[0], default=None)
 
@@ -130,10 +130,10 @@ def rank(
 
     all_tried = side_by_side(partial(in_finer_steps, *pair, own) for pair, own in zip(pairs, reached, strict=True))
     pairs, reached = [(one, simulator) for one, simulator, _ in all_tried], [own for *_, own in all_tried]
-    shown = side_by_side(partial(where_it_shows, *pair, own) for pair, own in zip(pairs, reached, strict=True))
+    over_middle = [next(iter(compared(own, middle)), None) for own in reached]
+    shown = side_by_side(partial(where_it_shows, *pair, own) for pair, own in zip(pairs, over_middle, strict=True))
     rounds = _finalists_of(study, shown, pairs)
     if others := {one[2] for one in shown if one is not None} - {middle}:
-        over_middle = [next(iter(compared(own, middle)), None) for own in reached]
         shown = side_by_side(partial(where_others_show, *pair, own) for pair, own in zip(pairs, shown, strict=True))
         rounds = _both(_finalists_of(study, shown, pairs), _finalists_of(study, over_middle, pairs))
     final: list[RankedCandidate] = []
@@ -176,7 +176,7 @@ def _both(over_longer: list[list[Trial]], over_middle: list[list[Trial]]) -> lis
     there: set[tuple] = set()
     rounds: list[list[Trial]] = []
     for some in zip(over_longer, over_middle, strict=True):
-        # Of a law in both, the trial over longer windows stands.
+        # Of a law in both at once, the trial over longer windows stands.
         entries = {identity_of(e[1].attachment): e for e in (*some[1], *some[0])}
         rounds.append([e for identity, e in entries.items() if identity not in there])
         there |= set(entries)

@@ -159,9 +159,9 @@ def test_trials_are_compared_over_the_same_windows(dead_zone_search, monkeypatch
     assert [where for _, where in tried] == [middle, "in full"], "nothing else is compared there"
 
 
-@pytest.mark.parametrize("before", [(), ({"size": 1.0},)], ids=["new", "found before"])
+@pytest.mark.parametrize(("before", "over_middle"), [((), 0.6), (({"size": 1.0},), 0.99)], ids=["new", "found before"])
 def test_what_leads_over_middle_windows_is_refitted_where_others_show_over_longer_ones(
-    dead_zone_search, monkeypatch, before
+    dead_zone_search, monkeypatch, before, over_middle
 ) -> None:
     """Seen: a pendulum's friction, no finalist beside what promised much over longer windows; the verdict said that nothing is missing.
     Likewise a gearbox's friction, found before and so tried over all windows, of which it led over the middle ones.
@@ -173,7 +173,7 @@ def test_what_leads_over_middle_windows_is_refitted_where_others_show_over_longe
     stop = replace(offered[0], steps=current.fits[2].windows.steps, explained=0.86)
     friction = replace(offered[1], steps=current.fits[1].windows.steps, explained=0.43, found_before=before)
     left = {("stop", middle): 1.0, ("stop", longest): 0.1}
-    left |= {("friction", shortest): 1.0, ("friction", middle): 0.99, ("friction", longest): 0.9}
+    left |= {("friction", shortest): 1.0, ("friction", middle): over_middle, ("friction", longest): 0.9}
 
     def fit(study: Any, effects: Any, starts: Any, *, at: Any = None, **how: Any) -> Any:
         one = "stop" if stop.attachment.named in [e.named for e in effects] else "friction"
