@@ -31,7 +31,8 @@ def laws_on_curve(
 ) -> list[Candidate]:
     """The named laws without memory that depend on the curve's signal alone, least-squares fitted to the curve, best matches first.
 
-    None where the curve is what another signal is multiplied by.
+    None where the curve is what another signal is multiplied by. A sensor's offset and gain are all that it may have by itself: they are
+    tried however little of the curve they match, which draws what a law elsewhere lacks as well.
     """
     unknown, around = curve.mechanism, surroundings[curve.port]
     assert isinstance(unknown, Unknown)
@@ -43,7 +44,8 @@ def laws_on_curve(
     weight = _visited(around.ranges[unknown.signal].rms, grid.numpy())
     matches = matching_laws(site.kind, around, {unknown.signal: grid}, target, weight, there)
     base, found = _without(fitted, curve), []
-    for match in worth_a_refit([m for m in matches if not there & set(m.law.generalises)]):
+    further = [m for m in matches if not there & set(m.law.generalises)]
+    for match in further if site.kind == "sensor" else worth_a_refit(further):
         attachment = attach(model, curve.port, match.law)
         values = {**base, **{f"{attachment.prefix}.{n}": v for n, v in match.values.items()}}
         found.append(Candidate(attachment, ({**values, **card}, values), match.share))
