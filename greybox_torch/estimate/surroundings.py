@@ -18,6 +18,7 @@ from greybox_torch.model.joined_bodies import turns_with
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
 from greybox_torch.model.random_points import random_points
 from greybox_torch.model.sensed_states import sensed_states
+from greybox_torch.model.signals_elsewhere import signals_elsewhere
 from greybox_torch.simulation.simulator import Simulator
 
 
@@ -53,8 +54,9 @@ def _around(
         values["speed"] = _evaluated(body.speed, x, u, p, times)
         if isinstance(port, Actuator) and body.position is not None:
             values["position"] = _evaluated(body.position, x, u, p, times)
-    if isinstance(port, Body) and len(model.inputs) > 1:
+    if isinstance(port, Body | Balance) and len(model.inputs) > 1:
         values |= {f"{INPUT}{one.name}": np.asarray(u[one.name], dtype=float) for one in model.inputs}
+    values |= {name: _evaluated(signal, x, u, p, times) for name, signal in signals_elsewhere(model, port).items()}
     if isinstance(port, Sensor):
         row = [o.name for o in model.outputs].index(port.output)
         values["output"] = problem.records.y[row][~np.isnan(problem.records.y[row])]
@@ -129,9 +131,11 @@ def _range(values: np.ndarray) -> Range:
 
 def _units(model: GreyBoxModel, port: Port) -> dict[str, str]:
     of = {s.name: s.unit for s in (*model.states, *model.inputs)}
-    units = {name: of[signal] for name, signal in port.signals.items() if isinstance(signal, str) and signal in of}
+    signals = port.signals | signals_elsewhere(model, port)
+    units = {name: of[signal] for name, signal in signals.items() if isinstance(signal, str) and signal in of}
     if isinstance(port, Body):
         units["position"] = position_unit(model, port)
+    if isinstance(port, Body | Balance):
         units |= {f"{INPUT}{one.name}": one.unit for one in model.inputs}
     if isinstance(port, Actuator):
         units["input"] = of[port.input]

@@ -54,8 +54,9 @@ class LocalSignals:
             for names in channels(a.mechanism):
                 value, slope, at = (u[f"{a.prefix}.{n}"] for n in names)
                 values[names[0]] = value + (p[f"{a.prefix}.T"] - at) * slope
-        values |= {f"input@{name}": u[name] for name in (*a.mechanism.drives, *a.mechanism.reads)}
+        values |= {f"input@{name}": u[name] for name in a.mechanism.drives}
         values |= {f"position@{link}": self._position(link, x, u, p) for link in a.mechanism.links}
+        values |= {one: self._from_elsewhere(one, x, u, p) for one in a.mechanism.reads}
         values |= self.clock(x)
         return Signals("signal", values)
 
@@ -123,6 +124,11 @@ class LocalSignals:
     def no_forces(self) -> Signals:
         """The forces at all ports where nothing acts."""
         return Signals("port", dict.fromkeys(self.ports, torch.zeros((), dtype=torch.float64)))
+
+    def _from_elsewhere(self, signal: str, x: Signals, u: Signals, p: Signals) -> Any:
+        """An input of the model, or a signal of another port."""
+        kind, _, name = signal.partition("@")
+        return u[name] if kind == "input" else value_of(self.ports[name].signals[kind], x, u, p)
 
     def _position(self, name: str, x: Signals, u: Signals, p: Signals) -> Any:
         signal = self.body(name).position

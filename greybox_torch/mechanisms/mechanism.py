@@ -48,7 +48,8 @@ class Mechanism:
     drives: tuple[str, ...] = ()
     """Further inputs of the model that a law at an actuator changes as well, as signals ``input@NAME``."""
     reads: tuple[str, ...] = ()
-    """Inputs of the model that a law sees at whatever port, as signals ``input@NAME``."""
+    """Signals from elsewhere that a law sees at whatever port: inputs of the model, ``input@NAME``, and what
+    :func:`~greybox_torch.model.signals_elsewhere.signals_elsewhere` lists, ``position@BODY`` and ``level@BALANCE``."""
     kinematic: bool = False
     """Whether the law changes a coupling's deflection (:meth:`deflection`) instead of adding a force."""
     fades: ClassVar[bool] = False

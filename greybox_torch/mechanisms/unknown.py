@@ -27,7 +27,8 @@ class Unknown(Mechanism):
 
     ``knots`` bumps exp(−((s − s_k) / w)²) with centres spread evenly over where the signal moved; beyond that the curve stays level.
     With a ``factor`` the curve is what that other signal is multiplied by: a gain that changes. The factor may be an input of the model,
-    ``input@NAME``, also where it does not act. Bumps that are ``left_out`` are zero.
+    ``input@NAME``, also where it does not act; the signal may be that of another port, ``position@BODY`` or ``level@BALANCE``: what one
+    axis does to the other, or a charge to how a battery warms. Bumps that are ``left_out`` are zero.
     """
 
     name = "unknown"
@@ -40,7 +41,7 @@ class Unknown(Mechanism):
         self.signal = signal
         self.knots = knots
         self.factor = factor
-        self.reads = (factor.removeprefix(INPUT),) if factor.startswith(INPUT) else ()
+        self.reads = tuple(one for one in (signal, factor) if "@" in one)
         self.left_out = tuple(left_out)
 
     @property

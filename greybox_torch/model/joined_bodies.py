@@ -28,6 +28,12 @@ def joined_bodies(model: GreyBoxModel) -> list[list[Body]]:
     return groups
 
 
+def bodies_apart(model: GreyBoxModel, body: Body) -> list[Body]:
+    """The bodies that no coupling joins with a body, as they are declared: other axes of a machine."""
+    groups = joined_bodies(model)
+    return [other for group in groups if body.name not in {b.name for b in group} for other in group]
+
+
 def turns_with(coupling: Coupling, body: Body, x: Signals, u: Signals, p: Signals) -> bool:
     """Whether a body's speed is one of the two that make a coupling's deflection change, seen at states ``x`` and inputs ``u``."""
     if not isinstance(body.speed, str) or isinstance(coupling.rate, str):

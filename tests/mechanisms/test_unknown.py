@@ -49,20 +49,22 @@ def test_a_curve_with_a_factor_is_a_gain_that_changes(law, around, anywhere) -> 
 
 
 @pytest.mark.parametrize(
-    ("signal", "factor", "unit"),
+    ("signal", "factor", "unit", "reads"),
     [
-        ("speed", "", "N m"),
-        ("time", "input", ""),
-        ("position", "speed", "N m/(rad/s)"),
-        ("position", "input@q", "N m/(Pa)"),
+        ("speed", "", "N m", ()),
+        ("time", "input", "", ()),
+        ("position", "speed", "N m/(rad/s)", ()),
+        ("position", "input@q", "N m/(Pa)", ("input@q",)),
+        ("position@pitch", "", "N m", ("position@pitch",)),
+        ("position@pitch", "input@q", "N m/(Pa)", ("position@pitch", "input@q")),
     ],
 )
-def test_heights_have_the_unit_of_what_turns_the_factor_into_a_force(signal, factor, unit) -> None:
-    ranges = dict.fromkeys(("speed", "position", "time"), Range(-1.0, 1.0, 0.5))
+def test_heights_have_the_unit_of_what_turns_the_factor_into_a_force(signal, factor, unit, reads) -> None:
+    ranges = dict.fromkeys(("speed", "position", "time", "position@pitch"), Range(-1.0, 1.0, 0.5))
     around = Surroundings(ranges, {"speed": "rad/s", "input@q": "Pa"}, "N m", 1e-3)
     curve = Unknown(signal, 6, factor)
     assert {p.unit for p in curve.parameters(around) if p.shrunk} == {unit}
-    assert curve.reads == (("q",) if factor == "input@q" else ())
+    assert curve.reads == reads
     assert Unknown(**curve.options()).reads == curve.reads
 
 

@@ -9,7 +9,7 @@ import pytest
 from greybox_torch.diagnosis.screen.candidates import chain_candidates
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.model.joined_bodies import joined_bodies
+from greybox_torch.model.joined_bodies import bodies_apart, joined_bodies
 
 
 def made(*couplings: tuple[str, Any]) -> GreyBoxModel:
@@ -68,3 +68,11 @@ def test_of_bodies_that_turn_together_the_last_is_a_link(couplings, links) -> No
     around = Surroundings({"position": Range(-1.0, 1.0, 0.5)}, {"position": "rad"}, "N m", 0.01)
     found = chain_candidates(model, dict.fromkeys("abcd", around))
     assert [a.mechanism.links for a in found] == ([] if links is None else [links])
+
+
+def test_bodies_apart_are_those_that_no_coupling_joins() -> None:
+    model = made(("s", between("a", "c")))
+    apart = {
+        body.name: [other.name for other in bodies_apart(model, body)] for body in model.ports if isinstance(body, Body)
+    }
+    assert apart == {"a": ["b", "d"], "b": ["a", "c", "d"], "c": ["b", "d"], "d": ["a", "c", "b"]}

@@ -154,6 +154,9 @@ def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:
         return str(getattr(site, signal, signal))
     if signal.startswith(INPUT):
         return signal.removeprefix(INPUT)
+    if "@" in signal:
+        kind, _, elsewhere = signal.partition("@")
+        return signal_name(model, next(q for q in model.all_ports if q.name == elsewhere), kind)
     body = driving_body(model.all_ports)
     if signal in ("speed", "position") and isinstance(site, Actuator | Coupling) and body is not None:
         return signal_name(model, body, signal)

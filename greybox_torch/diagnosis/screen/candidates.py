@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from itertools import islice
 
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.actuator import InputDelay
@@ -15,9 +16,10 @@ from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
-from greybox_torch.model import Body, Coupling, GreyBoxModel, Port
+from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port
 from greybox_torch.model.joined_bodies import joined_bodies
 from greybox_torch.model.ports import Actuator, driving_body
+from greybox_torch.model.signals_elsewhere import LEVEL, signals_elsewhere
 
 ANGLES = ("rad", "deg", "rev", "turn")
 """Beginnings of the units of angles: only on an angle does gravity repeat."""
@@ -41,6 +43,9 @@ a voice coil that leaves its gap, a damper whose oil is torn along, a rope or a 
 brake that acts over a part of the way.
 """
 
+MOST_FROM_ELSEWHERE = 24
+"""Curves of signals of other ports that are tried at all: each costs the screen as much as ten laws."""
+
 
 def candidates(
     model: GreyBoxModel,
@@ -63,7 +68,9 @@ def candidates(
             if port.kind in mechanism.kinds and _available(mechanism, surroundings[port.name]):
                 law = mechanism if shifted or not mechanism.kinematic else mechanism.written_as_force()
                 found += [] if law is None else [attach(model, port.name, law, shifted)]
-    return found if flexible else [*found, *chain_candidates(model, surroundings), *common_delays(model)]
+    if not flexible:
+        return [*found, *chain_candidates(model, surroundings), *common_delays(model)]
+    return [*found, *(attach(model, port.name, curve) for port, curve in _from_elsewhere(model, knots))]
 
 
 def chain_candidates(model: GreyBoxModel, surroundings: Mapping[str, Surroundings]) -> list[Attachment]:
@@ -115,6 +122,21 @@ def _curves(model: GreyBoxModel, port: Port, knots: int) -> Iterable[Unknown]:
     if isinstance(port, Body) and port.position is not None and len(model.inputs) > 1:
         # One input's gain over the position is a curve at its actuator. Of several, one may be no drive: a flow, a pressure, a load.
         yield from (Unknown("position", knots, f"{INPUT}{one.name}") for one in model.inputs)
+    if isinstance(port, Balance) and len(model.inputs) > 1:
+        yield from (Unknown("level", knots, f"{INPUT}{one.name}") for one in model.inputs)
+
+
+def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """What another part of the machine does to a port by where it stands: by itself, or to what an input or the body's speed does there.
+
+    No more than ``MOST_FROM_ELSEWHERE``, those by themselves first.
+    """
+    elsewhere = [(port, signal) for port in model.ports for signal in signals_elsewhere(model, port)]
+    inputs = [f"{INPUT}{one.name}" for one in model.inputs]
+    ways = [(port, signal, factor) for factor in ("", "speed", *inputs) for port, signal in elsewhere]
+    there = (way for way in ways if way[2] != "speed" or (isinstance(way[0], Body) and way[1].startswith(LEVEL)))
+    for port, signal, factor in islice(there, MOST_FROM_ELSEWHERE):
+        yield port, Unknown(signal, knots, factor)
 
 
 def memory_candidates(
