@@ -81,14 +81,16 @@ def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
     judged = Judgement.of(selection.free_runs, plain)
     if state.effects:
         judged = judged.having(augmented, {} if others is None else others.places(state.current))
+    curve, whole = None, True
     with until(selection.schedule.judging):
         found, _ = or_else(lambda: holding(study, state, others, selection.gains, judged), lambda: None)
-        if found is None:
-            return _found_first(study, state, judged)
-        if found[0].effects:
-            return found
-        curve, whole = or_else(partial(curve_instead, study, found[0], others, found[2]), lambda: None)
-    return (*found[:4], found[4] and whole) if curve is None else (*curve, found[3], whole)
+        if found is not None and not found[0].effects:
+            curve, whole = or_else(partial(curve_instead, study, found[0], others, found[2]), lambda: None)
+    if found is None:
+        return _found_first(study, state, judged)  # free runs of its own, for which time was left beyond that
+    if curve is None:
+        return (*found[:4], found[4] and whole)
+    return (*curve, found[3], whole)
 
 
 def _found_first(study: Study, state: SearchState, judged: Judgement) -> Judged:

@@ -118,7 +118,8 @@ class TorqueSaturation(ByDirection):
     """The input that acts is limited: u / (1 + |u / l|^n)^(1/n), with n = 1 / ``softness``.
 
     As soft as iron that saturates (a softness of 0.3 to 1), or a clamp (a softness of zero). ``by_direction``, with an ``asymmetry`` a, the
-    limit l is (1 + a) ``limit`` for positive inputs and (1 − a) ``limit`` for negative ones.
+    limit l is (1 + a) ``limit`` for positive inputs and (1 − a) ``limit`` for negative ones. With ``limited_power`` it falls as 1 / speed
+    beyond a ``base_speed`` of the driven body, as that of a drive whose voltage or battery gives no more power.
     """
 
     name = "torque_saturation"
@@ -131,17 +132,25 @@ class TorqueSaturation(ByDirection):
     source = "H. K. Khalil, Nonlinear Systems, 3rd ed., 2002"
     experiment = "large inputs of both signs"
 
+    def __init__(self, by_direction: bool = False, limited_power: bool = False) -> None:
+        super().__init__(by_direction)
+        self.limited_power = limited_power
+        self.needs = ("input", "speed") if limited_power else ("input",)
+
     def parameters(self, around: Surroundings) -> list[Parameter]:
         reach = around.ranges["input"].reach
         return [
             Parameter("limit", 0.8 * reach, around.force_unit, lower=0.02 * reach, upper=reach, description="limit"),
             Parameter("softness", 0.0, "", lower=0.0, upper=1.0, description="0: a clamp, 0.5: a gradual limit"),
             *self.asymmetry("the limits"),
+            *([_base_speed(around)] if self.limited_power else []),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         # ln(1 + x^n) / n as a maximum and a rest: no power overflows, and without softness it is the clamp itself.
         limit = p.limit * (1 + p.asymmetry * torch.sign(s.input)) if self.by_direction else p.limit
+        if self.limited_power:
+            limit = limit / torch.clamp(torch.abs(s.speed) / p.base_speed, min=1.0)
         ln_x = 0.5 * torch.log((s.input / limit) ** 2 + TINY)
         rest = torch.log1p(torch.exp(-torch.abs(ln_x) / (p.softness + TINY)))
         return s.input * torch.expm1(-torch.clamp(ln_x, min=0.0) - p.softness * rest)
@@ -150,13 +159,21 @@ class TorqueSaturation(ByDirection):
         spread = around.ranges["input"]
         hard = [factor * spread.rms for factor in (1.0, 1.5, 2.0, 2.7)]
         soft = [factor * spread.rms for factor in (1.5, 3.0)]
-        odd = {"asymmetry": 0.0} if self.by_direction else {}
+        own = {"asymmetry": 0.0} if self.by_direction else {}
+        own |= {"base_speed": _base_speed(around).value} if self.limited_power else {}
         return [
-            Probe((SHARE,), {"limit": limit, "softness": softness, **odd})
+            Probe((SHARE,), {"limit": limit, "softness": softness, **own})
             for softness, limits in ((0.05, hard), (0.4, soft))
             for limit in limits
             if limit < spread.reach
         ]
+
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """With limits that differ by direction, with limited power, whose base speed begins as it is declared, and with both."""
+        forms = ((True, False), (False, True), (True, True))
+        own = (self.by_direction, self.limited_power)
+        further = [f for f in forms if f != own and f[0] >= own[0] and f[1] >= own[1]]
+        return [(TorqueSaturation(*f), {**({"asymmetry": 0.0} if f[0] else {}), **values}) for f in further]
 
     def degenerate(
         self, around: Surroundings, values: Mapping[str, float], deviations: Mapping[str, float]
@@ -165,6 +182,14 @@ class TorqueSaturation(ByDirection):
         nearly_clamp = 0.0 < values["softness"] < NEARLY_CLAMP
         height = values["limit"] * (2.0 ** -values["softness"] if nearly_clamp else 1.0)
         return super().degenerate(around, {**values, "limit": height}, deviations)
+
+
+def _base_speed(around: Surroundings) -> Parameter:
+    """Beyond all that was recorded it would say nothing."""
+    reach, told = around.ranges["speed"].reach, "beyond it the limit falls as 1 / speed, at constant power"
+    return Parameter(
+        "base_speed", 0.5 * reach, around.units.get("speed", ""), lower=0.02 * reach, upper=reach, description=told
+    )
 
 
 class ActuatorDeadzone(ByDirection):

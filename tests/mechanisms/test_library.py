@@ -38,6 +38,7 @@ MECHANISMS = [pytest.param(m(), id=m.name) for m in LIBRARY.values()]
 FORMS = [
     pytest.param(Unknown("speed", knots=5), id="unknown"),
     pytest.param(TorqueSaturation(by_direction=True), id="torque_saturation by direction"),
+    pytest.param(TorqueSaturation(limited_power=True), id="torque_saturation of limited power"),
     pytest.param(ActuatorDeadzone(by_direction=True), id="actuator_deadzone by direction"),
 ]
 ALL = [*MECHANISMS, *FORMS]

@@ -80,14 +80,22 @@ def _forms_of_both(
     for own, other in ((effect, newest), (newest, effect)):
         for law, start in _forms(own, before, after.current.values()):
             if other.mechanism.name in law.mechanism.stands_for:
-                yield law, start | _shared(law, start, other, after)
+                theirs = _of_the_other(law, start, other, after)
+                lacking = {n: v for n, v in theirs.items() if start[n] == 0.0}
+                yield law, start | lacking
+                yield (
+                    law,
+                    start | theirs,
+                )  # of two widths within which friction changes its sign either may be the one law's
 
 
-def _shared(law: Attachment, start: Mapping[str, float], other: Attachment, after: SearchState) -> dict[str, float]:
-    """What ``law`` begins with at zero and ``other`` has under the same name."""
+def _of_the_other(
+    law: Attachment, start: Mapping[str, float], other: Attachment, after: SearchState
+) -> dict[str, float]:
+    """What ``law`` begins with and ``other`` has under the same name, as that one has it."""
     values, own, theirs = after.current.values(), f"{law.prefix}.", f"{other.prefix}."
     named = {f"{own}{n.removeprefix(theirs)}": v for n, v in values.items() if n.startswith(theirs)}
-    return {n: v for n, v in named.items() if start.get(n) == 0.0}
+    return {n: v for n, v in named.items() if n in start}
 
 
 def _beside_rivals(plain: RankedCandidate, form: RankedCandidate) -> RankedCandidate:
@@ -125,7 +133,9 @@ def _forms(
 def _in_form(
     study: Study, state: SearchState, taken: RankedCandidate, law: Attachment, start: Mapping[str, float]
 ) -> RankedCandidate | None:
-    """The hypothesis of ``state`` with a form of the effect that was taken, compared with it."""
+    """The hypothesis of ``state`` with a form of the effect that was taken, compared with it; None where the port lacks what it needs."""
+    if not set(law.mechanism.needs) - {"delayed"} <= set(study.surroundings[law.port].ranges):
+        return None
     effect = taken.candidate.attachment
     study.working_on(f"refitting {effect.prefix} in a richer form")
     fitted: Hypothesis | None = fit(study, state.with_law(effect, law), [dict(start)], state.current.fits[0])
