@@ -1,0 +1,112 @@
+"""Curves over signals of other parts of a machine: which are offered, and what they do."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+import pytest
+import torch
+
+import greybox_torch as gt
+from greybox_torch.diagnosis.screen.candidates import candidates
+from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate.surroundings import surroundings_along
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.surroundings import Surroundings
+from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.model import Balance, Body, GreyBoxModel, Input, Output, Parameter, Signals, State
+
+
+class Helicopter(GreyBoxModel):
+    """Two axes, each with a rotor of its own, and how warm a motor gets."""
+
+    states: ClassVar = [
+        State(n, unit)
+        for n, unit in (("pitch", "rad"), ("yaw", "rad"), ("w_p", "rad/s"), ("w_y", "rad/s"), ("warm", "K"))
+    ]
+    inputs: ClassVar = [Input("main", "V"), Input("tail", "V")]
+    outputs: ClassVar = [Output("pitch", "rad"), Output("yaw", "rad"), Output("warm", "K")]
+    parameters: ClassVar = [Parameter("J", 0.03, unit="kg m^2")]
+    ports: ClassVar = [
+        Body("pitch_axis", speed="w_p", position="pitch"),
+        Body("yaw_axis", speed="w_y", position="yaw"),
+        Balance("motor_heat", level="warm"),
+    ]
+
+    def derivative(self, x, u, p, port):
+        rates = {"w_p": (u.main + port.pitch_axis) / p.J, "w_y": (u.tail + port.yaw_axis) / p.J}
+        return {"pitch": x.w_p, "yaw": x.w_y, "warm": port.motor_heat - x.warm, **rates}
+
+    def output(self, x, u, p):
+        return {"pitch": x.pitch, "yaw": x.yaw, "warm": x.warm}
+
+
+@pytest.fixture(scope="module")
+def surroundings() -> dict[str, Surroundings]:
+    helicopter = Helicopter()
+    dataset = gt.DataSet(
+        [
+            gt.Recording.from_arrays(
+                "turns",
+                {
+                    n: np.sin(np.arange(50.0) * (k + 1) / 9)
+                    for k, n in enumerate(("main", "tail", "pitch", "yaw", "warm"))
+                },
+                sample_time=0.01,
+            )
+        ]
+    )
+    problem = make_problem(dataset, helicopter, dataset.recordings)
+    states = np.stack([np.linspace(0.0, top, problem.records.u.shape[1]) for top in (0.5, 2.0, 1.0, 1.0, 20.0)], axis=1)
+    return surroundings_along(helicopter, problem, states)
+
+
+def test_what_one_axis_does_to_the_other_is_offered(surroundings) -> None:
+    """Seen: the main rotor of a laboratory helicopter turned its yaw axis, by what its pitch let it: "without a name", after 119 s."""
+    found = candidates(Helicopter(), {}, surroundings, flexible=True)
+    curves = {(a.port, a.mechanism.signal, a.mechanism.factor) for a in found if isinstance(a.mechanism, Unknown)}
+    for body, other in (("pitch_axis", "yaw_axis"), ("yaw_axis", "pitch_axis")):
+        own = {(body, f"position@{other}", factor) for factor in ("", "input@main", "input@tail")}
+        warm = {(body, "level@motor_heat", factor) for factor in ("", "speed", "input@main", "input@tail")}
+        assert {c for c in curves if c[0] == body and "@" in c[1]} == own | warm
+    assert surroundings["yaw_axis"].ranges["position@pitch_axis"].high == pytest.approx(0.5)
+    assert surroundings["yaw_axis"].units["position@pitch_axis"] == "rad"
+
+
+def test_an_input_that_changes_a_loss_is_offered_at_a_balance(surroundings) -> None:
+    """Seen: a fan that cooled a wall, and that the model did not use: "something, without a name", after 91 s."""
+    found = candidates(Helicopter(), {}, surroundings, flexible=True)
+    at_heat = {
+        (a.mechanism.signal, a.mechanism.factor)
+        for a in found
+        if a.port == "motor_heat" and isinstance(a.mechanism, Unknown)
+    }
+    assert at_heat == {("level", ""), ("level", "input@main"), ("level", "input@tail")}
+
+
+def test_a_curve_of_another_axis_pushes_by_where_that_stands(surroundings) -> None:
+    model = Helicopter()
+    curve = attach(model, "yaw_axis", Unknown("position@pitch_axis", 6, "input@main"))
+    augmented = AugmentedModel(model, [curve], surroundings)
+    heights = {f"w_{k}": 0.1 * (k + 1) for k in range(6)}
+    p = Signals(
+        "parameter",
+        {q.name: torch.tensor(heights.get(q.name.rpartition(".")[2], q.value)) for q in augmented.declared_parameters},
+    )
+    x = Signals(
+        "state",
+        {
+            "pitch": torch.tensor(0.3),
+            "yaw": torch.tensor(1.7),
+            **dict.fromkeys(("w_p", "w_y", "warm"), torch.tensor(0.0)),
+        },
+    )
+    u = Signals("input", {"main": torch.tensor(2.0), "tail": torch.tensor(0.0)})
+    none = Signals("port", dict.fromkeys((q.name for q in model.all_ports), torch.tensor(0.0)))
+    rates = augmented.derivative(x, u, p, none)
+    spacing = 0.5 / 3
+    bumps = sum(0.1 * (k + 1) * np.exp(-(((0.3 + spacing) / spacing - k) ** 2)) for k in range(6))
+    assert float(rates["w_y"]) == pytest.approx(2.0 * bumps / 0.03, rel=1e-5)
+    assert float(rates["w_p"]) == pytest.approx(2.0 / 0.03)
