@@ -81,12 +81,9 @@ def _forms_of_both(
         for law, start in _forms(own, before, after.current.values()):
             if other.mechanism.name in law.mechanism.stands_for:
                 theirs = _of_the_other(law, start, other, after)
-                lacking = {n: v for n, v in theirs.items() if start[n] == 0.0}
-                yield law, start | lacking
-                yield (
-                    law,
-                    start | theirs,
-                )  # of two widths within which friction changes its sign either may be the one law's
+                yield law, start | {n: v for n, v in theirs.items() if start[n] == 0.0}
+                # Of two widths within which friction changes its sign either may be the one law's.
+                yield law, start | theirs
 
 
 def _of_the_other(
