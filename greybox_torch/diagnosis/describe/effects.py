@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.describe.indistinguishable import one_of
 from greybox_torch.diagnosis.describe.law_over_data import over_data
 from greybox_torch.diagnosis.describe.memory import remembered, settled_curve
 from greybox_torch.diagnosis.describe.profiles import explained_energy, local_signals, most_of, profile
-from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
+from greybox_torch.diagnosis.effect import Curve, Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.one_of import Alternative
 from greybox_torch.diagnosis.select.posterior import by_comparison, for_all_that_is_left, shared
@@ -88,6 +88,7 @@ def _effect(
     profiles = _profiles(study, state, model, attachment, site)
     timelines = () if gain is None else gain.timelines
     mechanism, around = attachment.mechanism, study.surroundings[attachment.port]
+    curve = settled_curve(attachment, around, final) or over_data(study, state.current, attachment, final.problem)
     members = None if taken is None else one_of(model.base, taken, probability, study.settings, study.beliefs)
     return Effect(
         port=attachment.port,
@@ -98,7 +99,7 @@ def _effect(
         parameters=_parameters(model, attachment, final),
         explained=round(explained, 4),
         alternatives=alternatives,
-        curve=settled_curve(attachment, around, final) or over_data(study, state.current, attachment, final.problem),
+        curve=as_named(curve, model.base, site),
         memory=remembered(attachment, around, final, signal_name(model.base, site, mechanism.signals()[0]))
         if mechanism.free
         else None,
@@ -143,6 +144,15 @@ def ceiling_share(done: SelectionStep, memory: SelectionStep | None = None) -> f
     if done.taken is None or done.taken.unknown or not gains or done.taken.gain <= 0:
         return None
     return round(done.taken.gain / max(done.taken.gain, *gains), 4)
+
+
+def as_named(curve: Curve | None, model: GreyBoxModel, site: Port) -> Curve | None:
+    """A curve over a signal of another port by the model's own name of it; its own signals go by the names that they have at a port."""
+    return (
+        curve
+        if curve is None or "@" not in curve.signal
+        else replace(curve, signal=signal_name(model, site, curve.signal))
+    )
 
 
 def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.confirm.held_out import timelines
-from greybox_torch.diagnosis.describe.effects import signal_name, where
-from greybox_torch.diagnosis.effect import Profile, Timeline
+from greybox_torch.diagnosis.describe.effects import as_named, signal_name, where
+from greybox_torch.diagnosis.effect import Curve, Profile, Timeline
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.windows import cut
 from tests.machines.geared_drum import GearedDrum
@@ -75,9 +75,21 @@ def test_in_words() -> None:
         ("actuator", "input", "torque"),
         ("sensor.drum", "output", "drum"),
         ("gear", "deflection", "gear.deflection"),
+        ("drum", "position@motor_shaft", "motor"),
+        ("gear", "input@torque", "torque"),
     ],
 )
 def test_signals_by_the_names_that_the_model_gives_them(port, signal, name) -> None:
     drum = GearedDrum()
     (site,) = (p for p in drum.all_ports if p.name == port)
     assert signal_name(drum, site, signal) == name
+
+
+def test_a_curve_over_a_signal_of_another_port_goes_by_its_own_name() -> None:
+    """Seen: a battery's heat drawn over "level@charge", where the sentence above said soc."""
+    drum = GearedDrum()
+    (site,) = (p for p in drum.all_ports if p.name == "drum")
+    own, other = (Curve(signal, "rad", np.zeros(2), np.zeros(2), "N m") for signal in ("speed", "position@motor_shaft"))
+    named = as_named(other, drum, site)
+    assert named is not None and named.signal == "motor" and named.values is other.values
+    assert as_named(own, drum, site) is own and as_named(None, drum, site) is None
