@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 from xml.etree import ElementTree
 
 import numpy as np
@@ -35,7 +35,8 @@ def with_effects(model: GreyBoxModel, effects: Mapping[tuple[str, str], Mapping[
 
 
 def _law(name: str, values: Mapping[str, float]) -> Mechanism:
-    return LIBRARY[name](by_direction=True) if "asymmetry" in values else LIBRARY[name]()
+    forms = {"by_direction": "asymmetry", "limited_power": "base_speed"}
+    return LIBRARY[name](**{form: True for form, parameter in forms.items() if parameter in values})
 
 
 def rotor(machines: Path, effects: Mapping[tuple[str, str], Mapping[str, float]]) -> AugmentedModel:
@@ -199,3 +200,13 @@ def test_limits_in_urdf(machines: Path, asymmetry: dict[str, float], effort: flo
     limit = root.find("joint[@name='rotor']/limit")
     assert limit is not None
     assert float(limit.attrib["effort"]) == pytest.approx(effort)
+
+
+@pytest.mark.parametrize(("to", "word"), [("mjcf", "a ctrlrange"), ("urdf", "a limit of effort")])
+def test_a_limit_that_falls_with_speed_is_said_to_be_left_out(
+    machines: Path, to: Literal["mjcf", "urdf"], word: str
+) -> None:
+    falling = {"limit": 4.0, "softness": 0.0, "base_speed": 12.0}
+    made = gt.export(rotor(machines, {("actuator", "torque_saturation"): falling}), to=to)
+    (row,) = made.rows
+    assert f"base speed, 12: it falls as 1 / speed beyond, {word} does not" in str(row)

@@ -126,8 +126,17 @@ def input_bias(at: Place) -> Said:
 def saturation(at: Place) -> Said:
     limit, softness = at.values["limit"], at.values["softness"]
     left = [f"the softness of the limit, {softness:.3g}: a ctrlrange is a clamp"] if softness > CLAMPS else []
+    left += limited_power(at, "ctrlrange")
     more = at.values.get("asymmetry", 0.0)
     return _actuator(at, {"ctrllimited": "true", "ctrlrange": (-limit * (1 - more), limit * (1 + more))}, *left)
+
+
+def limited_power(at: Place, word: str) -> list[str]:
+    """What a constant limit, called ``word``, leaves out of one that falls with speed."""
+    base = at.values.get("base_speed")
+    return (
+        [] if base is None else [f"the limit's base speed, {base:.3g}: it falls as 1 / speed beyond, a {word} does not"]
+    )
 
 
 def lag(at: Place) -> Said:

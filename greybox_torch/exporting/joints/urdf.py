@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from greybox_torch.exporting.joints.counterpart import Counterpart, Law, Place, Said, counterparts
 from greybox_torch.exporting.joints.mechanics import driven
-from greybox_torch.exporting.joints.mjcf_laws import coulomb, stribeck, viscous
+from greybox_torch.exporting.joints.mjcf_laws import coulomb, limited_power, stribeck, viscous
 from greybox_torch.exporting.joints.snippet import Snippet, own_values, shown, written
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.ports import Actuator
@@ -45,6 +45,7 @@ def limited(at: Place) -> Said:
     body, force = found
     asymmetry = at.values.get("asymmetry", 0.0)
     left = [f"the limit's asymmetry, {asymmetry:.3g}: an effort is that of the weaker direction"] if asymmetry else []
+    left += limited_power(at, "limit of effort")
     effort = abs(force) * at.values["limit"] * (1 - abs(asymmetry))
     return [Counterpart("joint", body, {"effort": (effort,)})], left
 
