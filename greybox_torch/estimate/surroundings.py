@@ -18,7 +18,7 @@ from greybox_torch.model.joined_bodies import turns_with
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
 from greybox_torch.model.random_points import random_points
 from greybox_torch.model.sensed_states import sensed_states
-from greybox_torch.model.signals_elsewhere import signals_elsewhere
+from greybox_torch.model.signals_elsewhere import positions_elsewhere, signals_elsewhere
 from greybox_torch.simulation.simulator import Simulator
 
 
@@ -54,7 +54,7 @@ def _around(
         values["speed"] = _evaluated(body.speed, x, u, p, times)
         if isinstance(port, Actuator) and body.position is not None:
             values["position"] = _evaluated(body.position, x, u, p, times)
-    if isinstance(port, Body | Balance) and len(model.inputs) > 1:
+    if isinstance(port, Body | Balance):
         values |= {f"{INPUT}{one.name}": np.asarray(u[one.name], dtype=float) for one in model.inputs}
     values |= {name: _evaluated(signal, x, u, p, times) for name, signal in signals_elsewhere(model, port).items()}
     if isinstance(port, Sensor):
@@ -135,6 +135,7 @@ def _units(model: GreyBoxModel, port: Port) -> dict[str, str]:
     units = {name: of[signal] for name, signal in signals.items() if isinstance(signal, str) and signal in of}
     if isinstance(port, Body):
         units["position"] = position_unit(model, port)
+        units |= {name: position_unit(model, b) for name, b in positions_elsewhere(model, port).items()}
     if isinstance(port, Body | Balance):
         units |= {f"{INPUT}{one.name}": one.unit for one in model.inputs}
     if isinstance(port, Actuator):

@@ -119,7 +119,7 @@ class TorqueSaturation(ByDirection):
 
     As soft as iron that saturates (a softness of 0.3 to 1), or a clamp (a softness of zero). ``by_direction``, with an ``asymmetry`` a, the
     limit l is (1 + a) ``limit`` for positive inputs and (1 − a) ``limit`` for negative ones. With ``limited_power`` it falls as 1 / speed
-    beyond a ``base_speed`` of the driven body, as that of a drive whose voltage or battery gives no more power.
+    beyond a ``base_speed`` of the first body of the model, as that of a drive whose voltage or battery gives no more power.
     """
 
     name = "torque_saturation"
@@ -135,7 +135,9 @@ class TorqueSaturation(ByDirection):
     def __init__(self, by_direction: bool = False, limited_power: bool = False) -> None:
         super().__init__(by_direction)
         self.limited_power = limited_power
-        self.needs = ("input", "speed") if limited_power else ("input",)
+        if limited_power:
+            self.needs = ("input", "speed")
+            self.experiment = "large inputs of both signs, at low and at high speed"  # type: ignore[misc]
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         reach = around.ranges["input"].reach

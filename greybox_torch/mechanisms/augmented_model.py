@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import torch
 
-from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.added_declarations import added_inputs, added_parameters, added_states, started_at
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.delayed_input import after, delayed
@@ -36,7 +35,7 @@ class AugmentedModel(GreyBoxModel):
         start: parameter values that replace the declared ones.
 
     Raises:
-        UserError: an attachment's port is not one of the model's.
+        UserError: an attachment's port, or one that it reads a signal of, is not one of the model's.
     """
 
     def __init__(
@@ -56,10 +55,7 @@ class AugmentedModel(GreyBoxModel):
         self.local = LocalSignals(base, self.attachments, self.surroundings)
         self.paths = SignalPaths(self.local, self.probed, self._share)
         for attachment in attachments:
-            if attachment.port not in self.local.ports:
-                raise UserError(
-                    f"model {base.title} has no port '{attachment.port}' (it has: {', '.join(self.local.ports)})"
-                )
+            self.local.check(attachment)
         self.name = base.title  # type: ignore[misc]
         self.states = [*base.states, *added_states(self.local)]
         self.inputs = [*base.inputs, *added_inputs(self.attachments)]

@@ -7,6 +7,7 @@ from typing import Any
 
 import torch
 
+from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.delayed_input import channels
 from greybox_torch.mechanisms.mechanism import Surroundings
@@ -124,6 +125,21 @@ class LocalSignals:
     def no_forces(self) -> Signals:
         """The forces at all ports where nothing acts."""
         return Signals("port", dict.fromkeys(self.ports, torch.zeros((), dtype=torch.float64)))
+
+    def check(self, a: Attachment) -> None:
+        """Whether the model has the port of an attachment, and all that it reads a signal of.
+
+        Raises:
+            UserError: it has not.
+        """
+        named = (("port", a.port), *(signal.split("@", 1) for signal in a.mechanism.reads))
+        for kind, name in named:
+            told, there = (
+                ("input", [i.name for i in self.base.inputs]) if kind == "input" else ("port", list(self.ports))
+            )
+            if name not in there:
+                why = "" if kind == "port" else f", which the effect at '{a.port}' depends on"
+                raise UserError(f"model {self.base.title} has no {told} '{name}'{why} (it has: {', '.join(there)})")
 
     def _from_elsewhere(self, signal: str, x: Signals, u: Signals, p: Signals) -> Any:
         """An input of the model, or a signal of another port."""

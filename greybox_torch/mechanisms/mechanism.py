@@ -182,6 +182,10 @@ class Mechanism:
         """Where else a refit that came to ``values`` may begin, as its errors may have other minima; empty where nothing is known."""
         return ()
 
+    def available(self, around: Surroundings) -> bool:
+        """Whether the recordings have the signals that it needs."""
+        return set(self.needs) - {"delayed"} <= set(around.ranges)
+
     def options(self) -> dict[str, Any]:
         """What the constructor was told, by argument, so that the same mechanism can be made again."""
         return {name: vars(self)[name] for name in inspect.signature(type(self)).parameters if name in vars(self)}

@@ -90,6 +90,9 @@ class Unknown(Mechanism):
         """Whether a finer curve would say nothing: time does not come back, so that it would only draw what happened once."""
         return self.signal == "time"
 
+    def available(self, around: Surroundings) -> bool:
+        return set(self.signals()) <= set(around.ranges)
+
     def signals(self) -> tuple[str, ...]:
         return (self.signal, self.factor) if self.factor else (self.signal,)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import torch
 
 from greybox_torch.model.greybox_model import GreyBoxModel
-from greybox_torch.model.ports import Body, Coupling
+from greybox_torch.model.ports import Body, Coupling, Signal
 from greybox_torch.model.random_points import random_points
 from greybox_torch.model.signals import Signals
 
@@ -29,9 +29,31 @@ def joined_bodies(model: GreyBoxModel) -> list[list[Body]]:
 
 
 def bodies_apart(model: GreyBoxModel, body: Body) -> list[Body]:
-    """The bodies that no coupling joins with a body, as they are declared: other axes of a machine."""
+    """The bodies that no coupling joins with a body, as they are declared: other axes of a machine.
+
+    None where a coupling does not tell which bodies it joins (its rate is a state, or a speed is none), nor those whose position depends
+    on the same states as the body's: what a rigid gear moves is no other axis.
+    """
+    bodies = [port for port in model.ports if isinstance(port, Body)]
+    couplings = [port for port in model.ports if isinstance(port, Coupling)]
+    untold = any(isinstance(c.rate, str) for c in couplings) or any(not isinstance(b.speed, str) for b in bodies)
+    if couplings and untold:
+        return []
+    own = _moved_by(model, body.position)
     groups = joined_bodies(model)
-    return [other for group in groups if body.name not in {b.name for b in group} for other in group]
+    apart = [other for group in groups if body.name not in {b.name for b in group} for other in group]
+    return [other for other in apart if not own or _moved_by(model, other.position) != own]
+
+
+def _moved_by(model: GreyBoxModel, position: Signal | None) -> set[str]:
+    """The states that a position depends on."""
+    if position is None or isinstance(position, str):
+        return set() if position is None else {position}
+    *points, p = random_points(model)
+    x, u = model.named_signals(*points)
+    here = torch.as_tensor(position(x, u, p))
+    moved = {s.name: x.replaced(**{s.name: x[s.name] + 1.0}) for s in model.states}
+    return {name for name, other in moved.items() if bool((torch.as_tensor(position(other, u, p)) != here).any())}
 
 
 def turns_with(coupling: Coupling, body: Body, x: Signals, u: Signals, p: Signals) -> bool:

@@ -11,12 +11,22 @@ LEVEL, POSITION = "level@", "position@"
 
 
 def signals_elsewhere(model: GreyBoxModel, port: Port) -> dict[str, Signal]:
-    """By name, at a body the positions of bodies that no coupling joins with it and the levels of balances, at a balance other levels."""
+    """By name, at a body the positions of other axes and the levels of balances, at a balance the levels of others."""
     found: dict[str, Signal] = {}
     if isinstance(port, Body):
-        others = bodies_apart(model, port)
-        found |= {f"{POSITION}{b.name}": b.position for b in others if b.position is not None}
+        there = positions_elsewhere(model, port).items()
+        found |= {name: body.position for name, body in there if body.position is not None}
     if isinstance(port, Body | Balance):
         balances = (q for q in model.ports if isinstance(q, Balance) and q.name != port.name)
         found |= {f"{LEVEL}{q.name}": q.level for q in balances}
     return found
+
+
+def positions_elsewhere(model: GreyBoxModel, body: Body) -> dict[str, Body]:
+    """By the name of their position as a signal, the bodies apart from one (:func:`bodies_apart`) whose positions recordings show.
+
+    Not where nothing depends on a position: where it begins is then not known.
+    """
+    kept = model.carried_states()
+    apart = bodies_apart(model, body)
+    return {f"{POSITION}{b.name}": b for b in apart if b.position is not None and b.position not in kept}

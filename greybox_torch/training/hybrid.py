@@ -116,8 +116,8 @@ def attach_network(
     site = port_named(physics.model, port)
     around = surroundings[site.name]
     for signal in network.needs:
-        if signal not in around.ranges:
-            known = [name for name in around.ranges if name != "delayed"]
+        known = [name for name in around.ranges if name != "delayed" and "@" not in name]
+        if signal not in known:
             hint = did_you_mean(signal, known)
             problem = f"there is no such signal at {port}{hint}; there is: {', '.join(known)}"
             raise ArgumentError("signals", signal, problem)

@@ -65,7 +65,7 @@ def test_ranges_of_states(arm_search, states, port, signal, column) -> None:
 
 def test_signals_by_port(arm_search) -> None:
     assert {port: set(around.ranges) for port, around in arm_search.surroundings.items()} == {
-        **{body: {"speed", "position", "load", "time"} for body in ("motor", "gearbox", "arm")},
+        **{body: {"speed", "position", "load", "time", "input@torque"} for body in ("motor", "gearbox", "arm")},
         "gear_spring": {"deflection", "rate", "speed", "position", "load", "time"},
         "arm_spring": {"deflection", "rate", "speed", "position", "time"},
         "actuator": {"input", "speed", "time"},

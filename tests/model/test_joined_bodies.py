@@ -76,3 +76,19 @@ def test_bodies_apart_are_those_that_no_coupling_joins() -> None:
         body.name: [other.name for other in bodies_apart(model, body)] for body in model.ports if isinstance(body, Body)
     }
     assert apart == {"a": ["b", "d"], "b": ["a", "c", "d"], "c": ["b", "d"], "d": ["a", "c", "b"]}
+
+
+def test_where_a_coupling_does_not_tell_whom_it_joins_no_body_is_apart() -> None:
+    model = made(("s", "w_a"))
+    assert [bodies_apart(model, body) for body in model.ports if isinstance(body, Body)] == [[], [], [], []]
+
+
+def test_what_a_rigid_gear_moves_is_no_other_axis() -> None:
+    model = made()
+    model.ports = [
+        Body("a", speed="w_a", position="q_a"),
+        Body("wheel", speed="w_b", position=lambda x, u, p: 3.0 * x.q_a),
+        Body("c", speed="w_c", position=lambda x, u, p: x.q_c + x.q_a),
+    ]
+    apart = {body.name: [other.name for other in bodies_apart(model, body)] for body in model.ports}
+    assert apart == {"a": ["c"], "wheel": ["c"], "c": ["a", "wheel"]}

@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.linear_algebra import least_squares
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.matching import force_columns, kinematic_laws, matching_laws, worth_a_refit
+from greybox_torch.mechanisms.matching import MOST_LAWS, force_columns, kinematic_laws, matching_laws, worth_a_refit
 from greybox_torch.mechanisms.matching_pairs import matching_pair
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
@@ -31,7 +31,7 @@ def laws_on_curve(
 ) -> list[Candidate]:
     """The named laws without memory that depend on the curve's signal alone, least-squares fitted to the curve, best matches first.
 
-    None where the curve is what another signal is multiplied by. A sensor's offset and gain are all that it may have by itself: they are
+    None where the curve is what another signal is multiplied by. A sensor has few laws without memory, its offset and its gain: they are
     tried however little of the curve they match, which draws what a law elsewhere lacks as well.
     """
     unknown, around = curve.mechanism, surroundings[curve.port]
@@ -45,7 +45,7 @@ def laws_on_curve(
     matches = matching_laws(site.kind, around, {unknown.signal: grid}, target, weight, there)
     base, found = _without(fitted, curve), []
     further = [m for m in matches if not there & set(m.law.generalises)]
-    for match in further if site.kind == "sensor" else worth_a_refit(further):
+    for match in further[:MOST_LAWS] if site.kind == "sensor" else worth_a_refit(further):
         attachment = attach(model, curve.port, match.law)
         values = {**base, **{f"{attachment.prefix}.{n}": v for n, v in match.values.items()}}
         found.append(Candidate(attachment, ({**values, **card}, values), match.share))

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.refit.possible_form import possible_form
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.study import Study
 
@@ -27,6 +28,6 @@ def richer_forms(study: Study, port: str, laws: Iterable[tuple[Candidate, Hypoth
         for mechanism, begun in effect.mechanism.richer(own):
             law = replace(effect, mechanism=mechanism)
             values = {**others, **{f"{law.prefix}.{n}": v for n, v in begun.items()}}
-            if law.prefix not in there and not study.beliefs.exclude(law):
+            if law.prefix not in there and not study.beliefs.exclude(law) and possible_form(study, law):
                 found.append(Candidate(law, (values,), candidate.explained))
     return found

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from itertools import islice
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import islice, zip_longest
 
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.actuator import InputDelay
@@ -43,8 +43,8 @@ a voice coil that leaves its gap, a damper whose oil is torn along, a rope or a 
 brake that acts over a part of the way.
 """
 
-MOST_FROM_ELSEWHERE = 24
-"""Curves of signals of other ports that are tried at all: each costs the screen as much as ten laws."""
+MOST_FROM_ELSEWHERE, MOST_KNOTS_FROM_ELSEWHERE = 24, 20
+"""Curves of signals of other ports that are tried at all, and how fine they may be: each knot costs the screen as much as a law."""
 
 
 def candidates(
@@ -70,7 +70,8 @@ def candidates(
                 found += [] if law is None else [attach(model, port.name, law, shifted)]
     if not flexible:
         return [*found, *chain_candidates(model, surroundings), *common_delays(model)]
-    return [*found, *(attach(model, port.name, curve) for port, curve in _from_elsewhere(model, knots))]
+    elsewhere = [] if knots > MOST_KNOTS_FROM_ELSEWHERE else _from_elsewhere(model, knots)
+    return [*found, *(attach(model, port.name, c) for port, c in elsewhere if c.available(surroundings[port.name]))]
 
 
 def chain_candidates(model: GreyBoxModel, surroundings: Mapping[str, Surroundings]) -> list[Attachment]:
@@ -129,14 +130,17 @@ def _curves(model: GreyBoxModel, port: Port, knots: int) -> Iterable[Unknown]:
 def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
     """What another part of the machine does to a port by where it stands: by itself, or to what an input or the body's speed does there.
 
-    No more than ``MOST_FROM_ELSEWHERE``, those by themselves first.
+    No more than ``MOST_FROM_ELSEWHERE``, which the ports take in turn.
     """
-    elsewhere = [(port, signal) for port in model.ports for signal in signals_elsewhere(model, port)]
     inputs = [f"{INPUT}{one.name}" for one in model.inputs]
-    ways = [(port, signal, factor) for factor in ("", "speed", *inputs) for port, signal in elsewhere]
-    there = (way for way in ways if way[2] != "speed" or (isinstance(way[0], Body) and way[1].startswith(LEVEL)))
-    for port, signal, factor in islice(there, MOST_FROM_ELSEWHERE):
-        yield port, Unknown(signal, knots, factor)
+
+    def of(port: Port) -> Iterator[tuple[Port, Unknown]]:
+        for signal in signals_elsewhere(model, port):
+            speed = ["speed"] if isinstance(port, Body) and signal.startswith(LEVEL) else []
+            yield from ((port, Unknown(signal, knots, factor)) for factor in ("", *inputs, *speed))
+
+    in_turn = (way for turn in zip_longest(*map(of, model.ports)) for way in turn if way is not None)
+    return islice(in_turn, MOST_FROM_ELSEWHERE)
 
 
 def memory_candidates(
@@ -173,7 +177,4 @@ def _is_angle(around: Surroundings) -> bool:
 def _available(mechanism: Mechanism, around: Surroundings) -> bool:
     if isinstance(mechanism, Gravity | PositionDependentFriction | TorqueRipple) and not _is_angle(around):
         return False  # as the library offers them they repeat once per turn; periodic_candidates has those with other periods
-    needed = set(mechanism.needs) - {"delayed"}
-    if isinstance(mechanism, Unknown):
-        needed = set(mechanism.signals())
-    return needed <= set(around.ranges)
+    return mechanism.available(around)

@@ -14,6 +14,7 @@ import numpy as np
 from greybox_torch.diagnosis.hypothesis.above_noise import only_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import floor_known, noise_floor
+from greybox_torch.diagnosis.refit.possible_form import possible_form
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.choice import least_gain, priced_score
@@ -81,9 +82,11 @@ def _forms_of_both(
         for law, start in _forms(own, before, after.current.values()):
             if other.mechanism.name in law.mechanism.stands_for:
                 theirs = _of_the_other(law, start, other, after)
-                yield law, start | {n: v for n, v in theirs.items() if start[n] == 0.0}
-                # Of two widths within which friction changes its sign either may be the one law's.
-                yield law, start | theirs
+                both = start | {n: v for n, v in theirs.items() if start[n] == 0.0}
+                yield law, both
+                width = f"{law.prefix}.v_0"
+                if width in theirs:  # within which friction changes its sign: either may be the one law's
+                    yield law, both | {width: theirs[width]}
 
 
 def _of_the_other(
@@ -131,7 +134,7 @@ def _in_form(
     study: Study, state: SearchState, taken: RankedCandidate, law: Attachment, start: Mapping[str, float]
 ) -> RankedCandidate | None:
     """The hypothesis of ``state`` with a form of the effect that was taken, compared with it; None where the port lacks what it needs."""
-    if not set(law.mechanism.needs) - {"delayed"} <= set(study.surroundings[law.port].ranges):
+    if not possible_form(study, law):
         return None
     effect = taken.candidate.attachment
     study.working_on(f"refitting {effect.prefix} in a richer form")

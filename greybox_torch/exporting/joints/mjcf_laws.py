@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 
 from greybox_torch.exporting.joints.counterpart import Attribute, Counterpart, Law, Place, Said
-from greybox_torch.exporting.joints.mechanics import driven, stiffness
 from greybox_torch.model import Body, Coupling
+from greybox_torch.model.mechanics import driven, stiffness
 from greybox_torch.model.ports import Actuator
 
 FAR = 1e6

@@ -8,10 +8,10 @@ from __future__ import annotations
 from xml.etree.ElementTree import Element, SubElement
 
 from greybox_torch.exporting.joints.counterpart import Counterpart, Law, Place, Said, counterparts
-from greybox_torch.exporting.joints.mechanics import driven
 from greybox_torch.exporting.joints.mjcf_laws import coulomb, limited_power, stribeck, viscous
 from greybox_torch.exporting.joints.snippet import Snippet, own_values, shown, written
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.mechanics import driven
 from greybox_torch.model.ports import Actuator
 
 _HOW = (

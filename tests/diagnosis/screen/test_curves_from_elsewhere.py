@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import ClassVar
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 import torch
 
 import greybox_torch as gt
-from greybox_torch.diagnosis.screen.candidates import candidates
+from greybox_torch.diagnosis.screen.candidates import _from_elsewhere, candidates
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.surroundings import surroundings_along
 from greybox_torch.mechanisms.attachment import attach
@@ -84,6 +85,67 @@ def test_an_input_that_changes_a_loss_is_offered_at_a_balance(surroundings) -> N
         if a.port == "motor_heat" and isinstance(a.mechanism, Unknown)
     }
     assert at_heat == {("level", ""), ("level", "input@main"), ("level", "input@tail")}
+
+
+class Cell(GreyBoxModel):
+    """A battery's charge, its surface and its core, with one input."""
+
+    states: ClassVar = [State("soc", ""), State("surface", "K"), State("core", "K")]
+    inputs: ClassVar = [Input("current", "A")]
+    outputs: ClassVar = [Output("surface", "K")]
+    parameters: ClassVar = [Parameter("C", 50.0, unit="J/K")]
+    ports: ClassVar = [
+        Balance("charge", level="soc"),
+        Balance("skin", level="surface"),
+        Balance("heat", level=lambda x, u, p: 0.5 * (x.surface + x.core)),
+    ]
+
+    def derivative(self, x, u, p, port):
+        return {
+            "soc": -u.current + port.charge,
+            "surface": (x.core - x.surface + port.skin) / p.C,
+            "core": (x.surface - x.core + port.heat) / p.C,
+        }
+
+    def output(self, x, u, p):
+        return {"surface": x.surface}
+
+
+def test_a_balance_is_offered_the_levels_of_others_and_its_only_input() -> None:
+    """Seen: the heat of a battery's reaction, the current times a curve of the charge: "without a name", after 142 s."""
+    cell, wave = Cell(), np.sin(np.arange(40.0) / 5)
+    dataset = gt.DataSet([gt.Recording.from_arrays("run", {"current": wave, "surface": wave}, sample_time=1.0)])
+    problem = make_problem(dataset, cell, dataset.recordings)
+    around = surroundings_along(
+        cell, problem, np.outer(np.linspace(0.0, 1.0, problem.records.u.shape[1]), [0.8, 5.0, 9.0])
+    )
+    curves = [a for a in candidates(cell, {}, around, flexible=True) if isinstance(a.mechanism, Unknown)]
+    at_heat = {(a.mechanism.signal, a.mechanism.factor) for a in curves if a.port == "heat"}
+    others = {(f"level@{name}", factor) for name in ("charge", "skin") for factor in ("", "input@current")}
+    assert at_heat == {("level", ""), *others}
+    assert around["charge"].ranges["level@heat"].high == pytest.approx(7.0)
+    assert around["heat"].ranges["input@current"].low < 0.0
+    assert not [a for a in candidates(cell, {}, around, flexible=True, knots=40) if "@" in str(a.mechanism.signals())]
+
+
+def test_ports_take_the_few_curves_of_signals_elsewhere_in_turn(monkeypatch) -> None:
+    monkeypatch.setattr(sys.modules[candidates.__module__], "MOST_FROM_ELSEWHERE", 4)
+    ways = [(port.name, curve.signal, curve.factor) for port, curve in _from_elsewhere(Cell(), 6)]
+    assert ways == [
+        ("charge", "level@skin", ""),
+        ("skin", "level@charge", ""),
+        ("heat", "level@charge", ""),
+        ("charge", "level@skin", "input@current"),
+    ]
+
+
+def test_a_saved_effect_that_reads_what_a_model_lacks_is_refused(surroundings) -> None:
+    curve = attach(Helicopter(), "yaw_axis", Unknown("position@roll_axis", 6))
+    with pytest.raises(gt.UserError, match=r"has no port 'roll_axis', which the effect at 'yaw_axis' depends on"):
+        AugmentedModel(Helicopter(), [curve], surroundings)
+    curve = attach(Helicopter(), "yaw_axis", Unknown("position@pitch_axis", 6, "input@rotor"))
+    with pytest.raises(gt.UserError, match=r"has no input 'rotor', which .* \(it has: main, tail\)"):
+        AugmentedModel(Helicopter(), [curve], surroundings)
 
 
 def test_a_curve_of_another_axis_pushes_by_where_that_stands(surroundings) -> None:

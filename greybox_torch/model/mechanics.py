@@ -10,7 +10,9 @@ from collections.abc import Callable
 
 import torch
 
-from greybox_torch.model import Body, Coupling, GreyBoxModel, Signals
+from greybox_torch.model.greybox_model import GreyBoxModel
+from greybox_torch.model.ports import Body, Coupling
+from greybox_torch.model.signals import Signals
 
 EXACT = 1e-9
 """Share of a column that may be left where two columns are taken to be in proportion: what rounding leaves."""
