@@ -16,9 +16,9 @@ from greybox_torch.mechanisms.unknown import INPUT
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
 from greybox_torch.model.joined_bodies import turns_with
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
-from greybox_torch.model.random_points import random_points
 from greybox_torch.model.sensed_states import sensed_states
 from greybox_torch.model.signals_elsewhere import positions_elsewhere, signals_elsewhere
+from greybox_torch.model.states_of import states_of
 from greybox_torch.simulation.simulator import Simulator
 
 
@@ -98,14 +98,7 @@ def _load(
 
 def _is_measured(model: GreyBoxModel, signal: Signal) -> bool:
     """Whether a signal depends on states alone that outputs show."""
-    shown = sensed_states(model)
-    if isinstance(signal, str):
-        return signal in shown
-    *points, p = random_points(model)
-    x, u = model.named_signals(*points)
-    hidden = (s.name for s in model.states if s.name not in shown)
-    moved = (x.replaced(**{name: x[name] + 1.0}) for name in hidden)
-    return not any(torch.as_tensor(signal(other, u, p) != signal(x, u, p)).any() for other in moved)
+    return states_of(model, signal) <= set(sensed_states(model))
 
 
 def _evaluated(signal: Signal, x: Signals, u: Signals, p: Signals, times: np.ndarray) -> np.ndarray:

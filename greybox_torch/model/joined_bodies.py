@@ -5,11 +5,14 @@ from __future__ import annotations
 import torch
 
 from greybox_torch.model.greybox_model import GreyBoxModel
-from greybox_torch.model.ports import Body, Coupling, Signal
+from greybox_torch.model.once_per_model import once_per_model
+from greybox_torch.model.ports import Body, Coupling
 from greybox_torch.model.random_points import random_points
 from greybox_torch.model.signals import Signals
+from greybox_torch.model.states_of import states_of
 
 
+@once_per_model
 def joined_bodies(model: GreyBoxModel) -> list[list[Body]]:
     """The bodies in groups that couplings join, both as they are declared; a body that none joins is a group of its own.
 
@@ -39,21 +42,10 @@ def bodies_apart(model: GreyBoxModel, body: Body) -> list[Body]:
     untold = any(isinstance(c.rate, str) for c in couplings) or any(not isinstance(b.speed, str) for b in bodies)
     if couplings and untold:
         return []
-    own = _moved_by(model, body.position)
+    own = set() if body.position is None else states_of(model, body.position)
     groups = joined_bodies(model)
     apart = [other for group in groups if body.name not in {b.name for b in group} for other in group]
-    return [other for other in apart if not own or _moved_by(model, other.position) != own]
-
-
-def _moved_by(model: GreyBoxModel, position: Signal | None) -> set[str]:
-    """The states that a position depends on."""
-    if position is None or isinstance(position, str):
-        return set() if position is None else {position}
-    *points, p = random_points(model)
-    x, u = model.named_signals(*points)
-    here = torch.as_tensor(position(x, u, p))
-    moved = {s.name: x.replaced(**{s.name: x[s.name] + 1.0}) for s in model.states}
-    return {name for name, other in moved.items() if bool((torch.as_tensor(position(other, u, p)) != here).any())}
+    return [b for b in apart if not own or b.position is None or states_of(model, b.position) != own]
 
 
 def turns_with(coupling: Coupling, body: Body, x: Signals, u: Signals, p: Signals) -> bool:
