@@ -33,6 +33,9 @@ class ByDirection(Mechanism):
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
         return () if self.by_direction else ((type(self)(True), {**values, "asymmetry": 0.0}),)
 
+    def plainer(self) -> Mechanism | None:
+        return type(self)() if self.by_direction else None
+
     def nearest(
         self, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
     ) -> Mechanism:

@@ -178,6 +178,10 @@ class Mechanism:
         """Forms of the law with more parameters, and where to begin, for where it was found at ``values`` and more than noise is left."""
         return ()
 
+    def plainer(self) -> Mechanism | None:
+        """The form with fewer parameters, of the same names, of which this one is a :meth:`richer` one; None where there is none."""
+        return None
+
     def begun_elsewhere(self, around: Surroundings, values: Mapping[str, float]) -> Sequence[Mapping[str, float]]:
         """Where else a refit that came to ``values`` may begin, as its errors may have other minima; empty where nothing is known."""
         return ()

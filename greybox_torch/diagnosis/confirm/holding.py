@@ -16,6 +16,7 @@ from greybox_torch.diagnosis.confirm.simpler_laws import simplified
 from greybox_torch.diagnosis.confirm.standing import sizes
 from greybox_torch.diagnosis.confirm.take_back import take_back_weakest
 from greybox_torch.diagnosis.confirm.undone import not_undone
+from greybox_torch.diagnosis.confirm.with_one_more import with_one_more
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.final import Final, as_windows_have_it
 from greybox_torch.diagnosis.places import NOWHERE, Places
@@ -77,6 +78,9 @@ def holding(
                 needed |= {empty}
                 continue
             state = fewer
+        elif (completed := with_one_more(study, state, others, judged)) is not None:
+            state, gains, judged = completed
+            continue
         else:
             before, state = state, take_back_weakest(study, state, gains)
             told += said_of_windows(before, state, gains, judged, study.settings)

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from greybox_torch.diagnosis.screen.linear_answer import LinearAnswer
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, carried_starts
 from greybox_torch.linear_algebra import cholesky, solve
@@ -97,18 +98,14 @@ class Screen:
         Args:
             starts: what :meth:`starts` gave for the same windows, where only the probes' values have changed since.
         """
-        total = self.projected(fitted, starts).total()
-        n_p = len(self.free_names)
-        hold = _hold(fitted, n_p)
-        base = np.arange(n_p)
-        before = _energy(total, base, _solve(total, base, hold))
-        results, at = [], n_p
+        answer = LinearAnswer.of(self.projected(fitted, starts).total(), fitted)
+        _, before = answer.beside_parameters(np.arange(0))
+        results, at = [], len(self.free_names)
         for group, (attachment, probe) in zip(self.directions, self.probed, strict=True):
-            both = np.concatenate([base, np.arange(at, at + len(group))])
+            size, left = answer.beside_parameters(np.arange(at, at + len(group)))
             at += len(group)
-            size = _solve(total, both, hold)
-            explained = (before - _energy(total, both, size)) / max(before, 1e-300)
-            results.append(ScreenScore(attachment, probe, fitted.windows.steps, explained, size[n_p:]))
+            explained = (before - left) / max(before, 1e-300)
+            results.append(ScreenScore(attachment, probe, fitted.windows.steps, explained, size))
         return results
 
     def with_probes(self, values: Sequence[Mapping[str, float]]) -> Screen:
@@ -210,26 +207,3 @@ def _sound(packed: PackedNormals, base: np.ndarray) -> PackedNormals:
         return packed
     lost = np.logical_not(finite[:, base].all(axis=1))
     return packed.without(lost, np.logical_not(finite[~lost].all(axis=0)))
-
-
-def _hold(fitted: WindowFit, n_p: int) -> np.ndarray:
-    """Curvature (n_p,) that keeps the linear answer near the parameters it is valid for: steps beyond their own size cost."""
-    values = fitted.problem.values[fitted.problem.free]
-    scale = np.where(values != 0.0, values, np.inf)
-    return 10.0 * fitted.mean_square / scale[:n_p] ** 2
-
-
-def _solve(matrix: np.ndarray, unknown: np.ndarray, hold: np.ndarray) -> np.ndarray:
-    """Least-squares values of ``unknown`` columns (the first of which are held) for the residual in the last column."""
-    inner = matrix[np.ix_(unknown, unknown)].copy()
-    inner[np.arange(len(hold)), np.arange(len(hold))] += hold
-    diagonal = np.diag(inner)
-    scale = np.where(diagonal > 0, 1.0 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)), 0.0)
-    scaled = inner * scale[:, None] * scale[None, :] + 1e-9 * np.eye(len(scale))
-    return scale * solve(scaled, matrix[unknown, -1] * scale)
-
-
-def _energy(matrix: np.ndarray, unknown: np.ndarray, size: np.ndarray) -> float:
-    """Residual energy left when ``unknown`` columns take the values ``size``."""
-    inner = matrix[np.ix_(unknown, unknown)]
-    return float(matrix[-1, -1] - 2 * size @ matrix[unknown, -1] + size @ inner @ size)

@@ -7,12 +7,11 @@ from functools import partial
 
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.hypothesis.significance import window_significance
 from greybox_torch.diagnosis.refit.curve import absorbed
-from greybox_torch.diagnosis.refit.likelihood import needed_by_likelihood
 from greybox_torch.diagnosis.refit.order import where_it_stood
 from greybox_torch.diagnosis.refit.refitted import refitted
-from greybox_torch.diagnosis.select.choice import least_gain
+from greybox_torch.diagnosis.select.comes_as_far import comes_as_far
+from greybox_torch.diagnosis.select.plainer import with_plainer_forms
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
@@ -21,7 +20,11 @@ from greybox_torch.simulation.side_by_side import side_by_side
 
 
 def drop_superfluous(study: Study, state: SearchState) -> Stage[SearchState]:
-    """Drop every effect whose loss the rest make up for, until none can go; the state then knows what each was compared with."""
+    """Drop every effect whose loss the rest make up for, until none can go; the state then knows what each was compared with.
+
+    A form of a law that the rest make up for goes first.
+    """
+    state = with_plainer_forms(study, state)
     while True:
         refits = side_by_side(partial(_without, study, state, e) for e in state.effects)
         without = dict(zip((e.prefix for e in state.effects), refits, strict=True))
@@ -51,7 +54,7 @@ def _with_what_was_made_up_for(study: Study, state: SearchState) -> SearchState:
             continue  # it came back by another way, or in another form
         study.working_on(f"trying {effect.prefix} again")
         found = refitted(study, where_it_stood(state.effects, effect, once.effects), state.current, [once.values()])
-        if found is None or _does_as_well(study, state.current, found) or _says_nothing(study, effect, found):
+        if found is None or comes_as_far(study, state.current, found) or _says_nothing(study, effect, found):
             state = replace(state, made_up_for=((effect, once), *state.made_up_for))
         else:
             state = state.at(found)
@@ -65,21 +68,7 @@ def _says_nothing(study: Study, effect: Attachment, fitted: Hypothesis) -> bool:
 
 def _made_up_for(study: Study, state: SearchState, without: Hypothesis) -> bool:
     """Whether the other effects do as well alone."""
-    return len(state.effects) > 1 and _does_as_well(study, without, state.current)
-
-
-def _does_as_well(study: Study, without: Hypothesis, with_it: Hypothesis) -> bool:
-    """Whether a hypothesis without an effect is as good as the one with it.
-
-    Where windows are too few to say, the likelihood of whole records does, as where the effect was taken. Seen: the cogging of a stage,
-    taken by that and dropped by windows (2.9 standard errors), which removed 61 % of what its friction left; then that was no longer right.
-    """
-    settings = study.settings
-    if without.score - with_it.score < least_gain(with_it, settings):
-        return True
-    by_chance = window_significance(without, with_it, settings) < settings.least_significance
-    curves = any(e.mechanism.free for e in with_it.effects)
-    return by_chance and (curves or not needed_by_likelihood(without, with_it, settings))
+    return len(state.effects) > 1 and comes_as_far(study, without, state.current)
 
 
 def _without(study: Study, state: SearchState, effect: Attachment) -> Hypothesis:

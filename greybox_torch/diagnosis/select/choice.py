@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, noise_over_windows
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.hypothesis.significance import overall_significance, white_samples
+from greybox_torch.diagnosis.refit.likelihood import cost_of
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.select.remaining import completes, difference
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -60,11 +63,21 @@ def as_unsure_as_a_name(
 def alone_at_noise(curve: Hypothesis, named: Hypothesis, plain: Hypothesis, settings: DiagnosisSettings) -> bool:
     """Whether a free curve leaves white noise alone, and names as much more as a finding is: then they are not the machine's.
 
-    What is less, of the mismatch of the model as it stands (``plain``), any law lacks to be the machine's.
+    What is less, of the mismatch of the model as it stands (``plain``), any law lacks to be the machine's. What whole records do not bear
+    out, at the price of the curve's parameters, few windows may show by chance. Seen: a stage's drag, which left 0.2 standard errors of its
+    windows to a curve (0.97), and a small constant force.
     """
     if not white_samples(curve, settings) or white_samples(named, settings):
         return False
-    return difference(plain, named, curve, settings) > settings.least_size_at_noise
+    if difference(plain, named, curve, settings) <= settings.least_size_at_noise:
+        return False
+    return price_in_likelihood(named, curve, settings) < cost_of(named) - cost_of(curve)
+
+
+def price_in_likelihood(fewer: Hypothesis, more: Hypothesis, settings: DiagnosisSettings) -> float:
+    """By how much the likelihood's logarithm has to be higher for what ``more`` has beyond ``fewer``: log(N) / 2 for every parameter."""
+    further = int(more.problem.free.sum()) - int(fewer.problem.free.sum())
+    return 0.5 * further * float(np.log(max(white_samples(more, settings), 1)))
 
 
 def simplest(

@@ -8,7 +8,7 @@ import pytest
 
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.screen.shortlist import Candidate
-from greybox_torch.diagnosis.select import backward
+from greybox_torch.diagnosis.select import backward, comes_as_far
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
@@ -24,7 +24,7 @@ def test_what_the_newest_effect_was_compared_with_is_not_refitted(dead_zone_sear
     parent = replace(plain, effects=(old,), fits=tuple(replace(f, mean_square=9 * f.mean_square) for f in plain.fits))
     both = replace(plain, effects=(old, new))
     step = SelectionStep((), parent, (), RankedCandidate(Candidate(new, ({},), 1.0), both, 1.0, 9.0))
-    monkeypatch.setattr(backward, "window_significance", lambda *_: 9.0)
+    monkeypatch.setattr(comes_as_far, "window_significance", lambda *_: 9.0)
     monkeypatch.setattr(backward, "absorbed", lambda *_: None)
     refits = []
 
@@ -58,7 +58,7 @@ def test_what_an_effect_had_made_up_for_is_asked_again_once_that_is_taken_back(
 
     errors = {(): 1.0, (lag,): 0.5, (friction,): 0.6 if again else 1.0, (lag, friction): 0.499}
     both = having((lag, friction), errors[lag, friction])
-    monkeypatch.setattr(backward, "window_significance", lambda *_: 9.0)
+    monkeypatch.setattr(comes_as_far, "window_significance", lambda *_: 9.0)
     monkeypatch.setattr(backward, "absorbed", lambda *_: None)
     monkeypatch.setattr(backward, "degenerate", lambda *_: None)
     monkeypatch.setattr(backward, "refitted", lambda study, effects, *_: having(effects, errors[effects]))
@@ -89,9 +89,9 @@ def test_what_whole_records_surely_need_is_not_dropped_as_windows_are_few(
     errors = {(friction,): 0.5, (other,): 0.9, (friction, other): 0.2}
     both = having((friction, other), 0.2)
     monkeypatch.setattr(
-        backward, "window_significance", lambda without, *_: 9.0 if without.effects == (other,) else 2.9
+        comes_as_far, "window_significance", lambda without, *_: 9.0 if without.effects == (other,) else 2.9
     )
-    monkeypatch.setattr(backward, "needed_by_likelihood", lambda *_: by_likelihood)
+    monkeypatch.setattr(comes_as_far, "needed_by_likelihood", lambda *_: by_likelihood)
     monkeypatch.setattr(backward, "absorbed", lambda *_: None)
     monkeypatch.setattr(backward, "refitted", lambda study, effects, *_: having(effects, errors[effects]))
     assert len(result_of(drop_superfluous(study, SearchState(plain, both))).effects) == kept

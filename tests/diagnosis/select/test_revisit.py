@@ -13,8 +13,9 @@ from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.refit.refitted import polished
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, _with_ties, at_other_ports
+from greybox_torch.diagnosis.select import choice
 from greybox_torch.diagnosis.select.backward import drop_superfluous
-from greybox_torch.diagnosis.select.choice import alone_at_noise
+from greybox_torch.diagnosis.select.choice import alone_at_noise, price_in_likelihood
 from greybox_torch.diagnosis.select.compare import compare
 from greybox_torch.diagnosis.select.forward_step import forward_step
 from greybox_torch.diagnosis.select.offered import orders_before, screen_scores
@@ -181,18 +182,32 @@ def test_names_do_not_stand_for_a_curve_that_alone_leaves_nothing_but_noise(moto
     )
 
 
-@pytest.mark.parametrize(("left", "alone"), [(0.003, False), (0.01, True)])
+@pytest.mark.parametrize(("left", "further", "alone"), [(0.003, 90.0, False), (0.01, 90.0, True), (0.01, 10.0, False)])
 def test_what_any_law_lacks_to_be_the_machines_does_not_count_against_names(
-    motor_data, motor, begun, left, alone
+    motor_data, motor, begun, monkeypatch, left, further, alone
 ) -> None:
-    """Seen: a vehicle's dead zone, rounded and 14 % wider one way, told as a curve; its law by direction left 0.25 % of the mismatch."""
+    """Seen: a vehicle's dead zone, rounded and 14 % wider one way, told as a curve; its law by direction left 0.25 % of the mismatch.
+
+    Also seen: a stage's drag, told as a curve of 14 knots, which whole records bore out by less (20.6) than these are worth.
+    """
     search = begun(motor_data(torque=lambda q, v: 0.2, noise=0.1), motor)
     curve = search.refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
     pairs = zip(search.plain.fits, curve.fits, strict=True)
     fits = tuple(replace(c, mean_square=c.mean_square + left * (p.mean_square - c.mean_square)) for p, c in pairs)
     named = replace(curve, fits=fits)
+    monkeypatch.setattr(choice, "cost_of", lambda fitted: further if fitted is named else 0.0)
+    monkeypatch.setattr(choice, "price_in_likelihood", lambda *args: 50.0)
     assert white_samples(curve, SETTINGS) and not white_samples(named, SETTINGS)
     assert alone_at_noise(curve, named, search.plain, SETTINGS) is alone
+
+
+def test_every_further_parameter_has_the_price_of_schwarz(motor_data, motor, begun) -> None:
+    search = begun(motor_data(torque=lambda q, v: 0.2, noise=0.1), motor)
+    curve = search.refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
+    assert price_in_likelihood(search.plain, curve, SETTINGS) == pytest.approx(
+        0.5 * np.log(white_samples(curve, SETTINGS))
+    )
+    assert price_in_likelihood(curve, curve, SETTINGS) == 0.0
 
 
 def test_frozen_parameters_keep_their_values_and_are_free_again_when_polished(dead_zone_search) -> None:
