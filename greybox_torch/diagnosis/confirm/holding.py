@@ -141,7 +141,7 @@ def _drifting(study: Study, state: SearchState, judged: Judgement) -> str | None
     asked = (
         e.prefix
         for e in state.effects
-        if drifts(state.current, judged.problem, study.surroundings[e.port], e, study.budget)
+        if drifts(state.current, judged.problem, study.surroundings[e.port], e, study.budget, judged.begun)
     )
     return next(asked, None)
 

@@ -155,6 +155,11 @@ class Judgement:
         return share, float(times[worst]), self.recordings[worst].name
 
     @property
+    def begun(self) -> np.ndarray:
+        """Where all experiments (E, n_x) begin, as the free runs of the model with effects have it."""
+        return np.array(self.with_effects.initial)
+
+    @property
     def judges(self) -> set[str]:
         """The names of the experiments that judge."""
         return {r.name for r, judging in zip(self.recordings, self._judging(), strict=True) if judging}

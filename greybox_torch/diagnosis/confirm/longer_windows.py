@@ -58,7 +58,7 @@ def stands(study: Study, before: Judged, after: Judged) -> bool:
 
     def same(effect: Attachment) -> bool:
         around = study.surroundings[effect.port]
-        return same_everywhere(state.current, judged.problem, around, effect, study.budget)
+        return same_everywhere(state.current, judged.problem, around, effect, study.budget, judged.begun)
 
     sure = all(gains[e.prefix].errors_away > settings.held_out_beyond_chance for e in new if e.prefix in gains)
     return bool(state.effects) and sure and explains_free_runs(before[2], judged, settings) and all(map(same, new))

@@ -39,6 +39,7 @@ def same_everywhere(
     around: Surroundings,
     effect: Attachment,
     budget: SearchBudget,
+    begun: np.ndarray,
     chance: float = CHANCE,
 ) -> bool:
     """Whether an effect of one amplitude has it in every experiment, by Student's t of the amplitudes fitted to each alone.
@@ -49,13 +50,16 @@ def same_everywhere(
     Args:
         problem: the plain model on all experiments.
         around: of the effect's port.
+        begun: where the experiments begin (E, n_x), as free runs of ``found`` have it. A position that no sensor shows is where an effect
+            that follows it is. Seen: a sensor's offset beside friction that varies with position, looked for with that at another phase:
+            another offset in every experiment, and it was taken back though nothing but noise was left with it.
         chance: that a drift without any constant is taken for one.
     """
     directions = {name for probe in effect.mechanism.probes(around) for name in probe.directions}
     if len(directions) != 1 or SHARE in directions or len(problem.records.first) < 2:
         return True
     name = f"{effect.prefix}.{next(iter(directions))}"
-    restated = problem_for(problem, found.model, found.values())
+    restated = replace(problem_for(problem, found.model, found.values()), initial=begun)
     simulator = found.simulator.for_model(found.model, (name,))
     experiments = range(len(problem.records.first))
     alone = side_by_side(partial(_alone, restated, simulator, name, e, budget) for e in experiments)
@@ -63,10 +67,17 @@ def same_everywhere(
     return constant(sizes, variances, chance)
 
 
-def drifts(found: Hypothesis, problem: Problem, around: Surroundings, effect: Attachment, budget: SearchBudget) -> bool:
+def drifts(
+    found: Hypothesis,
+    problem: Problem,
+    around: Surroundings,
+    effect: Attachment,
+    budget: SearchBudget,
+    begun: np.ndarray,
+) -> bool:
     """Whether an offset that windows show is another one in each of several experiments, and so a drift; arguments as above."""
     asked = effect.mechanism.nature == ConstantBias.nature and len(problem.records.first) >= FEWEST
-    return asked and not same_everywhere(found, problem, around, effect, budget, CHANCE_OF_SHOWN)
+    return asked and not same_everywhere(found, problem, around, effect, budget, begun, CHANCE_OF_SHOWN)
 
 
 def constant(sizes: np.ndarray, variances: np.ndarray, chance: float = CHANCE) -> bool:

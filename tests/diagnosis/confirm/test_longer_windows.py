@@ -135,7 +135,7 @@ def test_new_slow_effects_are_borne_out_and_the_same_everywhere(
     study = stub(settings=SETTINGS, budget=SearchBudget(), surroundings={"rotor": stub()})
     before = (stub(prefixes=set(known)), {}, judgement(stub, run_2=10.0))
     after_runs = judgement(stub, run_2=1.0)
-    after_runs.problem = stub()
+    after_runs.problem, after_runs.begun = stub(), None
     gains = {"bias": Gain(errors_away * 0.01, 0.01)}
     after = (stub(effects=(bias,), current=stub()), gains, after_runs)
     assert stands(study, before, after) is finding
