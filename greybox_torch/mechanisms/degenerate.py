@@ -104,11 +104,16 @@ def too_long(name: str, seconds: float, around: Surroundings) -> str | None:
     return f"{name} = {seconds:.3g} s is far longer than the longest record, {around.ranges['time'].high:.3g} s"
 
 
-def not_seen_to_repeat(order: float, around: Surroundings) -> str | None:
-    """An order per turn goes through too few periods in the travel, or passes faster than sampling resolves at the usual speed."""
+def not_seen_to_repeat(order: float, around: Surroundings, once_per_turn: bool = False) -> str | None:
+    """An order per turn goes through too few periods in the travel, or passes faster than sampling resolves at the usual speed.
+
+    Args:
+        once_per_turn: whether the law, once per turn, is one of a round machine, as friction is (a bent shaft) and a torque, which a weight
+            is as well, is not.
+    """
     if "position" in around.ranges:
         periods = abs(order) * around.ranges["position"].span / (2 * np.pi)
-        least = LEAST_PERIODS_OF_WHOLE if _whole_per_turn(order, around) else LEAST_PERIODS
+        least = LEAST_PERIODS_OF_WHOLE if _whole_per_turn(order, around, once_per_turn) else LEAST_PERIODS
         if periods < least:
             return f"order = {order:.3g} repeats {periods:.2g} times in the travel; {least:g} are needed to see that it does"
     if "speed" in around.ranges:
@@ -118,9 +123,10 @@ def not_seen_to_repeat(order: float, around: Surroundings) -> str | None:
     return None
 
 
-def _whole_per_turn(order: float, around: Surroundings) -> bool:
-    """Whether an order is a whole number of periods per turn, more than one: once per turn is what weight does."""
-    return is_angle(around) and abs(order) > 1.5 and abs(order - round(order)) < WHOLE
+def _whole_per_turn(order: float, around: Surroundings, once: bool) -> bool:
+    """Whether an order is a whole number of periods per turn, or ``once``."""
+    least = 0.5 if once else 1.5
+    return is_angle(around) and abs(order) > least and abs(order - round(order)) < WHOLE
 
 
 def is_angle(around: Surroundings) -> bool:

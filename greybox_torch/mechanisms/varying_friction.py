@@ -67,7 +67,7 @@ class PositionDependentFriction(Mechanism):
         return [Probe(amplitudes_up_to(self.harmonics), {"order": self.order, "v_0": widths(around)[1]})]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        return not_seen_to_repeat(values["order"], around)
+        return not_seen_to_repeat(values["order"], around, once_per_turn=True)
 
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
         """With harmonics, with a mean level, and as a ripple: where the speed hardly changes its sign the friction is one without."""

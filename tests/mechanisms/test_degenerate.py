@@ -76,7 +76,7 @@ def test_sound_parameters_are_not_objected_to(name: str, around: Surroundings) -
         ),
         ("torque_ripple", {"order": 1.01}, "order = 1.01: once per turn is what weight does"),
         ("torque_ripple", {"order": 300.0}, "order = 300 leaves 1.5 samples a period at the usual speed"),
-        ("position_dependent_friction", {"order": 1.0}, "order = 1 repeats 1.3 times in the travel"),
+        ("position_dependent_friction", {"order": 1.2}, "order = 1.2 repeats 1.5 times in the travel"),
         ("transmission_error", {"order": 1.0}, "order = 1 repeats 1.3 times in the travel"),
         ("additional_mode", {"omega": 1.0}, "omega = 1 rad/s swings 1.6 times in the longest record; 2 are needed"),
         ("additional_mode", {"zeta": 1.8}, "its damping ratio of 1.8 lets nothing resonate"),
@@ -129,6 +129,18 @@ def test_less_than_two_periods_are_enough_for_a_whole_order(order: float, seen: 
     assert (TorqueRipple(order).degenerate(swing, values, small(values)) is None) is seen
     in_metres = replace(swing, units={**swing.units, "position": "m"})
     assert TorqueRipple(order).degenerate(in_metres, values, small(values)) is not None
+
+
+@pytest.mark.parametrize(("order", "reach", "seen"), [(1.0, 4.8, True), (1.03, 4.8, False), (1.0, 2.0, False)])
+def test_friction_once_per_turn_is_a_bent_shafts_and_a_torque_a_weights(order, reach, seen, around) -> None:
+    """Seen: a crane's slewing ring that rubs four times as much on one side, over 1.6 turns; told as plain friction (0.85)."""
+    swing = replace(
+        around, ranges={**around.ranges, "position": replace(around.ranges["position"], low=-reach, high=reach)}
+    )
+    values = SOUND["position_dependent_friction"] | {"order": order}
+    assert (PositionDependentFriction(order).degenerate(swing, values, small(values)) is None) is seen
+    ripple = SOUND["torque_ripple"] | {"order": order}
+    assert TorqueRipple(order).degenerate(swing, ripple, small(ripple)) is not None
 
 
 def test_zero_is_a_natural_bound_and_so_is_true_sticking(around: Surroundings) -> None:

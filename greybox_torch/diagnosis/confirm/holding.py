@@ -21,6 +21,7 @@ from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
 from greybox_torch.diagnosis.hypothesis.final import Final, as_windows_have_it
 from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
+from greybox_torch.diagnosis.select.richer import as_one_law
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import or_else, result_of
@@ -116,7 +117,11 @@ def _better_by_windows(
 def _without(study: Study, state: SearchState, prefix: str) -> SearchState:
     """The state without an effect that says nothing, or with a law that it contains: without its peak, Stribeck friction is Coulomb's."""
     simpler = simplified(study, state, next(e for e in state.effects if e.prefix == prefix))
-    return result_of(drop(study, state, prefix) if simpler is None else drop_superfluous(study, simpler))
+    if simpler is None:
+        return result_of(drop(study, state, prefix))
+    fewer = result_of(drop_superfluous(study, simpler))
+    one = as_one_law(study, fewer)
+    return fewer if one is fewer else result_of(drop_superfluous(study, one))
 
 
 def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[str, Gain]) -> str | None:

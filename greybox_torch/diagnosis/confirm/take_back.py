@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from greybox_torch.diagnosis.confirm.exercised import hardly_exercised, untouched
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, size, timelines
 from greybox_torch.diagnosis.confirm.second_choice import second_choice
 from greybox_torch.diagnosis.confirm.simpler_laws import with_simpler_laws
@@ -56,20 +57,12 @@ def held_out_gains(state: SearchState, others: HeldOut) -> dict[str, Gain]:
     found = {}
     for prefix, fits in zip(state.without, without, strict=True):
         shown = gain(fits, full)
-        untouched = abs(shown.share) < settings.least_size and _untouched(state, prefix, full, others)
         size_there = size(plain, fits, full, settings)
-        found[prefix] = replace(shown, timelines=timelines(fits, full), size=size_there, untouched=untouched)
+        idle = abs(shown.share) < settings.least_size and untouched(state, prefix, full, others)
+        small = len(state.effects) > 1 and shown.share > 0.0 and size_there < settings.least_size
+        idle = idle or (small and hardly_exercised(state, prefix, full, others))
+        found[prefix] = replace(shown, timelines=timelines(fits, full), size=size_there, untouched=idle)
     return found
-
-
-def _untouched(state: SearchState, prefix: str, full: tuple[WindowFit, ...], others: HeldOut) -> bool:
-    """Whether held-out experiments come out alike without an effect and with all other values as they are.
-
-    Seen: a stage whose amplifier reached its limit in one experiment alone: what the other parameters gained beside it (0.4 ± 0.3 % of the
-    squared error) was all that held-out experiments showed, and it was taken back.
-    """
-    own = gain(others.fits_at(state.without[prefix], state.current.values()), full)
-    return own.unexercised(others.study.settings)
 
 
 def take_back_weakest(study: Study, state: SearchState, gains: Mapping[str, Gain]) -> SearchState:

@@ -34,23 +34,10 @@ class ConfirmationSettings:
         "Gain below which, either way, the experiments do not exercise an effect: they cannot take it back.",
         unit=HELD_OUT_SHARE,
     )
-    least_mismatch: float = share(
-        3e-5,
-        "Error of the plain model beyond the noise below which nothing is looked for: simulations of one machine differ by as much.",
-        unit="share of the outputs' spread (root mean square)",
-        chosen_by="the difference between simulators of first and of fourth order at usual steps",
-    )
-    least_shift: float = share(
-        0.05,
-        "Shift in time that is not told as missing physics, where its error is small and above the noise: no recording is timed better.",
-        unit="sampling intervals",
-        chosen_by="a simulator of first order is late by half its step, usually a twentieth of an interval",
-    )
-    most_of_shift: float = share(
-        1e-3,
-        "Error of the plain model beyond the noise up to which such a shift may account for it.",
-        unit="share of the outputs' spread (root mean square)",
-        chosen_by="a fit of 99.9 %",
+    hardly_exercised: float = share(
+        0.01,
+        "Part of what an effect changes in the errors of the experiments that chose it, below which others do not say how large it is.",
+        unit="share of the change of the mean squared error",
     )
     obvious_mismatch: float = share(
         0.05,
@@ -126,6 +113,11 @@ class ConfirmationSettings:
         "Squared error beyond the noise up to which windows of one length say nothing of an effect's size.",
         unit="share of the noise's squared error",
         chosen_by="how exactly recordings of some thousand samples tell their noise",
+    )
+    least_of_little: float = share(
+        0.5,
+        "Where the model leaves little more than noise: the part of that which all effects together have to account for.",
+        unit="share of the plain model's held-out mismatch",
     )
     least_size_at_noise: float = share(
         5e-3,

@@ -14,6 +14,7 @@ from greybox_torch.diagnosis.settings.choosing import (
 from greybox_torch.diagnosis.settings.claiming import ConfirmationSettings, ProbabilitySettings, ResidualSettings
 from greybox_torch.diagnosis.settings.curves import CurveSettings
 from greybox_torch.diagnosis.settings.fields import check
+from greybox_torch.diagnosis.settings.sampling import SamplingSettings
 from greybox_torch.diagnosis.settings.searching_again import SearchingAgainSettings
 
 
@@ -24,6 +25,7 @@ class DiagnosisSettings(
     CardSettings,
     SearchingAgainSettings,
     ConfirmationSettings,
+    SamplingSettings,
     CurveSettings,
     SelectionSettings,
     ComparisonSettings,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.confirm import take_back
+from greybox_torch.diagnosis.confirm import exercised, take_back
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified, with_simpler_laws
 from greybox_torch.diagnosis.confirm.take_back import _idle, goes_farther_in_most_windows
@@ -159,7 +159,8 @@ def test_what_is_never_reached_on_held_out_experiments_is_not_taken_back_by_them
 ) -> None:
     """Seen: an amplifier's limit, reached in one experiment alone. What frees the other parameters by much is no such thing."""
     asked = {("refit", "full"): Gain(share, 0.003), ("same values", "full"): Gain(own, 0.0)}
-    monkeypatch.setattr(take_back, "gain", lambda before, after: asked[before, after])
+    for module in (take_back, exercised):
+        monkeypatch.setattr(module, "gain", lambda before, after: asked[before, after])
     monkeypatch.setattr(take_back, "size", lambda *args: 0.0)
     monkeypatch.setattr(take_back, "timelines", lambda *args: ())
     fits = {"plain": "plain", "with it": "full", "without": "refit"}
@@ -170,6 +171,6 @@ def test_what_is_never_reached_on_held_out_experiments_is_not_taken_back_by_them
     )
     current = stub(values=dict)
     fits[current] = "full"
-    state = stub(plain="plain", current=current, without={"actuator.torque_saturation": "without"})
+    state = stub(plain="plain", current=current, effects=("one",), without={"actuator.torque_saturation": "without"})
     (found,) = take_back.held_out_gains(state, others).values()
     assert found.untouched is found.unexercised(DiagnosisSettings()) is untouched

@@ -1,0 +1,37 @@
+"""Thresholds below which a mismatch, or a shift in time, is a matter of simulating and of sampling, not of physics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greybox_torch.diagnosis.settings.fields import share
+
+
+@dataclass(frozen=True, kw_only=True)
+class SamplingSettings:
+    """What simulations of one machine differ by, and when within its interval a sample may have been taken."""
+
+    least_mismatch: float = share(
+        3e-5,
+        "Error of the plain model beyond the noise below which nothing is looked for: simulations of one machine differ by as much.",
+        unit="share of the outputs' spread (root mean square)",
+        chosen_by="the difference between simulators of first and of fourth order at usual steps",
+    )
+    least_shift: float = share(
+        0.05,
+        "Shift in time that is not told as missing physics, where its error is small and above the noise: no recording is timed better.",
+        unit="sampling intervals",
+        chosen_by="a simulator of first order is late by half its step, usually a twentieth of an interval",
+    )
+    most_of_shift: float = share(
+        1e-3,
+        "Error of the plain model beyond the noise up to which such a shift may account for it.",
+        unit="share of the outputs' spread (root mean square)",
+        chosen_by="a fit of 99.9 %",
+    )
+    shortest_shift: float = share(
+        0.25,
+        "Shift in time from which a lag or a delay is a finding: a sensor's filter, a converter and an input's edge may be as late.",
+        unit="sampling intervals",
+        chosen_by="a filter of a fifth of a sample and an edge of a twentieth; delays that were concealed last half a sample and more",
+    )
