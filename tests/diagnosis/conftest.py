@@ -10,9 +10,11 @@ import pytest
 
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.refit.refitted import refitted
+from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.plain_model import fit_plain_model
-from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem
 from greybox_torch.mechanisms.attachment import Attachment
@@ -170,3 +172,10 @@ class Stub:
 @pytest.fixture(scope="session")
 def stub() -> type[Stub]:
     return Stub
+
+
+def found(search: Begun, effect: Attachment, start: dict[str, float]) -> SearchState:
+    """The state of ``search`` after a step that took an effect."""
+    fitted = search.refitted((effect,), search.plain, [search.plain.values() | start])
+    taken = judged(Candidate(effect, (), 0.5), search.plain, fitted, search.study.settings)
+    return replace(search.state.at(fitted), steps=(SelectionStep((), search.plain, (taken,), taken),))

@@ -15,7 +15,7 @@ from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, _with_ties, at_other_ports
 from greybox_torch.diagnosis.select import choice
 from greybox_torch.diagnosis.select.backward import drop_superfluous
-from greybox_torch.diagnosis.select.choice import alone_at_noise, price_in_likelihood
+from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.compare import compare
 from greybox_torch.diagnosis.select.forward_step import forward_step
 from greybox_torch.diagnosis.select.offered import orders_before, screen_scores
@@ -199,15 +199,6 @@ def test_what_any_law_lacks_to_be_the_machines_does_not_count_against_names(
     monkeypatch.setattr(choice, "price_in_likelihood", lambda *args: 50.0)
     assert white_samples(curve, SETTINGS) and not white_samples(named, SETTINGS)
     assert alone_at_noise(curve, named, search.plain, SETTINGS) is alone
-
-
-def test_every_further_parameter_has_the_price_of_schwarz(motor_data, motor, begun) -> None:
-    search = begun(motor_data(torque=lambda q, v: 0.2, noise=0.1), motor)
-    curve = search.refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
-    assert price_in_likelihood(search.plain, curve, SETTINGS) == pytest.approx(
-        0.5 * np.log(white_samples(curve, SETTINGS))
-    )
-    assert price_in_likelihood(curve, curve, SETTINGS) == 0.0
 
 
 def test_frozen_parameters_keep_their_values_and_are_free_again_when_polished(dead_zone_search) -> None:
