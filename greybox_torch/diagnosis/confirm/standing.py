@@ -62,8 +62,8 @@ def refinements(
 ) -> set[str]:
     """The effects that are too small to be findings, or that small and not confirmed by held-out experiments beyond chance.
 
-    All of them, where the model leaves little more than noise and they together leave most of that. A shift in time by a small part of a
-    sampling interval is none: when within it a sample was taken, and an input began to act, nobody knows better than that.
+    Where the model leaves little more than noise: all of them, if they together leave most of that, and a shift in time by a small part of
+    a sampling interval: when within it a sample was taken, and an input began to act, hardly anybody knows better than that.
 
     Of two laws of friction at one body, or of one spring, the smaller one has to be larger than other effects: it may be what the other
     lacks. So has any law at the port of a larger one, where more than noise is left in spite of both.
@@ -74,7 +74,8 @@ def refinements(
     if others is not None and _most_is_left(study, state, others, gains):
         return set(state.prefixes)
     within = {e.prefix for e in state.effects if _within_a_sample(study, state, e)}
-    return within | _too_small(study, state, others, gains, sizes)
+    small = _too_small(study, state, others, gains, sizes)
+    return small | within if within and _little_is_missing(study, state, others) else small
 
 
 def _too_small(
@@ -116,11 +117,16 @@ def _most_is_left(study: Study, state: SearchState, others: HeldOut, gains: Mapp
     settings = study.settings
     if all(g.unexercised(settings) for g in gains.values()):
         return False
-    errors = times_noise(study.problem, state.plain, settings), *others.times_noise(state.plain)
-    if max(errors) >= settings.far_above_noise:
+    if not _little_is_missing(study, state, others):
         return False
     plain, full = others.fits(state.plain), others.fits(state.current)
     return size(plain, plain, full, settings) < settings.least_of_little
+
+
+def _little_is_missing(study: Study, state: SearchState, others: HeldOut | None) -> bool:
+    """Whether the model as it stands leaves little more than noise on every experiment."""
+    held_out = () if others is None else others.times_noise(state.plain)
+    return max(times_noise(study.problem, state.plain, study.settings), *held_out, 0.0) < study.settings.far_above_noise
 
 
 def _of_one_kind(one: Mechanism, other: Mechanism) -> bool:

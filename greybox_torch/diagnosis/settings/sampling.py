@@ -31,7 +31,7 @@ class SamplingSettings:
     )
     shortest_shift: float = share(
         0.25,
-        "Shift in time from which a lag or a delay is a finding: a sensor's filter, a converter and an input's edge may be as late.",
+        "Shift in time from which a lag or a delay is a finding near the noise: a sensor's filter and an input's edge may be as late.",
         unit="sampling intervals",
         chosen_by="a filter of a fifth of a sample and an edge of a twentieth; delays that were concealed last half a sample and more",
     )

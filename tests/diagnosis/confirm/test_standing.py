@@ -111,9 +111,14 @@ def test_where_little_is_missing_what_leaves_most_of_that_is_no_finding(
 
 
 @pytest.mark.parametrize("law", [InputDelay(), InputLag(), SensorLag(True)])
-@pytest.mark.parametrize(("samples", "told"), [(0.22, False), (0.59, True)])
-def test_a_shift_within_a_sampling_interval_is_no_finding(dead_zone_search, stub, law, samples, told) -> None:
-    """Seen: a drone that nothing is missing from, told as a dead time of a tenth of a sample (0.97). As recorded, not as it is searched."""
+@pytest.mark.parametrize(("samples", "times", "told"), [(0.22, 1.7, False), (0.59, 1.7, True), (0.17, 390.0, True)])
+def test_a_shift_within_a_sampling_interval_is_no_finding_near_the_noise(
+    dead_zone_search, fits, stub, law, samples, times, told
+) -> None:
+    """Seen: a drone that nothing is missing from, told as a dead time of a tenth of a sample (0.97). As recorded, not as it is searched.
+
+    And a lag of a sixth of a sample that stood 390 times above the noise, as which it is a finding.
+    """
     effect = Attachment("actuator" if law.name.startswith("input") else "sensor", law)
     study = dead_zone_search.study
     for factor in (1.0, 5.0):
@@ -121,7 +126,8 @@ def test_a_shift_within_a_sampling_interval_is_no_finding(dead_zone_search, stub
         recorded = None if factor == 1.0 else records
         seconds = samples * float(records.dt[0])
         current = stub(values=lambda seconds=seconds: {f"{effect.prefix}.T": seconds}, problem=study.problem)
-        state = stub(effects=(effect,), prefixes={effect.prefix}, current=current)
+        plain = stub(fits=[replace(f, mean_square=4e-4 * times**2) for f in fits(1.0)])
+        state = stub(effects=(effect,), prefixes={effect.prefix}, current=current, plain=plain)
         others = stub(times_noise=lambda hypothesis: np.array([1.0]))
         asked = replace(study, recorded=recorded)
         assert (not refinements(asked, state, others, {}, {effect.prefix: 0.9})) is told
