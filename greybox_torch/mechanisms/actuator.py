@@ -177,9 +177,6 @@ class TorqueSaturation(ByDirection):
         further = [f for f in forms if f != own and f[0] >= own[0] and f[1] >= own[1]]
         return [(TorqueSaturation(*f), {**({"asymmetry": 0.0} if f[0] else {}), **values}) for f in further]
 
-    def plainer(self) -> Mechanism | None:
-        return TorqueSaturation(False, self.limited_power) if self.by_direction else None
-
     def degenerate(
         self, around: Surroundings, values: Mapping[str, float], deviations: Mapping[str, float]
     ) -> str | None:

@@ -34,7 +34,7 @@ class ByDirection(Mechanism):
         return () if self.by_direction else ((type(self)(True), {**values, "asymmetry": 0.0}),)
 
     def plainer(self) -> Mechanism | None:
-        return type(self)() if self.by_direction else None
+        return type(self)(**{**self.options(), "by_direction": False}) if self.by_direction else None
 
     def nearest(
         self, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray

@@ -6,14 +6,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-from greybox_torch.diagnosis.confirm.far_better import judged_anew
+from greybox_torch.diagnosis.confirm.far_better import judged_anew, leaves_far_less
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, sound
 from greybox_torch.diagnosis.select.finer_curve import as_fine_as_pays
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
-from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.simulation.side_by_side import side_by_side
 
@@ -42,7 +41,7 @@ def curve_instead(
         without={best.candidate.attachment.prefix: state.plain},
     )
     gains, by_it = judged_anew(study, curve, others, judged)
-    return (curve, gains, by_it) if _borne_out(gains, by_it, settings) else None
+    return (curve, gains, by_it) if leaves_far_less(gains, by_it, by_it.mismatch(False), settings) else None
 
 
 def _curves(study: Study, step: SelectionStep) -> list[RankedCandidate]:
@@ -50,9 +49,3 @@ def _curves(study: Study, step: SelectionStep) -> list[RankedCandidate]:
     settings = study.settings
     found = [r for r in step.ranked if r.unknown and sound(study, r) and r.gain > settings.curve_margin]
     return [r for r in found if r.gain > settings.polish_share * found[0].gain]
-
-
-def _borne_out(gains: Mapping[str, Gain], judged: Judgement, settings: DiagnosisSettings) -> bool:
-    sure = all(g.errors_away > settings.held_out_beyond_chance for g in gains.values())
-    far = judged.mismatch(True) <= settings.left_if_far_better * judged.mismatch(False)
-    return sure and far and judged.holds and not judged.unstable

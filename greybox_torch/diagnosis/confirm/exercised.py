@@ -6,48 +6,46 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain, held_out_fits
+from greybox_torch.diagnosis.confirm.held_out import gain, held_out_fits
 from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.window_fit import WindowFit
 
 
-def untouched(state: SearchState, prefix: str, full: tuple[WindowFit, ...], others: HeldOut) -> bool:
+def untouched(there: tuple[WindowFit, ...], full: tuple[WindowFit, ...], settings: DiagnosisSettings) -> bool:
     """Whether held-out experiments come out alike without an effect and with all other values as they are.
 
     Seen: a stage whose amplifier reached its limit in one experiment alone: what the other parameters gained beside it (0.4 ± 0.3 % of the
     squared error) was all that held-out experiments showed, and it was taken back.
 
     Args:
-        full: the hypothesis with all effects on the held-out experiments.
+        there: the hypothesis so, on the held-out experiments.
+        full: the hypothesis with all effects on them.
     """
-    own = gain(others.fits_at(state.without[prefix], state.current.values()), full)
-    return own.unexercised(others.study.settings)
+    return gain(there, full).unexercised(settings)
 
 
-def hardly_exercised(state: SearchState, prefix: str, full: tuple[WindowFit, ...], others: HeldOut) -> bool:
+def hardly_exercised(
+    study: Study, state: SearchState, prefix: str, there: tuple[WindowFit, ...], full: tuple[WindowFit, ...]
+) -> bool:
     """Whether that changes their errors by next to nothing of what it changes in the experiments that the effect was estimated from.
 
     Then how large it is those have to say. Seen: a motor that runs against its stop again and again where it is estimated, and once
     elsewhere: 10 % of the mismatch and 0.02 %, for which it was no finding.
 
-    Arguments as for :func:`untouched`.
+    ``there`` and ``full`` as for :func:`untouched`.
     """
-    study, values = others.study, state.current.values()
-    simulated = study.options.substeps
+    values, substeps = state.current.values(), study.options.substeps
     own = [
-        held_out_fits(h, study.problem, h.simulator.with_substeps(simulated), values, study.budget)
+        held_out_fits(h, study.problem, h.simulator.with_substeps(substeps), values, study.budget)
         for h in (state.without[prefix], state.current)
     ]
-    chosen_with, held_out = _change(*own), _change(others.fits_at(state.without[prefix], values), full)
-    return held_out < study.settings.hardly_exercised * chosen_with
+    return _change(there, full) < study.settings.hardly_exercised * _change(*own)
 
 
 def _change(without: Sequence[WindowFit], full: Sequence[WindowFit]) -> float:
     """By how much the mean squared weighted error rises without an effect: the most over the window lengths."""
     pairs = zip(without, full, strict=False)
-    rises = (float(np.sum(w.energies) - np.sum(f.energies)) / _samples(f) for w, f in pairs)
+    rises = (float(np.sum(w.energies) - np.sum(f.energies)) / f.problem.samples for w, f in pairs)
     return max(rises, default=0.0)
-
-
-def _samples(fit: WindowFit) -> int:
-    return int(np.sum(~np.isnan(fit.problem.records.y)))

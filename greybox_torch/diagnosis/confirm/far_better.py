@@ -15,6 +15,7 @@ from greybox_torch.diagnosis.confirm.take_back import held_out_gains, take_back_
 from greybox_torch.diagnosis.hypothesis.final import finish
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.diagnosis.study import Study
 
@@ -53,9 +54,14 @@ def _standing(study: Study, other: SearchState, others: HeldOut, judged: Judgeme
     if not other.effects:
         return None
     gains, by_it = judged_anew(study, other, others, judged)
-    sure = all(g.errors_away > study.settings.held_out_beyond_chance for g in gains.values())
-    far = by_it.mismatch(True) <= study.settings.left_if_far_better * judged.mismatch(True)
-    return (other, gains, by_it) if sure and far and by_it.holds and not by_it.unstable else None
+    return (other, gains, by_it) if leaves_far_less(gains, by_it, judged.mismatch(True), study.settings) else None
+
+
+def leaves_far_less(gains: Mapping[str, Gain], by_it: Judgement, than: float, settings: DiagnosisSettings) -> bool:
+    """Whether free runs hold and leave far less than the mismatch ``than``, and windows bear all effects out beyond chance."""
+    sure = all(g.errors_away > settings.held_out_beyond_chance for g in gains.values())
+    far = by_it.mismatch(True) <= settings.left_if_far_better * than
+    return sure and far and by_it.holds and not by_it.unstable
 
 
 def judged_anew(

@@ -58,9 +58,13 @@ def held_out_gains(state: SearchState, others: HeldOut) -> dict[str, Gain]:
     for prefix, fits in zip(state.without, without, strict=True):
         shown = gain(fits, full)
         size_there = size(plain, fits, full, settings)
-        idle = abs(shown.share) < settings.least_size and untouched(state, prefix, full, others)
+        little = abs(shown.share) < settings.least_size
         small = len(state.effects) > 1 and shown.share > 0.0 and size_there < settings.least_size
-        idle = idle or (small and hardly_exercised(state, prefix, full, others))
+        idle = False
+        if little or small:
+            there = others.fits_at(state.without[prefix], state.current.values())
+            idle = little and untouched(there, full, settings)
+            idle = idle or (small and hardly_exercised(others.study, state, prefix, there, full))
         found[prefix] = replace(shown, timelines=timelines(fits, full), size=size_there, untouched=idle)
     return found
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from greybox_torch.diagnosis.confirm.far_better import Standing, judged_anew
+from greybox_torch.diagnosis.confirm.far_better import Standing, judged_anew, leaves_far_less
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
@@ -31,10 +31,8 @@ def with_one_more(study: Study, state: SearchState, others: HeldOut | None, judg
     more = replace(state.at(law.fitted), steps=(*state.steps, replace(done, taken=law)))
     more = replace(more, without={p: _without(study, state, more, p) for p in more.prefixes})
     gains, by_it = judged_anew(study, more, others, judged)
-    sure = all(g.errors_away > study.settings.held_out_beyond_chance for g in gains.values())
     least = min(judged.mismatch(True), judged.mismatch(False))
-    far = by_it.mismatch(True) <= study.settings.left_if_far_better * least
-    return (more, gains, by_it) if sure and far and by_it.holds and not by_it.unstable else None
+    return (more, gains, by_it) if leaves_far_less(gains, by_it, least, study.settings) else None
 
 
 def _not_sure(study: Study, state: SearchState) -> tuple[SelectionStep, RankedCandidate] | None:

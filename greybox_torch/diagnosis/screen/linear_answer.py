@@ -60,9 +60,7 @@ class LinearAnswer:
         right = self.matrix[columns, -1] * scale
         found = solve(scaled, right)
         if (found[:n_p] < self.low).any() or (found[:n_p] > self.high).any():
-            low, high = (np.concatenate([b, np.full(len(columns) - n_p, e)]) for b, e in self._ends())
+            open_ended = np.full(len(columns) - n_p, np.inf)
+            low, high = np.concatenate([self.low, -open_ended]), np.concatenate([self.high, open_ended])
             found = bounded_step(scaled, right, low, high)
         return scale * found
-
-    def _ends(self) -> tuple[tuple[np.ndarray, float], tuple[np.ndarray, float]]:
-        return (self.low, -np.inf), (self.high, np.inf)

@@ -18,7 +18,7 @@ def asked(stub, monkeypatch):
     """Asks about a stop that changes the mean squared error by so much where it was chosen, and so much elsewhere, at two lengths."""
 
     def windows(errors: tuple[float, float]):
-        return [stub(energies=np.full(4, 25.0 * e), problem=stub(records=stub(y=np.zeros((1, 100))))) for e in errors]
+        return [stub(energies=np.full(4, 25.0 * e), problem=stub(samples=100)) for e in errors]
 
     def ask(chosen_with: tuple[float, float], held_out: tuple[float, float], share: float = 0.05, effects: int = 2):
         on_estimation = {WITHOUT: tuple(1.0 + c for c in chosen_with), FULL: (1.0, 1.0)}
@@ -38,7 +38,8 @@ def asked(stub, monkeypatch):
         monkeypatch.setattr(take_back, "size", lambda *args: 2e-4)
         monkeypatch.setattr(take_back, "timelines", lambda *args: ())
         (found,) = take_back.held_out_gains(state, others).values()
-        return hardly_exercised(state, "motor.end_stop", full, others), found.untouched
+        there = tuple(others.fits_at(without, {}))
+        return hardly_exercised(study, state, "motor.end_stop", there, full), found.untouched
 
     return ask
 
