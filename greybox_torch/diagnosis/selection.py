@@ -15,10 +15,11 @@ from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, until
 from greybox_torch.diagnosis.coarser import coarser
 from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
-from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, size
+from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains
 from greybox_torch.diagnosis.excerpts import excerpts
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.schedule import Schedule
 from greybox_torch.diagnosis.select.backward import drop_superfluous

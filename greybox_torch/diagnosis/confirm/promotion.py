@@ -9,9 +9,10 @@ from types import MappingProxyType
 import numpy as np
 
 from greybox_torch.data import DataSet
-from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, size
+from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
 from greybox_torch.diagnosis.confirm.standing import refinements, sizes
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
+from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.select.rivals_beside import rivals_in_its_place
 from greybox_torch.diagnosis.select.state import SearchState

@@ -9,11 +9,12 @@ from functools import partial
 import numpy as np
 
 from greybox_torch.diagnosis.confirm.exercised import hardly_exercised, untouched
-from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, size, timelines
+from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, timelines
 from greybox_torch.diagnosis.confirm.second_choice import second_choice
 from greybox_torch.diagnosis.confirm.simpler_laws import with_simpler_laws
 from greybox_torch.diagnosis.confirm.standing import sharing_with_the_rest
 from greybox_torch.diagnosis.confirm.wider_laws import with_wider_laws
+from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain, size
+from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.flexed import in_its_place, widened, wider_laws
 from greybox_torch.diagnosis.select.state import SearchState

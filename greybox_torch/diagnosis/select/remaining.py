@@ -7,20 +7,23 @@ nothing but noise remains with it: then it completes the model.
 
 from __future__ import annotations
 
-import numpy as np
-
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 
 def remaining_share(plain: Hypothesis, fitted: Hypothesis, settings: DiagnosisSettings) -> float:
-    """The share of the plain model's squared error beyond the noise that ``fitted`` leaves: the largest over the window lengths."""
+    """The share of the plain model's squared error beyond the noise that ``fitted`` leaves: the largest over the window lengths.
+
+    Windows so short that the plain model leaves no more than noise there say nothing of it: start states take up what is missing. All is
+    left where that is so of every length.
+    """
     shares = []
     for before, after in zip(plain.fits, fitted.fits, strict=True):
         floor = noise_floor(after.problem, settings)
         whole = before.mean_square - floor
-        shares.append(max(after.mean_square - floor, 0.0) / whole if whole > 0 else 1.0)
+        if whole > settings.no_mismatch * floor:
+            shares.append(max(after.mean_square - floor, 0.0) / whole)
     return max(shares, default=1.0)
 
 
@@ -28,16 +31,3 @@ def completes(fitted: Hypothesis, settings: DiagnosisSettings) -> bool:
     """Whether a hypothesis leaves hardly more than noise at every window length (an upper bound, where part of the floor is motion)."""
     most = settings.above_noise**2
     return all(fit.mean_square < most * noise_floor(fit.problem, settings) for fit in fitted.fits)
-
-
-def difference(plain: Hypothesis, simpler: Hypothesis, better: Hypothesis, settings: DiagnosisSettings) -> float:
-    """By which share of the plain model's mismatch two hypotheses differ: the mean over the window lengths."""
-    triples = zip(plain.fits, simpler.fits, better.fits, strict=True)
-    return float(
-        np.mean(
-            [
-                (s.mean_square - b.mean_square) / max(p.mean_square - noise_floor(p.problem, settings), 1e-300)
-                for p, s, b in triples
-            ]
-        )
-    )

@@ -37,11 +37,13 @@ LOUD = 0.3
 
 @pytest.fixture(params=[0.02])
 def ranked(motor, begun, motor_data, request):
-    """Makes a ranked hypothesis whose windows have given energies; the parameter is the noise of the recordings."""
+    """Makes a ranked hypothesis whose windows have given mean squares; the parameter is the noise of the recordings."""
     search = begun(motor_data(noise=request.param), motor)
+    samples = int(np.sum(~np.isnan(search.problem.records.y)))
 
-    def make(mechanism, energies: np.ndarray) -> RankedCandidate:
-        fits = tuple(replace(fit, energies=energies, mean_square=float(energies.mean())) for fit in search.plain.fits)
+    def make(mechanism, squares: np.ndarray) -> RankedCandidate:
+        whole = {"energies": squares * samples / len(squares), "mean_square": float(squares.mean())}
+        fits = tuple(replace(fit, **whole) for fit in search.plain.fits)
         fitted = Hypothesis((), search.plain.model, search.plain.simulator, fits, 1e-12)
         gain = search.plain.score - fitted.score
         return RankedCandidate(Candidate(attach(motor, "rotor", mechanism), (), 0.5), fitted, gain, 10.0)
@@ -161,10 +163,22 @@ def test_the_simpler_law_is_meant_where_the_richer_one_removes_little_more_of_th
     """Much more than chance, and yet a crumb beside the mismatch: unless with it noise alone is left."""
     spread = np.random.default_rng(0).uniform(0.9, 1.1, WINDOWS)
     plain, simple = ranked(ViscousFriction(), 100 * spread), ranked(CoulombFriction(), 1.0 * spread)
-    crumb, complete = ranked(StribeckFriction(), 0.5 * spread), ranked(StribeckFriction(), LOUD**2 * spread)
+    crumb, complete = ranked(StribeckFriction(), 0.8 * spread), ranked(StribeckFriction(), LOUD**2 * spread)
     assert simplest([crumb, simple], plain.fitted, DiagnosisSettings(least_size=0.02)) is simple
     assert simplest([crumb, simple], plain.fitted, DiagnosisSettings(least_size=0.001)) is crumb
     assert simplest([complete, simple], plain.fitted, DiagnosisSettings(least_size=0.02)) is complete
+
+
+@pytest.mark.parametrize(("whole", "left", "rich"), [(30, 0.4, True), (30, 0.8, False), (300, 0.4, False)])
+@pytest.mark.parametrize("ranked", [LOUD], indirect=True)
+def test_the_richer_law_is_meant_where_it_removes_most_of_what_the_simpler_one_leaves(
+    ranked, whole: float, left: float, rich: bool
+) -> None:
+    """And more than any law lacks to be the machine's. Seen: the LuGre friction of a table, told as Coulomb friction (0.85)."""
+    spread = np.random.default_rng(0).uniform(0.9, 1.1, WINDOWS)
+    plain, simple = ranked(ViscousFriction(), whole * spread), ranked(CoulombFriction(), 1.0 * spread)
+    richer = ranked(StribeckFriction(), left * spread)
+    assert simplest([richer, simple], plain.fitted, SETTINGS) is (richer if rich else simple)
 
 
 @pytest.mark.parametrize(("differ", "first"), [(1e-7, "size"), (1e-3, "rich")])
@@ -211,6 +225,8 @@ def test_what_is_left_is_counted_beyond_the_noise(ranked) -> None:
     plain, half, noise = (ranked(ViscousFriction(), np.full(WINDOWS, e)).fitted for e in (10.0, 5.0, 0.9 * LOUD**2))
     assert remaining_share(plain, half, SETTINGS) == pytest.approx(0.5, rel=1e-2)
     assert remaining_share(plain, noise, SETTINGS) == 0.0
+    over_long_windows = replace(plain, fits=(noise.fits[0], *plain.fits[1:]))
+    assert remaining_share(over_long_windows, half, SETTINGS) == pytest.approx(0.5, rel=1e-2), "short ones say nothing"
     assert completes(noise, SETTINGS) and not completes(half, SETTINGS)
     assert (
         remaining_share(noise, noise, SETTINGS) == 1.0
