@@ -12,7 +12,7 @@ from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Range, Surround
 from greybox_torch.model import Parameter, Signals
 
 SIGNALS: dict[str, tuple[str, ...]] = {
-    "body": ("speed", "position", "load", "time"),
+    "body": ("speed", "position", "load", "time", "sample_time"),
     "coupling": ("deflection", "rate", "position", "load", "speed", "time"),
     "balance": ("level", "time"),
     "actuator": ("input", "delayed", "speed", "position", "time", "sample_time"),

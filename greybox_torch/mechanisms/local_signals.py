@@ -77,10 +77,10 @@ class LocalSignals:
         return "load" in self.surroundings[a.port].ranges and "load" in self.body(a.position).signals
 
     def sampling(self, port: str) -> dict[str, Any]:
-        """The sample time in s, for laws of actuators and sensors that may act within a sample."""
+        """The sample time in s, for laws of bodies, actuators and sensors that may act within a sample."""
         return (
             {"sample_time": self.surroundings[port].sample_time}
-            if isinstance(self.ports[port], Actuator | Sensor)
+            if isinstance(self.ports[port], Actuator | Body | Sensor)
             else {}
         )
 

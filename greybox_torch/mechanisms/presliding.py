@@ -18,13 +18,17 @@ SUDDEN = 8
 FASTEST = 1.1
 """Share slipped beyond which that power grows no more: a step that overshoots must not be thrown back."""
 
+FOLLOWED = 2.0
+"""Rate of slipping, per sample, that a step follows: those of Runge-Kutta are stable up to 2.78."""
+
 
 class PreslidingHysteresis(Mechanism):
     """−F z / z_0 with dz/dt = v − |v| z / z_0 (Dahl).
 
     ``sharp``, slip sets in at once: with r = z / z_0, dz/dt = v − |v| r (1 − m + m |r|⁷), m from 0 to 1 (Dupont's elasto-plastic element
     as m goes to 1), and bristles damp by −σ dz/dt. ``falling``, the level falls with speed (LuGre): z_0 (1 + s exp(−(v / v_s)²)) takes
-    the place of the z_0 at which bristles slip, and F (1 + s) is the level near standstill.
+    the place of the z_0 at which bristles slip, and F (1 + s) is the level near standstill. At speeds at which they slip within less than
+    a sample, bristles bend and slip as fast as steps of a sample can follow: slow motion shows z_0, fast motion the level alone.
     """
 
     name = "presliding_hysteresis"
@@ -54,7 +58,7 @@ class PreslidingHysteresis(Mechanism):
                 "z_0",
                 4 * least,
                 speed.replace("/s", ""),
-                lower=0.5 * least,
+                lower=0.05 * least,
                 upper=1e3 * least,
                 description="deflection at which it slips",
             ),
@@ -68,7 +72,7 @@ class PreslidingHysteresis(Mechanism):
             found += [
                 Parameter("s", 0.0, "", lower=0.0, upper=5.0, description="level at standstill above that at speed"),
                 Parameter(
-                    "v_s", 0.1 * reach, speed, lower=1e-3 * reach, upper=reach, description="speed over which it falls"
+                    "v_s", 0.03 * reach, speed, lower=1e-3 * reach, upper=reach, description="speed over which it falls"
                 ),
             ]
         return found
@@ -78,11 +82,13 @@ class PreslidingHysteresis(Mechanism):
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
         yields_at = p.z_0 * (1.0 + p.s * torch.exp(-((s.speed / p.v_s) ** 2))) if self.falling else p.z_0
-        share = slip_share(z.bristle, yields_at)
+        share, steepest = slip_share(z.bristle, yields_at), 1.0
         if self.sharp:
             sudden = torch.clamp(torch.abs(share), max=FASTEST) ** (SUDDEN - 1)
             share = share * (1.0 - p.sharpness + p.sharpness * sudden)
-        return {"bristle": s.speed - torch.abs(s.speed) * share}
+            steepest = 1.0 + (SUDDEN - 1) * p.sharpness
+        slipping = steepest * torch.abs(s.speed) * s.sample_time / yields_at
+        return {"bristle": (s.speed - torch.abs(s.speed) * share) / torch.clamp(slipping / FOLLOWED, min=1.0)}
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         bent = -p.F * z.bristle / p.z_0
@@ -102,7 +108,7 @@ class PreslidingHysteresis(Mechanism):
         return too_fast or longer_than_the_travel("z_0", values["z_0"], around, "position")
 
     def _smallest(self, around: Surroundings) -> float:
-        """A bristle deflection whose time constant the sampling still resolves."""
+        """A bristle deflection whose time constant the sampling still resolves at the highest speed."""
         return around.ranges["speed"].reach * around.sample_time
 
 

@@ -67,7 +67,11 @@ def law(around: Surroundings) -> Law:
     def evaluate(mechanism, values, memory=None, **signals):
         start = {p.name: p.value for p in mechanism.parameters(around)}
         assert set(values) <= set(start), "the test gives a parameter that the law does not have"
-        s, p, z = named("signal", signals), named("parameter", {**start, **values}), named("memory", memory or {})
+        s, p, z = (
+            named("signal", {"sample_time": 1e-4, **signals}),
+            named("parameter", {**start, **values}),
+            named("memory", memory or {}),
+        )
         value = mechanism.deflection(s, p) if mechanism.kinematic else mechanism.force(s, p, z)
         shape = np.broadcast_shapes(*(np.shape(v) for v in (*signals.values(), *(memory or {}).values())))
         return np.broadcast_to(np.asarray(value), shape)
@@ -81,7 +85,11 @@ def rates(around: Surroundings) -> Law:
 
     def evaluate(mechanism, values, memory=None, **signals):
         start = {p.name: p.value for p in mechanism.parameters(around)}
-        s, p, z = named("signal", signals), named("parameter", {**start, **values}), named("memory", memory or {})
+        s, p, z = (
+            named("signal", {"sample_time": 1e-4, **signals}),
+            named("parameter", {**start, **values}),
+            named("memory", memory or {}),
+        )
         found = mechanism.rates(s, p, z)
         assert set(found) == {state.name for state in mechanism.states(around)}
         return np.array(np.broadcast_arrays(*(np.asarray(v) for v in found.values())))

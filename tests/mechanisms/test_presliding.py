@@ -102,3 +102,31 @@ def test_bristle_becomes_coulomb_in_sliding(law, rates) -> None:
     assert law(PreslidingHysteresis(), BRISTLE, {"bristle": np.array(bristle)}, speed=1.0) == pytest.approx(
         -2, rel=1e-3
     )
+
+
+@pytest.mark.parametrize("sharpness", [0.0, 1.0])
+@pytest.mark.parametrize("v", [0.1, 3.0, -50.0])
+def test_steps_of_a_sample_follow_bristles_that_slip_within_less(rates, sharpness, v) -> None:
+    """By Runge-Kutta steps of fourth order they stay bent to the level, at speeds at which they slip in a hundredth of a step."""
+    mechanism = PreslidingHysteresis(sharp=True)
+    values = {"F": 2.0, "z_0": 1e-3, "sharpness": sharpness, "sigma": 0.0}
+    step, bent, found = 0.01, 0.0, []
+
+    def rate(z: float) -> float:
+        memory = {"bristle": np.array(z)}
+        return float(rates(mechanism, values, memory, speed=np.array(v), sample_time=np.array(step))[0])
+
+    for _ in range(200):
+        k1 = rate(bent)
+        k2 = rate(bent + 0.5 * step * k1)
+        k3 = rate(bent + 0.5 * step * k2)
+        bent += step / 6 * (k1 + 2 * k2 + 2 * k3 + rate(bent + step * k3))
+        found.append(bent)
+    assert max(abs(z) for z in found) < 1.6e-3
+    assert found[-1] == pytest.approx(1e-3 * np.sign(v), rel=1e-6)
+
+
+def test_slow_motion_is_followed_as_it_is(rates) -> None:
+    memory, values = {"bristle": np.array(0.4e-3)}, {"F": 2.0, "z_0": 1e-3}
+    found = rates(PreslidingHysteresis(), values, memory, speed=np.array(0.02), sample_time=np.array(0.01))[0]
+    assert float(found) == pytest.approx(0.02 * 0.6)
