@@ -18,6 +18,11 @@ from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.substeps import LARGEST
+
+
+FINER = 4
+"""How many times finer steps become at a time where free runs are lost with coarser ones."""
 
 
 class FreeRuns:
@@ -69,7 +74,18 @@ class FreeRuns:
             fitted = final.problem.records.names
             asked = [e for e, name in enumerate(started.records.names) if name not in fitted]
             started = begun_along_travel(started, simulator, asked)
-        return compare(started, self.recordings, simulator, estimate_starts=False)
+        return self._simulated(started, simulator)
+
+    def _simulated(self, started: Problem, simulator: Simulator) -> Comparison:
+        """The free runs, with finer steps where they are lost without: a refit that lacks something may be far stiffer than the card.
+
+        Seen: a heating coil's air side, whose heat capacity went to a tenth. Where the finest steps are lost as well, so is the machine.
+        """
+        found = coarse = compare(started, self.recordings, simulator, estimate_starts=False)
+        while not _finite(found) and simulator.substeps < LARGEST:
+            simulator = simulator.with_substeps(FINER * simulator.substeps)
+            found = compare(started, self.recordings, simulator, estimate_starts=False)
+        return found if _finite(found) else coarse
 
     def _simulated_as(self, like: Problem, values: np.ndarray) -> tuple[Problem, Simulator]:
         """All experiments with the model and the parameter values of another problem, and its simulator."""
@@ -80,3 +96,7 @@ class FreeRuns:
             else problem_for(self.problem, like.model, named)
         )
         return problem, Simulator.of(like.model, (), self.options)
+
+
+def _finite(comparison: Comparison) -> bool:
+    return all(np.isfinite(outputs).all() for outputs in comparison.simulated)
