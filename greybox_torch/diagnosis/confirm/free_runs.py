@@ -20,7 +20,6 @@ from greybox_torch.estimate.problem import Problem, all_starts_free, make_proble
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.substeps import LARGEST
 
-
 FINER = 4
 """How many times finer steps become at a time where free runs are lost with coarser ones."""
 
