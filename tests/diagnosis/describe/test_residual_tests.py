@@ -92,12 +92,12 @@ def test_coloured_errors_are_not_taken_for_correlation_with_the_input(detected, 
 def test_nothing_is_seen_where_nothing_is(detected) -> None:
     """The bounds hold for all lags of all experiments together."""
     alarms = 0
-    for seed in range(50):
+    for seed in range(20):
         rng = np.random.default_rng(seed)
         records = [(held(rng), white(rng), white(rng)) for _ in range(3)]
         found = detected(*records)
         alarms += any(d.plain.past.beyond or d.plain.colour.beyond or d.feedback for d in found)
-    assert alarms <= 4
+    assert alarms <= 2
 
 
 @pytest.mark.parametrize("delay", [0, 1, 3])

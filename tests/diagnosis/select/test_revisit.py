@@ -192,9 +192,13 @@ def test_what_any_law_lacks_to_be_the_machines_does_not_count_against_names(
     """
     search = begun(motor_data(torque=lambda q, v: 0.2, noise=0.1), motor)
     curve = search.refitted((attach(motor, "rotor", ConstantBias()),), search.plain)
-    pairs = zip(search.plain.fits, curve.fits, strict=True)
-    fits = tuple(replace(c, mean_square=c.mean_square + left * (p.mean_square - c.mean_square)) for p, c in pairs)
-    named = replace(curve, fits=fits)
+    pairs = zip(curve.fits, search.plain.fits, strict=True)
+    mixed = (
+        [c.mean_square + left * (p.mean_square - c.mean_square), c.energies + left * (p.energies - c.energies)]
+        for c, p in pairs
+    )
+    fits = (replace(c, mean_square=m, energies=e) for c, (m, e) in zip(curve.fits, mixed, strict=True))
+    named = replace(curve, fits=tuple(fits))
     monkeypatch.setattr(choice, "cost_of", lambda fitted: further if fitted is named else 0.0)
     monkeypatch.setattr(choice, "price_in_likelihood", lambda *args: 50.0)
     assert white_samples(curve, SETTINGS) and not white_samples(named, SETTINGS)
