@@ -6,7 +6,11 @@ import numpy as np
 import torch
 
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.mechanisms import shift
 from greybox_torch.model import Coupling, GreyBoxModel, Signals
+
+OTHER = 1.3
+"""Times the values of the parameters, at which a slope has to be the same: a gear ratio that is estimated is another one tomorrow."""
 
 
 def shifted_states(model: GreyBoxModel, problem: Problem) -> dict[str, str]:
@@ -15,11 +19,12 @@ def shifted_states(model: GreyBoxModel, problem: Problem) -> dict[str, str]:
 
 
 def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, points: int = 24) -> str:
-    """The state through which a change of a coupling's deflection reaches nothing but its spring, as ``+name`` or ``-name``.
+    """The state through which a change of a coupling's deflection reaches nothing but its spring, as :func:`shift.written` has it.
 
     A kinematic mechanism (play, transmission error) changes the deflection that the spring sees. That is the same as moving one state
-    that the deflection depends on with slope ±1, provided the rates depend on that state only by way of this coupling: then they
-    change in the direction in which the port's force acts. Empty where there is no such state.
+    that the deflection depends on with the same slope everywhere, provided the rates depend on that state only by way of this coupling:
+    then they change in the direction in which the port's force acts. One with slope ±1 is preferred to one behind a gear. Empty where
+    there is no such state.
     """
     generator = torch.Generator().manual_seed(0)
     n_x, n_u = len(model.states), len(model.inputs)
@@ -31,19 +36,23 @@ def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, poin
     names = [s.name for s in model.states]
     index = port.deflection if isinstance(port.deflection, str) else None
     works = {i: True for i in range(n_x) if index is None or names[i] == index}
-    signs: dict[int, float] = {}
+    slopes_seen: dict[int, float] = {}
     draws = torch.randn(points, n_x + n_u, dtype=torch.float64, generator=generator).T
-    slopes = _slopes(model, port, draws[:n_x], scale_u[:, None] * draws[n_x:], problem.parameter_tensors)
+    p = problem.parameter_tensors
+    elsewhere = p.replaced(**{name: OTHER * p[name] for name in p})
+    drawn = (_slopes(model, port, draws[:n_x], scale_u[:, None] * draws[n_x:], one) for one in (p, elsewhere))
+    slopes = (torch.cat(parts, dim=-1) for parts in zip(*drawn, strict=True))
     for slope, by_state, by_force in zip(*(s.unbind(-1) for s in slopes), strict=True):
         for i in works:
             change = by_state[:, i]
             along = by_force * (change @ by_force) / (by_force @ by_force)
             parallel = torch.linalg.vector_norm(change - along) <= 1e-8 * torch.linalg.vector_norm(change)
-            unit = abs(abs(float(slope[i])) - 1.0) < 1e-9
-            works[i] = works[i] and bool(parallel) and unit
-            signs[i] = float(slope[i])
-    chosen = next((i for i, ok in works.items() if ok), None)
-    return "" if chosen is None else ("+" if signs[chosen] > 0 else "-") + names[chosen]
+            seen = slopes_seen.setdefault(i, float(slope[i]))
+            same = seen != 0.0 and abs(float(slope[i]) - seen) < 1e-9 * abs(seen)
+            works[i] = works[i] and bool(parallel) and same
+    found = [i for i, ok in works.items() if ok]
+    chosen = next((i for i in found if abs(abs(slopes_seen[i]) - 1.0) < 1e-9), next(iter(found), None))
+    return "" if chosen is None else shift.written(names[chosen], 1.0 / slopes_seen[chosen])
 
 
 def _slopes(

@@ -19,7 +19,7 @@ class Attachment:
     label: str = ""
     position: str = ""
     shifted_state: str = ""
-    """For a kinematic mechanism: the state that carries the change of deflection, ``+name`` or ``-name``."""
+    """For a kinematic mechanism: the state that carries the change of deflection, see :mod:`greybox_torch.mechanisms.shift`."""
 
     substeps: int = 1
     """Runge-Kutta steps per sample that its law needs at the least: dry friction that holds a light body is stiff."""

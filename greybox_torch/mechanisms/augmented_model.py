@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import torch
 
+from greybox_torch.mechanisms import shift
 from greybox_torch.mechanisms.added_declarations import added_inputs, added_parameters, added_states, started_at
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.delayed_input import after, delayed
@@ -223,8 +224,8 @@ class AugmentedModel(GreyBoxModel):
             if a.mechanism.kinematic:
                 local, own, _ = self._given(a, x, u, p)
                 change = self._share(a, p) * (a.mechanism.deflection(local, own) - local.deflection)
-                name = a.shifted_state[1:]
-                x = x.replaced(**{name: x[name] + change if a.shifted_state[0] == "+" else x[name] - change})
+                name, per_deflection = shift.read(a.shifted_state)
+                x = x.replaced(**{name: x[name] + per_deflection * change})
         return x
 
     def _given(

@@ -7,6 +7,7 @@ from typing import Any
 
 import torch
 
+from greybox_torch.mechanisms import shift
 from greybox_torch.model import GreyBoxModel, Signals
 from greybox_torch.model.ports import value_of
 from greybox_torch.model.random_points import random_points
@@ -40,14 +41,14 @@ def spring_force(
     along the direction in which a force at the port changes them (:func:`greybox_torch.estimate.shifted_states.shifted_state`).
 
     Args:
-        shifted_state: that state, as ``+name`` or ``-name``.
+        shifted_state: that state, see :func:`greybox_torch.mechanisms.shift.written`.
         moved: from :func:`moved_states`.
         none: no force at any port.
     """
     site = next(q for q in base.all_ports if q.name == coupling)
     deflection = value_of(site.signals["deflection"], x, u, p)
-    sign, name = (1.0 if shifted_state[0] == "+" else -1.0), shifted_state[1:]
-    released = x.replaced(**{name: x[name] - sign * deflection})
+    name, per_deflection = shift.read(shifted_state)
+    released = x.replaced(**{name: x[name] - per_deflection * deflection})
     here, without = (base.derivative(s, u, p, none) for s in (x, released))
     # Where the spring is released, as beside its force one of one would be lost to rounding.
     pushed = base.derivative(released, u, p, _with_one(none, coupling))

@@ -8,6 +8,7 @@ import pytest
 import torch
 
 from greybox_torch.estimate.shifted_states import shifted_state
+from greybox_torch.mechanisms import shift
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
 
 
@@ -57,9 +58,41 @@ def test_shifted_state_of_a_deflection_that_is_a_function(problem_of, sign, grav
     assert shifted_state(model, problem, model.ports[1]) == expected
 
 
-def test_no_shifted_state_where_the_deflection_is_geared(problem_of) -> None:
-    model = TwoMasses(scale=3.0)
-    assert shifted_state(model, problem_of(model), model.ports[1]) == ""
+class Geared(TwoMasses):
+    """Its first mass turns ``ratio`` times for one turn at the spring; the second one's weight depends on its position."""
+
+    def __init__(self, ratio: Any) -> None:
+        super().__init__()
+        self.ratio = ratio
+        self.ports = [
+            Body("first", speed="v", position="q"),
+            Coupling("spring", deflection=self.bent, rate=lambda x, u, p: x.v / ratio(p) - x.w),
+        ]
+
+    def bent(self, x: Any, u: Any, p: Any) -> Any:
+        return x.q / self.ratio(p) - x.r
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        spring = p.k * self.bent(x, u, p) + port.spring
+        fall = p.g_r * torch.sin(x.r)
+        return {"q": x.v, "r": x.w, "v": u.force - spring / self.ratio(p) + port.first, "w": spring - fall}
+
+
+def test_the_motor_side_of_a_gear_is_moved_by_the_ratio(problem_of) -> None:
+    """Seen: a strain-wave gear between the angles of motor and joint, whose kinematic error was not offered (no answer)."""
+    model = Geared(lambda p: 100.0)
+    assert shifted_state(model, problem_of(model, g_r=2.0), model.ports[1]) == "+100.0*q"
+    assert shifted_state(model, problem_of(model), model.ports[1]) == "-r", "where both will do"
+
+
+def test_a_ratio_that_is_a_parameter_is_not_relied_on(problem_of) -> None:
+    model = Geared(lambda p: 2.0 * p.k)
+    assert shifted_state(model, problem_of(model, g_r=2.0), model.ports[1]) == ""
+
+
+@pytest.mark.parametrize("per_deflection", [1.0, -1.0, 100.0, -0.025])
+def test_what_is_written_is_read(per_deflection: float) -> None:
+    assert shift.read(shift.written("motor.angle", per_deflection)) == ("motor.angle", per_deflection)
 
 
 @pytest.fixture

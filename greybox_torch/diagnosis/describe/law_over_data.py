@@ -24,6 +24,7 @@ from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit, states_along
 from greybox_torch.linear_algebra import eigh
+from greybox_torch.mechanisms import shift
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Surroundings
@@ -87,8 +88,8 @@ def _as_force(
     alone = AugmentedModel(model.base, [attachment], model.surroundings)
     grid = torch.as_tensor(curve.values, dtype=torch.float64)
     zero = torch.zeros_like(grid)
-    sign = 1.0 if attachment.shifted_state[0] == "+" else -1.0
-    x = Signals("state", {s.name: zero for s in alone.states}).replaced(**{attachment.shifted_state[1:]: sign * grid})
+    name, per_deflection = shift.read(attachment.shifted_state)
+    x = Signals("state", {s.name: zero for s in alone.states}).replaced(**{name: per_deflection * grid})
     u = Signals("input", {one.name: zero for one in alone.inputs})
 
     def rates(of: AugmentedModel, force: float) -> torch.Tensor:
