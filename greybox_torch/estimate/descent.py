@@ -39,6 +39,12 @@ WINDOW_SHARES = (1 / 64, 1 / 16)
 PATIENCE = 60
 """Iterations after which a descent that has not arrived is taken to creep."""
 
+AFTER_SEARCH = 20
+"""Iterations, at most, of a descent from start values that were looked for: the search has made most of them, and what is left creeps."""
+
+CREEPING = 1e-6
+"""Relative change of the cost from which an iteration on logarithms leads on; what follows ends the descent."""
+
 FINER = 2
 """How often the steps of the simulation are refined after the parameters."""
 
@@ -101,7 +107,11 @@ def or_elsewhere(
         elsewhere = look_around(
             problem, simulator, starts=starts, seed=options.seed, progress=options.progress, to_beat=options.to_beat
         )
-        other = None if elsewhere is None else _whole_records(elsewhere, options, 0, BETTER_BEGUN)
+        other = None
+        if elsewhere is not None:
+            limited = replace(options.settings, iterations=min(AFTER_SEARCH, options.settings.iterations))
+            brief = replace(options, settings=limited)
+            other = _whole_records(elsewhere.problem, brief, 0, BETTER_BEGUN, elsewhere.substeps)
         found = _better(found, other)
     return found
 
@@ -159,21 +169,33 @@ def _whole_records(
     options: DescentOptions,
     before: int,
     methods: Sequence[Method] = METHODS,
+    substeps: int = 1,
 ) -> Descent | None:
-    """The optimum of whole records near the values of ``problem``, after so many passes.
+    """The optimum of whole records near the values of ``problem``, after so many passes, with at least so many sub-steps.
 
-    Where the parameters have come to need finer steps than they began with, the optimum is found anew with those.
+    Where the parameters have come to need finer steps than they began with, the optimum is found anew with those: from there, or, where
+    that was an optimum of errors of the integration, from where it began.
     """
-    found = _optimum(FreeRun(problem, options.fine_enough(problem)), options, before, methods)
+    simulator = options.fine_enough(problem)
+    simulator = simulator.with_substeps(max(substeps, simulator.substeps))
+    found = _optimum(FreeRun(problem, simulator), options, before, methods)
     for _ in range(FINER):
         if found is None:
             return None
-        problem = found.run.at(found.optimum.point)
-        finer = options.fine_enough(problem)
+        there = found.run.at(found.optimum.point)
+        finer = options.fine_enough(there)
         if finer.substeps <= found.run.simulator.substeps:
             return found
-        found = _optimum(FreeRun(problem, finer), options, found.evaluations, methods[-1:])
+        astray = _cost(problem, finer) < _cost(there, finer)
+        problem, methods = (problem, methods) if astray else (there, methods[-1:])
+        found = _optimum(FreeRun(problem, finer), options, found.evaluations, methods)
     return found
+
+
+def _cost(problem: Problem, simulator: Simulator) -> float:
+    run = FreeRun(problem, simulator)
+    here = run.quadratic(run.start)
+    return float("inf") if here is None else here.cost
 
 
 def _optimum(run: FreeRun, options: DescentOptions, before: int, methods: Sequence[Method]) -> Descent | None:
@@ -196,6 +218,8 @@ def by_methods(
     z, iterations, evaluations, optimum = run.start, 0, 0, None
     for method in methods:
         limited = replace(settings, iterations=min(PATIENCE, settings.iterations - iterations))
+        if method is descending_on_logarithms:
+            limited = replace(limited, tolerance=max(CREEPING, settings.tolerance))
         if limited.iterations <= 0:
             break
         here = yield from method(z, *run.bounds, settings=limited, on_iteration=report)

@@ -124,12 +124,17 @@ class Members:
         )
 
 
-def improve(members: Members, population: Population, iterations: int) -> Population:
+def sorted_by_cost(population: Population) -> Population:
+    """Those that simulate, best first."""
+    return population.selected(np.argsort(population.cost)[: int(np.isfinite(population.cost).sum())])
+
+
+def improve(members: Members, population: Population, iterations: int, damping_at_first: float = 1e-2) -> Population:
     """``population`` after some Levenberg-Marquardt iterations each; a step that fails or does not pay is rejected for its member alone."""
     cost, gradient, hessian = members.normals(population)
     population = Population(population.values, population.initial, cost)
     low, high = members.bounds
-    damping, growth = np.full(len(population), 1e-2), np.full(len(population), 2.0)
+    damping, growth = np.full(len(population), damping_at_first), np.full(len(population), 2.0)
     for _ in range(iterations):
         z = members.unknowns(population)
         step = _steps(z, np.isfinite(population.cost), gradient, hessian, damping, low, high)
