@@ -10,7 +10,7 @@ from greybox_torch.mechanisms import shift
 from greybox_torch.model import Coupling, GreyBoxModel, Signals
 
 OTHER = 1.3
-"""Times the values of the parameters, at which a slope has to be the same: a gear ratio that is estimated is another one tomorrow."""
+"""Times the values of the free parameters, at which a slope has to be the same: a gear ratio that is estimated is another one tomorrow."""
 
 
 def shifted_states(model: GreyBoxModel, problem: Problem) -> dict[str, str]:
@@ -39,7 +39,7 @@ def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, poin
     slopes_seen: dict[int, float] = {}
     draws = torch.randn(points, n_x + n_u, dtype=torch.float64, generator=generator).T
     p = problem.parameter_tensors
-    elsewhere = p.replaced(**{name: OTHER * p[name] for name in p})
+    elsewhere = p.replaced(**{n: OTHER * p[n] for n, free in zip(problem.names, problem.free, strict=True) if free})
     drawn = (_slopes(model, port, draws[:n_x], scale_u[:, None] * draws[n_x:], one) for one in (p, elsewhere))
     slopes = (torch.cat(parts, dim=-1) for parts in zip(*drawn, strict=True))
     for slope, by_state, by_force in zip(*(s.unbind(-1) for s in slopes), strict=True):

@@ -85,9 +85,11 @@ def test_the_motor_side_of_a_gear_is_moved_by_the_ratio(problem_of) -> None:
     assert shifted_state(model, problem_of(model), model.ports[1]) == "-r", "where both will do"
 
 
-def test_a_ratio_that_is_a_parameter_is_not_relied_on(problem_of) -> None:
+def test_a_ratio_that_is_estimated_is_not_relied_on(problem_of) -> None:
     model = Geared(lambda p: 2.0 * p.k)
-    assert shifted_state(model, problem_of(model, g_r=2.0), model.ports[1]) == ""
+    problem = problem_of(model, g_r=2.0)
+    assert shifted_state(model, problem, model.ports[1]) == ""
+    assert shifted_state(model, problem.fixed, model.ports[1]) == "+100.0*q"
 
 
 @pytest.mark.parametrize("per_deflection", [1.0, -1.0, 100.0, -0.025])
