@@ -28,7 +28,8 @@ from greybox_torch.mechanisms.memory_net import MemoryNet
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorGain, SensorLag
-from greybox_torch.mechanisms.transmission import Backlash, HystereticSpring, NonlinearDamping, NonlinearStiffness
+from greybox_torch.mechanisms.stiffness import NonlinearStiffness
+from greybox_torch.mechanisms.transmission import Backlash, HystereticSpring, NonlinearDamping
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory

@@ -1,4 +1,4 @@
-"""Couplings between two masses: play, nonlinear springs and dampers, hysteresis."""
+"""Couplings between two masses: play, nonlinear dampers, hysteresis."""
 
 from __future__ import annotations
 
@@ -94,48 +94,6 @@ class Backlash(Mechanism):
             amplitudes = tuple(p.name for p in self.parameters(around) if p.name not in ("half_gap", "centre"))
             return [Probe(amplitudes, {"half_gap": gap}) for gap in gaps]
         return [Probe(("half_gap",)), *(Probe((SHARE,), {"half_gap": gap}) for gap in gaps)]
-
-
-class NonlinearStiffness(Mechanism):
-    """k_2 δ |δ| + k_3 δ³ + k_a δ² + F_0 tanh(δ / δ_0): stiffening or softening polynomials, and a spring that is stiff at first.
-
-    With ``k_a`` the spring is stiffer in one direction than in the other (a cone, a preloaded joint, a membrane).
-    """
-
-    name = "nonlinear_stiffness"
-    kinds = ("coupling",)
-    needs = ("deflection",)
-    natural = ("d_0",)
-    later = ("k_a",)
-    springs = True
-    nature = "a coupling that is no linear spring"
-    explanation = "The spring stiffens or softens with deflection."
-    source = "T. Tuttle, W. Seering, IEEE Trans. Robotics and Automation 12(3), 1996 (harmonic drives)"
-    experiment = "static loads up to the largest"
-
-    def parameters(self, around: Surroundings) -> list[Parameter]:
-        reach, unit = around.ranges["deflection"].reach, around.units.get("deflection", "")
-        return [
-            Parameter("k_2", 0.0, around.per("deflection", 2), description="coefficient of δ|δ|"),
-            Parameter("k_3", 0.0, around.per("deflection", 3), description="coefficient of δ³"),
-            Parameter("k_a", 0.0, around.per("deflection", 2), description="coefficient of δ², between the directions"),
-            Parameter("F_0", 0.0, around.force_unit, lower=0.0, description="level of the part that is stiff at first"),
-            Parameter(
-                "d_0", 0.2 * reach, unit, lower=0.01 * reach, upper=reach, description="deflection where it gives way"
-            ),
-        ]
-
-    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        odd = p.k_2 * s.deflection * torch.abs(s.deflection) + p.k_3 * s.deflection**3
-        return odd + p.k_a * s.deflection**2 + p.F_0 * torch.tanh(s.deflection / p.d_0)
-
-    def probes(self, around: Surroundings) -> Sequence[Probe]:
-        reach = around.ranges["deflection"].reach
-        softening = (Probe(("F_0",), {"d_0": f * reach}) for f in (0.03, 0.1, 0.3))
-        return [
-            *(Probe(names, {"d_0": 0.2 * reach}) for names in (("k_3",), ("k_2", "k_3"), ("k_3", "k_a"))),
-            *softening,
-        ]
 
 
 class HystereticSpring(Mechanism):

@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 
 from greybox_torch.mechanisms.mechanism import Range
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
+from greybox_torch.mechanisms.stiffness import NonlinearStiffness
 from greybox_torch.mechanisms.transmission import (
     HIDDEN_GAP,
     Backlash,
     HystereticSpring,
     NonlinearDamping,
-    NonlinearStiffness,
 )
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 
@@ -178,3 +178,9 @@ def test_the_gap_has_a_middle_of_its_own_where_sensors_show_the_deflection(law, 
     transmitted = law(Backlash(as_force), values, **signals) + (TWIST if as_force else 0.0)
     expected = np.sign(TWIST - 0.005) * np.maximum(np.abs(TWIST - 0.005) - 0.02, 0.0)
     np.testing.assert_allclose(transmitted, expected, atol=1e-14)
+
+
+def test_a_spring_runs_into_rubber_on_either_side(law) -> None:
+    values = {"from_up": 0.02, "a_up": 100.0, "b_up": 5e3, "from_down": 0.04, "a_down": 50.0, "b_down": 0.0}
+    force = law(NonlinearStiffness(stops=True), values, deflection=np.array([-0.05, -0.04, 0.0, 0.02, 0.03]))
+    np.testing.assert_allclose(force, [-0.5, 0.0, 0.0, 0.0, 1.5], atol=1e-12)

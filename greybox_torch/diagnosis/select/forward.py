@@ -14,7 +14,7 @@ from greybox_torch.diagnosis.select.flexed import flexed
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
 from greybox_torch.diagnosis.select.memory import completed_by_memory
 from greybox_torch.diagnosis.select.remaining import completes
-from greybox_torch.diagnosis.select.richer import richer_instead, with_richer_form
+from greybox_torch.diagnosis.select.richer import richer_instead, with_earlier_law_richer, with_richer_form
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.select.two_laws import second_step, with_first_of_two
 from greybox_torch.diagnosis.stopping import Stage, only_if
@@ -38,7 +38,11 @@ def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> St
         if not state.took_one and _fine_curves_may_help(study, state, curves) and not little_is_left(study, state):
             state = yield from forward_step(study, state, curves=curves, fine=True)
         if not state.took_one:
-            break
+            richer = yield from with_earlier_law_richer(study, state)
+            if richer is state:
+                break
+            state = richer
+            continue
         wider = flexed(study, before, state) or richer_instead(study, before, state)
         if wider is not None:
             state = wider

@@ -20,16 +20,20 @@ from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.choice import least_gain, priced_score
 from greybox_torch.diagnosis.select.flexed import widened
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
-from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
 
 
-def with_richer_form(study: Study, state: SearchState) -> Stage[SearchState]:
-    """The state with the law of its last step in the richer form that goes farthest, where that takes up most of what it leaves."""
-    done = state.steps[-1]
+def with_richer_form(study: Study, state: SearchState, done: SelectionStep | None = None) -> Stage[SearchState]:
+    """The state with the law of a step in the richer form that goes farthest, where that takes up most of what is left.
+
+    Args:
+        done: that step, by default the last one.
+    """
+    done = done or state.steps[-1]
     if done.taken is None or only_noise(study.problem, state.current, study.settings):
         return state
     taken = done.taken
@@ -42,6 +46,20 @@ def with_richer_form(study: Study, state: SearchState) -> Stage[SearchState]:
         return state
     state = widened(state, done, _beside_rivals(taken, best), best.fitted)
     yield state
+    return state
+
+
+def with_earlier_law_richer(study: Study, state: SearchState) -> Stage[SearchState]:
+    """The state with one of the laws that were found before the newest in a richer form, asked where no further effect pays.
+
+    Beside all that was still missing when a law was found, a richer form takes up little. Seen: the bump stops of a vehicle, told as a
+    curve beside the delay of a sensor, which left more than what the polynomial of its spring lacks.
+    """
+    for effect in state.effects[:-1]:
+        done = state.step_of(effect.prefix)
+        richer = state if done is None else (yield from with_richer_form(study, state, done))
+        if richer is not state:
+            return richer
     return state
 
 

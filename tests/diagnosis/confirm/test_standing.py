@@ -19,7 +19,8 @@ from greybox_torch.mechanisms.friction import CoulombFriction, ViscousFriction
 from greybox_torch.mechanisms.mechanism import Mechanism
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.sensor import SensorLag
-from greybox_torch.mechanisms.transmission import Backlash, NonlinearStiffness
+from greybox_torch.mechanisms.stiffness import NonlinearStiffness
+from greybox_torch.mechanisms.transmission import Backlash
 
 
 @pytest.fixture
