@@ -17,13 +17,14 @@ from greybox_torch.diagnosis.select.richer import (
     _pays,
     _preferred,
     richer_instead,
+    with_earlier_law_richer,
     with_richer_form,
 )
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.actuator import InputDelay, InputGain, InputLag
 from greybox_torch.mechanisms.attachment import attach
-from greybox_torch.mechanisms.forces import TorqueRipple
+from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorLag
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
@@ -58,6 +59,22 @@ def test_what_has_no_richer_form_or_leaves_noise_alone_stays_as_it_is(motor_data
     for effect, start in ((ripple, {f"{ripple.prefix}.b": 0.06}), (dry, {f"{dry.prefix}.F_c": 0.01})):
         before = found(search, effect, start)
         assert result_of(with_richer_form(search.study, before)) is before
+
+
+def test_an_earlier_law_is_asked_once_more_where_no_further_effect_pays(motor_data, motor, begun) -> None:
+    """Seen: the bump stops of a vehicle, told as a curve beside the delay of a sensor."""
+    torque = {1: 0.06, 2: 0.03}
+    data = motor_data(torque=lambda q, v: 0.2 + sum(f * np.sin(2.5 * k * q) for k, f in torque.items()))
+    search = begun(data, motor)
+    ripple, bias = attach(motor, "rotor", TorqueRipple(2.5)), attach(motor, "rotor", ConstantBias())
+    first = found(search, ripple, {f"{ripple.prefix}.b": 0.06})
+    both = search.refitted((ripple, bias), first.current)
+    taken = judged(Candidate(bias, (), 0.5), first.current, both, search.study.settings)
+    state = replace(first.at(both), steps=(*first.steps, SelectionStep((), first.current, (taken,), taken)))
+    asked = result_of(with_earlier_law_richer(search.study, state))
+    assert [e.prefix for e in asked.effects] == [ripple.prefix, bias.prefix]
+    assert asked.effects[0].mechanism.harmonics > 1 and asked.current.score < state.current.score
+    assert result_of(with_earlier_law_richer(search.study, first)) is first, "the newest has been asked"
 
 
 @pytest.mark.parametrize(("plain", "left", "taken"), [(20.0, 1.05, True), (20.0, 9.0, False), (1.5, 0.9, False)])
