@@ -1,4 +1,4 @@
-"""What another part of a machine may do to a port by where that part stands: positions of other axes, levels of other balances."""
+"""What another part of a machine may do to a port by where that part stands, or how fast it is: other axes and balances."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.joined_bodies import bodies_apart
 from greybox_torch.model.ports import Balance, Body, Port, Signal
 
-LEVEL, POSITION = "level@", "position@"
+LEVEL, POSITION, SPEED = "level@", "position@", "speed@"
 """Beginnings of the names of such signals; the name of their port follows."""
 
 
 def signals_elsewhere(model: GreyBoxModel, port: Port) -> dict[str, Signal]:
-    """By name, at a body the positions of other axes and the levels of balances, at a balance the levels of others."""
+    """By name, at a body the positions and speeds of other axes and the levels of balances, at a balance the levels of others.
+
+    A force by the speed of what a spring joins with a body is friction there, or the spring's damping.
+    """
     found: dict[str, Signal] = {}
     if isinstance(port, Body):
         there = positions_elsewhere(model, port).items()
@@ -19,6 +22,8 @@ def signals_elsewhere(model: GreyBoxModel, port: Port) -> dict[str, Signal]:
     if isinstance(port, Body | Balance):
         balances = (q for q in model.ports if isinstance(q, Balance) and q.name != port.name)
         found |= {f"{LEVEL}{q.name}": q.level for q in balances}
+    if isinstance(port, Body):
+        found |= {f"{SPEED}{b.name}": b.speed for b in bodies_apart(model, port)}
     return found
 
 

@@ -19,7 +19,7 @@ from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port
 from greybox_torch.model.joined_bodies import joined_bodies
 from greybox_torch.model.ports import Actuator, driving_body
-from greybox_torch.model.signals_elsewhere import LEVEL, signals_elsewhere
+from greybox_torch.model.signals_elsewhere import LEVEL, SPEED, signals_elsewhere
 
 ANGLES = ("rad", "deg", "rev", "turn")
 """Beginnings of the units of angles: only on an angle does gravity repeat."""
@@ -129,6 +129,7 @@ def _curves(model: GreyBoxModel, port: Port, knots: int) -> Iterable[Unknown]:
 
 def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
     """What another part of the machine does to a port by where it stands: by itself, or to what an input or the body's speed does there.
+    What it does by how fast it is (the air that a turning rotor drags along) it does by itself.
 
     No more than ``MOST_FROM_ELSEWHERE``, which the ports take in turn.
     """
@@ -137,7 +138,8 @@ def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unk
     def of(port: Port) -> Iterator[tuple[Port, Unknown]]:
         for signal in signals_elsewhere(model, port):
             speed = ["speed"] if isinstance(port, Body) and signal.startswith(LEVEL) else []
-            yield from ((port, Unknown(signal, knots, factor)) for factor in ("", *inputs, *speed))
+            factors = ("",) if signal.startswith(SPEED) else ("", *inputs, *speed)
+            yield from ((port, Unknown(signal, knots, factor)) for factor in factors)
 
     in_turn = (way for turn in zip_longest(*map(of, model.ports)) for way in turn if way is not None)
     return islice(in_turn, MOST_FROM_ELSEWHERE)

@@ -71,7 +71,7 @@ def test_what_one_axis_does_to_the_other_is_offered(surroundings) -> None:
     for body, other in (("pitch_axis", "yaw_axis"), ("yaw_axis", "pitch_axis")):
         own = {(body, f"position@{other}", factor) for factor in ("", "input@main", "input@tail")}
         warm = {(body, "level@motor_heat", factor) for factor in ("", "speed", "input@main", "input@tail")}
-        assert {c for c in curves if c[0] == body and "@" in c[1]} == own | warm
+        assert {c for c in curves if c[0] == body and "@" in c[1]} == own | warm | {(body, f"speed@{other}", "")}
     assert surroundings["yaw_axis"].ranges["position@pitch_axis"].high == pytest.approx(0.5)
     assert surroundings["yaw_axis"].units["position@pitch_axis"] == "rad"
 
