@@ -128,9 +128,11 @@ def _drawn_anew(
 
 def _effective(members: Members, population: Population, plateau: Population) -> Population:
     """Those that are better than the plateau or simulate something else."""
+    if not len(population):
+        return population
     here, cost = members.outputs(plateau), float(plateau.cost[0])
-    parts = [np.zeros(0)]
-    for part in np.array_split(np.arange(len(population)), -(-len(population) // 64) or 1):
+    parts = []
+    for part in np.array_split(np.arange(len(population)), -(-len(population) // 64)):
         with np.errstate(all="ignore"):  # of outputs that are large
             parts.append(((members.outputs(population.selected(part)) - here) ** 2).sum(axis=1))
     far = np.concatenate(parts) > NOTHING**2 * 2.0 * cost
