@@ -39,9 +39,9 @@ class NonlinearStiffness(Mechanism):
         self.stops = stops
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
-        reach, unit = around.ranges["deflection"].reach, around.units.get("deflection", "")
         if self.stops:
             return [p for side in SIDES for p in _of_a_stop(side, around)]
+        reach, unit = around.ranges["deflection"].reach, around.units.get("deflection", "")
         return [
             Parameter("k_2", 0.0, around.per("deflection", 2), description="coefficient of δ|δ|"),
             Parameter("k_3", 0.0, around.per("deflection", 3), description="coefficient of δ³"),

@@ -29,7 +29,7 @@ def size(
             shares.append(1.0)
             continue
         whole = plain[level] if level < len(plain) else old
-        noise = noise_floor(new.problem, settings) * float(np.sum(~np.isnan(new.problem.records.y)))
+        noise = noise_floor(new.problem, settings) * new.problem.samples
         brought_back = float(old.energies.sum()) - float(new.energies.sum())
         mismatch = max(float(whole.energies.sum()) - noise, brought_back)
         if mismatch > settings.no_mismatch * noise:

@@ -86,9 +86,9 @@ def simplest(
 ) -> RankedCandidate | None:
     """The best, or what it generalises where it is not better than that by more than chance, or by less than a finding is.
 
-    The latter does not count against a law that leaves noise alone where the simpler one does not. Any law with fewer
-    parameters goes before one that ties with it and differs from it by next to nothing of the mismatch (``same_share``): good sensors show
-    such differences, and they are not the law's. Not where both leave white noise alone: there the likelihood has told them apart.
+    The latter does not count against a law that leaves noise alone where the simpler one does not. Any law with fewer parameters goes
+    before one that ties with it and differs from it by next to nothing of the mismatch (``same_share``): good sensors show such
+    differences, and they are not the law's. Not where both leave white noise alone: there the likelihood has told them apart.
     """
     best = next(iter(ranked), None)
     if best is None:

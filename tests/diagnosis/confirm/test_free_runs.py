@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from greybox_torch.diagnosis.confirm import free_runs
 from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
 from greybox_torch.estimate.comparison import compare
 from greybox_torch.simulation.simulator import Simulator
@@ -40,8 +41,11 @@ def test_a_model_that_runs_away_is_lost_however_fine_the_steps(runs) -> None:
     assert not all(np.isfinite(y).all() for y in runs._simulated(problem, simulator).simulated)
 
 
-def test_where_steps_of_a_sample_do_nothing_is_simulated_twice(runs) -> None:
+def test_where_steps_of_a_sample_do_nothing_is_simulated_twice(runs, monkeypatch) -> None:
     problem, simulator = with_values(runs)
+    asked = []
+    monkeypatch.setattr(free_runs, "compare", lambda *args, **how: asked.append(args) or compare(*args, **how))
     found = runs._simulated(problem, simulator)
+    assert len(asked) == 1
     whole = compare(problem, runs.recordings, simulator, estimate_starts=False)
     assert all(np.array_equal(a, b) for a, b in zip(found.simulated, whole.simulated, strict=True))

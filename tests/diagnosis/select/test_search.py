@@ -39,10 +39,9 @@ LOUD = 0.3
 def ranked(motor, begun, motor_data, request):
     """Makes a ranked hypothesis whose windows have given mean squares; the parameter is the noise of the recordings."""
     search = begun(motor_data(noise=request.param), motor)
-    samples = int(np.sum(~np.isnan(search.problem.records.y)))
 
     def make(mechanism, squares: np.ndarray) -> RankedCandidate:
-        whole = {"energies": squares * samples / len(squares), "mean_square": float(squares.mean())}
+        whole = {"energies": squares * search.problem.samples / len(squares), "mean_square": float(squares.mean())}
         fits = tuple(replace(fit, **whole) for fit in search.plain.fits)
         fitted = Hypothesis((), search.plain.model, search.plain.simulator, fits, 1e-12)
         gain = search.plain.score - fitted.score
