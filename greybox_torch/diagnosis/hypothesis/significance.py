@@ -27,7 +27,7 @@ def white_samples(fitted: Hypothesis, settings: DiagnosisSettings) -> int:
     worst = max(fitted.fits, key=lambda fit: fit.mean_square)
     if not reaches_noise(fitted.problem, worst, settings):
         return 0
-    return fitted.problem.samples
+    return int(np.sum(~np.isnan(fitted.problem.records.y)))
 
 
 def window_significance(before: Hypothesis, after: Hypothesis, settings: DiagnosisSettings) -> float:
