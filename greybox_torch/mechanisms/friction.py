@@ -10,6 +10,7 @@ import torch
 from greybox_torch.mechanisms.degenerate import faster_than_it_went
 from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
+from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.sign_change import DryLaw, smooth_sign, width_parameter, widths
 from greybox_torch.model import Parameter, Signals
 
@@ -100,6 +101,15 @@ class StribeckFriction(Mechanism):
             for width in widths(around)[:2]
             if width <= WIDEST_BESIDE_A_PEAK * share * reach
         ]
+
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """Bristles that slip at the same levels: what they bend before looks like a slow change of sign."""
+        level, peak = values["F_c"], values["F_s"]
+        if level <= 0.0:
+            return ()
+        begun = {"F": level, "s": peak / level, "v_s": values["v_s"]}
+        forms = (PreslidingHysteresis(sharp, falling=True) for sharp in (False, True))
+        return [(form, begun | ({"sharpness": 0.5} if form.sharp else {})) for form in forms]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return faster_than_it_went("v_s", values["v_s"], around) or _highest_at_a_speed(values, around)

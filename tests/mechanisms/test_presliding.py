@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from greybox_torch.mechanisms.friction import StribeckFriction
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 
 speeds = st.floats(-50.0, 50.0)
@@ -93,6 +94,25 @@ def test_richer_forms_of_presliding_begin_where_it_was_found() -> None:
         {"sharp": True, "falling": True}
     ]
     assert not PreslidingHysteresis(True, True).richer(SHARP)
+
+
+@pytest.mark.parametrize("v", [0.5, 2.0, -9.0])
+def test_stribeck_friction_may_be_that_of_bristles(law, rates, v) -> None:
+    """A law with a memory that slides at the same level. Seen: a painting robot's motor, whose bristles change the sign of the force so
+    slowly that Stribeck friction was refused, and told without a name (149 s)."""
+    values = {"F_c": 2.0, "F_s": 1.2, "c": 0.0, "v_s": 1.5, "v_0": 0.01}
+    forms = StribeckFriction().richer(values)
+    assert [form.options() for form, _ in forms] == [
+        {"sharp": False, "falling": True},
+        {"sharp": True, "falling": True},
+    ]
+    form, begun = forms[0]
+    slid = _slid(law, rates, form, {"z_0": 0.05, **begun}, v, 20_000)[-1]
+    assert slid == pytest.approx(float(law(StribeckFriction(), values, speed=np.array(v))), rel=1e-3)
+
+
+def test_friction_without_a_level_is_not_that_of_bristles() -> None:
+    assert not StribeckFriction().richer({"F_c": 0.0, "F_s": 1.2, "c": 0.0, "v_s": 1.5, "v_0": 0.01})
 
 
 def test_bristle_becomes_coulomb_in_sliding(law, rates) -> None:
