@@ -62,7 +62,6 @@ class ThresholdFlow(Mechanism):
     name = "threshold_flow"
     kinds = ("balance",)
     needs = ("level",)
-    natural = ("width",)
     later = ("width",)
     nature = "a flow that depends on the level"
     explanation = "Above a level something flows off (overflow, relief valve)."

@@ -220,3 +220,15 @@ def test_a_law_whose_amplitudes_are_all_zero_is_none_whatever_is_known_of_them(n
     law = law_of(name)
     nothing = {**SOUND[name], **dict.fromkeys(law.essential or law.amplitudes(around), 0.0)}
     assert str(law.degenerate(around, nothing, {})).endswith(" = 0")
+
+
+def test_a_flow_that_sets_in_over_the_whole_range_has_no_threshold(around: Surroundings) -> None:
+    """Seen: what a solar collector loses by the square of its temperature, told as a flow above a threshold (0.97)."""
+    width = next(p for p in law_of("threshold_flow").parameters(around) if p.name == "width").bounds[1]
+    wide = SOUND["threshold_flow"] | {"width": width}
+    assert (
+        law_of("threshold_flow").degenerate(around, wide, small(wide)) == f"width = {width:.3g} is at its upper bound"
+    )
+    for narrow in (0.0, 0.5 * width):
+        values = SOUND["threshold_flow"] | {"width": narrow}
+        assert law_of("threshold_flow").degenerate(around, values, small(values)) is None

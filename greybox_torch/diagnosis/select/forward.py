@@ -90,7 +90,8 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     branch = yield from only_if(_without_curves(study, start, with_curve), partial(_as_far, study, with_curve))
     if _as_far(study, with_curve, branch):
         return branch
-    standing = _before_pieces(start, with_curve, branch) if _in_pieces(study, with_curve, branch) else branch
+    pieces = _in_pieces(study, with_curve, branch) or _many(study, with_curve, branch)
+    standing = _before_pieces(start, with_curve, branch) if pieces else branch
     if standing is None or len(standing.effects) <= len(done.parent.effects):
         return replace(with_curve, plain=branch.plain)
     return replace(with_curve, plain=branch.plain, named=replace(standing, named=None))
@@ -180,10 +181,23 @@ def _joined_with(study: Study, port: str) -> set[str]:
 
 
 def _as_far(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
-    """Whether the effects of ``branch`` come as far as the curve of ``with_curve``, from the hypothesis that both build on."""
-    reached, ceiling = _gains(with_curve, branch)
-    alone = alone_at_noise(with_curve.current, branch.current, with_curve.plain, study.settings)
-    share = 1.0 if alone else study.settings.named_share
+    """Whether the effects of ``branch`` come as far as the curve of ``with_curve``, from the hypothesis that both build on.
+
+    More than ``most_names_for_curve`` of them have to come farther: what one curve at one place explains is simpler than as many laws at
+    several. Seen: the heat that shear makes in an extruder, a curve beside which a sensor's gain, a constant, an input's offset and a lag
+    were told, each by its name and each wrong.
+    """
     if _in_pieces(study, with_curve, branch):
         return False
-    return reached >= min(ceiling - study.settings.curve_margin, share * ceiling)
+    settings, (reached, ceiling) = study.settings, _gains(with_curve, branch)
+    if _many(study, with_curve, branch):
+        return reached >= ceiling + settings.curve_margin
+    alone = alone_at_noise(with_curve.current, branch.current, with_curve.plain, settings)
+    share = 1.0 if alone else settings.named_share
+    return reached >= min(ceiling - settings.curve_margin, share * ceiling)
+
+
+def _many(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
+    """Whether ``branch`` has more effects in the place of the curve than ``most_names_for_curve``, wherever they are."""
+    added = [e for e in branch.effects if e not in with_curve.steps[-1].parent.effects]
+    return len(added) > study.settings.most_names_for_curve

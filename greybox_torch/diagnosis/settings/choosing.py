@@ -196,7 +196,7 @@ class SelectionSettings:
     )
     most_names_for_curve: int = count(
         2,
-        "Named effects at a port that may stand for a free curve there: more of them are pieces of it, and none is the machine's.",
+        "Named effects that may stand for a free curve: at its port more of them are pieces of it, elsewhere they have to come farther.",
         chosen_by="a slack spring told as gravity, a stop, a bias and a ripple",
     )
     passed_over_share: float = share(

@@ -7,7 +7,13 @@ from dataclasses import replace
 import pytest
 
 from greybox_torch.diagnosis.select import forward
-from greybox_torch.diagnosis.select.forward import _before_pieces, _in_pieces, _name_before_fine_curve, _without_curves
+from greybox_torch.diagnosis.select.forward import (
+    _as_far,
+    _before_pieces,
+    _in_pieces,
+    _name_before_fine_curve,
+    _without_curves,
+)
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import result_of
@@ -52,6 +58,23 @@ def test_two_names_of_the_curves_own_signal_stand_only_where_the_curve_takes_up_
     assert _in_pieces(study, with_curve, branch) is pieces  # type: ignore[arg-type]
     better = stub(effects=added, current=stub(score=-2.3))
     assert _in_pieces(study, with_curve, better) is False  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("names", "score", "as_far"), [(2, -1.9, True), (3, -1.9, False), (3, -2.05, False), (3, -2.15, True)]
+)
+def test_more_than_two_names_wherever_they_are_have_to_come_farther_than_the_curve(
+    monkeypatch, stub, names: int, score: float, as_far: bool
+) -> None:
+    """Seen: the heat of shear in an extruder, told as a lag of the room's temperature (0.97) beside the curve (0.50), after 137 s."""
+    monkeypatch.setattr(forward, "alone_at_noise", lambda *_: False)
+    monkeypatch.setattr(forward, "_joined_with", lambda study, port: {port})
+    taken = stub(candidate=stub(attachment=stub(port="zone", mechanism=stub(signal="level"))))
+    before = stub(effects=(), score=0.0)
+    with_curve = stub(steps=(stub(parent=before, taken=taken),), current=stub(score=-2.0), plain=before)
+    added = tuple(stub(port=f"elsewhere{k}", mechanism=stub(needs=())) for k in range(names))
+    branch = stub(effects=added, current=stub(score=score))
+    assert _as_far(stub(settings=DiagnosisSettings()), with_curve, branch) is as_far  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("joined", "pieces"), [({"camera", "rotor"}, True), ({"camera"}, False)])
