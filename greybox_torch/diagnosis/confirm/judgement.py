@@ -88,8 +88,6 @@ class Judgement:
 
         None where they were more than half of all: what is left would say too little. That does not hold of those that are ``lost``.
         """
-        if self._no_worse(frozenset()):
-            return frozenset()
         parted = self.free_runs.parted(self.augmented, self.with_effects, self._worse)
         found = frozenset(name for name, share in parted.items() if share >= self.settings.least_parted)
         return self.lost | (found if 2 * len(found) <= len(self.judges) else frozenset())

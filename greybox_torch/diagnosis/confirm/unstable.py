@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from greybox_torch.diagnosis.hypothesis.noise import output_floors
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.estimate.initial import FRACTION
 from greybox_torch.estimate.problem import Problem
@@ -24,8 +25,8 @@ def parted(
 ) -> dict[str, float]:
     """How far the free runs of experiments part from one that begins next to them, in units of their error, by name.
 
-    Each state in turn begins ``settings.unseen_start`` of its travel away; the farthest of them counts, root mean square over the record.
-    A run beside it that overflows has parted from it.
+    Each state in turn begins as far away as sensors do not show; the farthest of them counts, root mean square over the record. A run
+    beside it that overflows has parted from it.
 
     Zero where that is not the machine's doing: a free run that overflows, or that is farther from the measurement than a constant; and
     where the change hardly grows from the first tenth of the record on (``settings.least_growth``), as an offset or a drift does.
@@ -58,17 +59,33 @@ def no_free_run_follows(
         f"{name}: the free runs with the effects and without them both end farther from the measurement than a constant is, as the machine "
         "falls away from an equilibrium. Neither counts: windows, whose start states are estimated, judge."
         if name in lost
-        else f"{name}: with the effects the free run is worse. It does not count: a second free run, whose start differs by "
-        f"{100 * settings.unseen_start:.2g} % of a state's travel, departs from the first by {100 * settings.least_parted:.0f} % of its "
-        "error or more, so that no free run follows this experiment."
+        else f"{name}: with the effects the free run is worse. It does not count: a second free run, whose start differs by less than the "
+        f"sensors show, departs from the first by {100 * settings.least_parted:.0f} % of its error or more, so that no free run follows "
+        "this experiment."
         for name in sorted(experiments)
     )
 
 
 def _parted(problem: Problem, simulator: Simulator, experiment: int, settings: DiagnosisSettings) -> float:
-    """How far a small change of the start state moves the outputs of one experiment, at most, in units of its error."""
+    """How far a change of the start state that sensors do not show moves the outputs of one experiment, at most, in units of its error.
+
+    From a change so small that the runs beside one another part in proportion to it.
+    """
     runs = _beside(problem, simulator, experiment, settings)
-    return max(runs.grown, default=0.0) if runs.finite and runs.near else 0.0
+    larger = _unseen(problem, experiment, settings) / settings.unseen_start
+    return larger * max(runs.grown, default=0.0) if runs.finite and runs.near else 0.0
+
+
+@np.errstate(divide="ignore", invalid="ignore")
+def _unseen(problem: Problem, experiment: int, settings: DiagnosisSettings) -> float:
+    """Change of a start state that no sensor shows, as a share of the state's travel: what the noise of the best sensor leaves unknown of
+    a value that the first tenth of an experiment tells, and never less than ``settings.unseen_start``."""
+    y = problem.records.y[:, problem.records.span(experiment)]
+    known, floors = np.isfinite(y).sum(axis=1), output_floors(problem, settings)[experiment]
+    shares = [
+        np.sqrt(floor / (FRACTION * n)) / np.nanstd(row) for row, floor, n in zip(y, floors, known, strict=True) if n
+    ]
+    return max(settings.unseen_start, min((float(s) for s in shares if np.isfinite(s)), default=0.0))
 
 
 @dataclass(frozen=True)

@@ -92,7 +92,7 @@ class ConfirmationSettings:
     )
     unseen_start: float = share(
         1e-5,
-        "Change of a start state that no sensor shows, by which it is asked whether free runs can follow an experiment.",
+        "Least change of a start state that no sensor shows, by which it is asked whether free runs can follow an experiment.",
         unit="share of the state's travel",
         chosen_by="a hundredth of what sensors of three digits show",
     )

@@ -26,7 +26,10 @@ def friction(motor_data, motor):
         simulator = Simulator.of(motor, (), SimulationOptions(substeps=4))
         with np.errstate(over="ignore", invalid="ignore"):
             speeds = np.concatenate([moved(problem.records.u[0, problem.records.span(e)], b) for e in range(2)])
-        beside = 0.05 * np.std(speeds[500:]) * np.where(np.arange(len(speeds)) % 2, 1.0, -1.0)
+        slow = np.sqrt(2) * np.cos(
+            2 * np.pi * np.arange(len(speeds)) / 500
+        )  # no noise: five percent of the speed's spread
+        beside = 0.05 * np.std(speeds[500:]) * slow
         records = replace(problem.records, y=(speeds + beside)[None])
         started = replace(problem, records=records).with_values(values, np.full_like(problem.initial, 0.3))
         return started, simulator, speeds[500:]
@@ -51,6 +54,19 @@ def test_as_far_as_the_closed_form_says(friction, b: float) -> None:
     grown = np.sqrt(np.mean(np.exp(-2 * b * 0.01 * np.arange(len(speed)) / 0.02)))
     expected = 1e-4 * np.ptp(speed) * grown / (0.05 * np.std(speed))
     assert parted(problem, simulator, [name], SETTINGS) == {name: pytest.approx(expected, rel=1e-4)}
+
+
+def test_noise_hides_a_larger_change_of_the_start(friction) -> None:
+    """White noise of a thousandth of the spread leaves 1e-3 / √50 of it unknown, by the 50 samples of the first tenth; 1e-4 is asked about.
+
+    Seen: an arm's friction with a bump, whose free run jumps from one side of it to the other (the error 80 times the noise).
+    """
+    problem, simulator, speed = friction(-0.05)
+    name = problem.records.names[1]
+    noise = 1e-3 * np.std(speed) * np.random.default_rng(3).standard_normal(problem.records.y.shape)
+    noisy = replace(problem, records=replace(problem.records, y=problem.records.y + noise))
+    quiet, larger = (parted(p, simulator, [name], SETTINGS)[name] for p in (problem, noisy))
+    assert larger == pytest.approx(quiet * 1e-3 / np.sqrt(50) / 1e-4, rel=0.2)
 
 
 @pytest.mark.parametrize(("b", "least", "together"), [(0.05, 1.0, True), (-0.02, 30.0, False), (-0.02, 40.0, True)])
@@ -85,4 +101,4 @@ def test_samples_that_are_missing_do_not_count(friction) -> None:
 def test_it_is_said_of_each_experiment() -> None:
     told = no_free_run_follows({"run 2", "run 1"}, DiagnosisSettings())
     assert [sentence[:6] for sentence in told] == ["run 1:", "run 2:"]
-    assert "0.001 % of a state's travel" in told[0] and "10 % of its error" in told[0]
+    assert "by less than the sensors show" in told[0] and "10 % of its error" in told[0]
