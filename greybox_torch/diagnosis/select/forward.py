@@ -192,9 +192,10 @@ def _as_far(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
     settings, (reached, ceiling) = study.settings, _gains(with_curve, branch)
     if _many(study, with_curve, branch):
         return reached >= ceiling + settings.curve_margin
-    alone = alone_at_noise(with_curve.current, branch.current, with_curve.plain, settings)
-    share = 1.0 if alone else settings.named_share
-    return reached >= min(ceiling - settings.curve_margin, share * ceiling)
+    near = ceiling - settings.curve_margin
+    if reached >= near or reached < settings.named_share * ceiling:
+        return reached >= near
+    return not alone_at_noise(with_curve.current, branch.current, with_curve.plain, settings)
 
 
 def _many(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
