@@ -107,9 +107,8 @@ class StribeckFriction(Mechanism):
         level, peak = values["F_c"], values["F_s"]
         if level <= 0.0:
             return ()
-        begun = {"F": level, "s": peak / level, "v_s": values["v_s"]}
-        forms = (PreslidingHysteresis(sharp, falling=True) for sharp in (False, True))
-        return [(form, begun | ({"sharpness": 0.5} if form.sharp else {})) for form in forms]
+        bristles, begun = PreslidingHysteresis(falling=True), {"F": level, "s": peak / level, "v_s": values["v_s"]}
+        return [(bristles, begun), *bristles.richer(begun)]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return faster_than_it_went("v_s", values["v_s"], around) or _highest_at_a_speed(values, around)

@@ -36,7 +36,8 @@ def parted(
         asked: names of the experiments.
     """
     rows = [e for e, name in enumerate(problem.records.names) if name in asked]
-    return {problem.records.names[e]: _parted(problem, simulator, e, settings) for e in rows}
+    floors = output_floors(problem, settings) if rows else np.empty(0)
+    return {problem.records.names[e]: _parted(problem, simulator, e, floors[e], settings) for e in rows}
 
 
 def lost(
@@ -66,22 +67,28 @@ def no_free_run_follows(
     )
 
 
-def _parted(problem: Problem, simulator: Simulator, experiment: int, settings: DiagnosisSettings) -> float:
+def _parted(
+    problem: Problem, simulator: Simulator, experiment: int, floors: np.ndarray, settings: DiagnosisSettings
+) -> float:
     """How far a change of the start state that sensors do not show moves the outputs of one experiment, at most, in units of its error.
 
     From a change so small that the runs beside one another part in proportion to it.
     """
     runs = _beside(problem, simulator, experiment, settings)
-    larger = _unseen(problem, experiment, settings) / settings.unseen_start
+    larger = _unseen(problem.records.y[:, problem.records.span(experiment)], floors, settings) / settings.unseen_start
     return larger * max(runs.grown, default=0.0) if runs.finite and runs.near else 0.0
 
 
 @np.errstate(divide="ignore", invalid="ignore")
-def _unseen(problem: Problem, experiment: int, settings: DiagnosisSettings) -> float:
+def _unseen(y: np.ndarray, floors: np.ndarray, settings: DiagnosisSettings) -> float:
     """Change of a start state that no sensor shows, as a share of the state's travel: what the noise of the best sensor leaves unknown of
-    a value that the first tenth of an experiment tells, and never less than ``settings.unseen_start``."""
-    y = problem.records.y[:, problem.records.span(experiment)]
-    known, floors = np.isfinite(y).sum(axis=1), output_floors(problem, settings)[experiment]
+    a value that the first tenth of an experiment tells, and never less than ``settings.unseen_start``.
+
+    Args:
+        y: outputs (n_y, N) of the experiment.
+        floors: variance of their noise (n_y,).
+    """
+    known = np.isfinite(y).sum(axis=1)
     shares = [
         np.sqrt(floor / (FRACTION * n)) / np.nanstd(row) for row, floor, n in zip(y, floors, known, strict=True) if n
     ]

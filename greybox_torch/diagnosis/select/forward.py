@@ -19,6 +19,7 @@ from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.select.two_laws import second_step, with_first_of_two
 from greybox_torch.diagnosis.stopping import Stage, only_if
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.model.joined_bodies import joined_bodies
 
 
@@ -163,7 +164,7 @@ def _in_pieces(study: Study, with_curve: SearchState, branch: SearchState) -> bo
     curve = None if done.taken is None else done.taken.candidate.attachment
     if curve is None:
         return False
-    added = [e for e in branch.effects if e not in done.parent.effects]
+    added = _added(with_curve, branch)
     if sum(e.port == curve.port for e in added) > settings.most_names_for_curve:
         return True
     near = _joined_with(study, curve.port)
@@ -200,5 +201,9 @@ def _as_far(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
 
 def _many(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
     """Whether ``branch`` has more effects in the place of the curve than ``most_names_for_curve``, wherever they are."""
-    added = [e for e in branch.effects if e not in with_curve.steps[-1].parent.effects]
-    return len(added) > study.settings.most_names_for_curve
+    return len(_added(with_curve, branch)) > study.settings.most_names_for_curve
+
+
+def _added(with_curve: SearchState, branch: SearchState) -> list[Attachment]:
+    """The effects of ``branch`` that stand in the place of the curve."""
+    return [e for e in branch.effects if e not in with_curve.steps[-1].parent.effects]

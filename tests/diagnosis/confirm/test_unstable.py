@@ -26,9 +26,7 @@ def friction(motor_data, motor):
         simulator = Simulator.of(motor, (), SimulationOptions(substeps=4))
         with np.errstate(over="ignore", invalid="ignore"):
             speeds = np.concatenate([moved(problem.records.u[0, problem.records.span(e)], b) for e in range(2)])
-        slow = np.sqrt(2) * np.cos(
-            2 * np.pi * np.arange(len(speeds)) / 500
-        )  # no noise: five percent of the speed's spread
+        slow = np.sqrt(2) * np.cos(2 * np.pi * np.arange(len(speeds)) / 500)  # nothing that looks like noise
         beside = 0.05 * np.std(speeds[500:]) * slow
         records = replace(problem.records, y=(speeds + beside)[None])
         started = replace(problem, records=records).with_values(values, np.full_like(problem.initial, 0.3))
