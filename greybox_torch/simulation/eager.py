@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from threading import Lock
 
 import numpy as np
 import torch
@@ -18,6 +19,9 @@ from greybox_torch.simulation.windows import Windows
 
 Vector = torch.Tensor
 Field = Callable[[Vector, Vector, Vector], Vector]
+
+_ONE_PASS = Lock()
+"""Held by the pass that runs: the levels of torch's forward differentiation are those of the process, not of a thread."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +43,10 @@ class EagerStepper:
         return False
 
     def run(self, records: Records, asked: Pass, substeps: int = 1) -> Run:
+        with _ONE_PASS:
+            return self._run(records, asked, substeps)
+
+    def _run(self, records: Records, asked: Pass, substeps: int) -> Run:
         windows, weights = asked.windows, asked.weights
         count, n_x = len(windows.start), len(self.model.states)
         n_p = len(self.sensitive) if asked.tangents else 0

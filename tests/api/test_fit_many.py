@@ -6,7 +6,6 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-import torch
 
 import greybox_torch as gt
 from greybox_torch.data.recording import Role
@@ -14,6 +13,7 @@ from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.together.free_runs import FreeRuns
 from greybox_torch.simulation import SimulationOptions, Simulator
 from tests.api.motor import UNITS, Motor
+from tests.cuda import needs_cuda
 
 RATE = 0.01
 ROLES: tuple[tuple[str, Role], ...] = (("Steps", "estimation"), ("More", "validation"))
@@ -147,7 +147,7 @@ def test_one_data_set_is_no_list() -> None:
 
 @pytest.mark.parametrize(
     "device",
-    ["cpu", pytest.param("cuda", marks=pytest.mark.skipif(not torch.cuda.is_available(), reason="no CUDA device"))],
+    ["cpu", pytest.param("cuda", marks=needs_cuda)],
 )
 def test_torch_operations_take_batches_too(device: str, monkeypatch: pytest.MonkeyPatch) -> None:
     model, data = Motor(), motors(3, lengths=(30,))

@@ -5,9 +5,14 @@ from __future__ import annotations
 import os
 import threading
 
+import numpy as np
 import pytest
 
+from greybox_torch.simulation.eager import EagerStepper
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.side_by_side import cores, side_by_side, threads
+from greybox_torch.simulation.windows import whole_records
+from tests.simulation.arm import X0, P, arm_records, arm_with
 
 
 @pytest.mark.parametrize("threads", ["1", "3"])
@@ -15,6 +20,17 @@ def test_results_come_in_order(monkeypatch: pytest.MonkeyPatch, threads: str) ->
     monkeypatch.setenv("OMP_NUM_THREADS", threads)
     assert side_by_side((lambda k=k: k * k) for k in range(9)) == [k * k for k in range(9)]
     assert side_by_side(iter(())) == []
+
+
+def test_passes_of_torch_operations_leave_one_another_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "2")
+    records = arm_records((20, 20))
+    asked = Pass(whole_records(records), P, np.array([X0, X0]), tangents=True)
+    stepper = EagerStepper.of(arm_with(P), ("J", "k_g1"), "cpu", "double")
+    alone = stepper.run(records, asked)
+    assert alone.dy is not None
+    for found in side_by_side([lambda: stepper.run(records, asked)] * 4):
+        np.testing.assert_array_equal(found.dy, alone.dy)
 
 
 def test_work_within_work_has_one_core(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,6 +13,7 @@ from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 from greybox_torch.simulation.windows import Windows
 from greybox_torch.training.gradients import GRADIENTS, Batch, make_gradient
 from greybox_torch.training.gradients.recomputation import RecomputationGradient
+from tests.cuda import needs_cuda
 
 
 @pytest.fixture(scope="module")
@@ -62,6 +63,19 @@ def test_against_one_another(problem, batch) -> None:
     np.testing.assert_allclose(recomputation.slope, tangents.slope, rtol=1e-9, atol=1e-10)
     assert adjoint.energy == pytest.approx(tangents.energy, rel=1e-5)  # its steps are of the 3/8 rule
     np.testing.assert_allclose(adjoint.slope, tangents.slope, rtol=1e-3, atol=1e-4 * np.abs(tangents.slope).max())
+
+
+@needs_cuda
+@pytest.mark.parametrize("name", GRADIENTS)
+def test_on_a_graphics_processor(name: str, problem, batch) -> None:
+    here, there = (
+        make_gradient(name, problem, Simulator.of(problem.model, problem.free_names, SimulationOptions(device)))(
+            problem.values, batch
+        )
+        for device in ("cpu", "cuda")
+    )
+    assert there.energy == pytest.approx(here.energy, rel=1e-9)
+    np.testing.assert_allclose(there.slope, here.slope, rtol=1e-6, atol=1e-8 * np.abs(here.slope).max())
 
 
 @pytest.mark.parametrize("chunk", [0, 1, 7, 1000])
