@@ -147,7 +147,8 @@ class HystereticSpring(Mechanism):
 class NonlinearDamping(Mechanism):
     """d_a |δ'| + d_2 δ' |δ'| + d_0 tanh(δ' / r_0): a damper that differs by direction, one that grows with the rate, and a dry one.
 
-    Beside the damper d δ' of the model, d + d_a acts while the deflection grows and d − d_a while it shrinks.
+    Beside the damper d δ' of the model, d + d_a acts while the deflection grows and d − d_a while it shrinks. ``two_levels``: what comes
+    up to a level differs by direction, too, by d_b |tanh(δ' / r_0)|: the valves of a shock absorber, which open in either direction.
     """
 
     name = "nonlinear_damping"
@@ -164,19 +165,29 @@ class NonlinearDamping(Mechanism):
     )
     experiment = "vibration at several amplitudes"
 
+    def __init__(self, two_levels: bool = False) -> None:
+        self.two_levels = two_levels
+
     def parameters(self, around: Surroundings) -> list[Parameter]:
         reach = around.ranges["rate"].reach
-        unit = around.units.get("rate", "")
+        unit, force = around.units.get("rate", ""), around.force_unit
+        other = Parameter("d_b", 0.0, force, description="half the difference of that level between the directions")
         return [
             Parameter("d_a", 0.0, around.per("rate"), description="half the difference between the directions"),
             Parameter("d_2", 0.0, around.per("rate", 2), description="coefficient of r|r|"),
-            Parameter("d_0", 0.0, around.force_unit, description="level of the dry part"),
+            Parameter("d_0", 0.0, force, description="level of the dry part"),
+            *([other] if self.two_levels else []),
             Parameter("r_0", 0.1 * reach, unit, lower=0.01 * reach, upper=reach, description="width of the dry part"),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        dry = p.d_0 * torch.tanh(s.rate / p.r_0)
+        level = torch.tanh(s.rate / p.r_0)
+        dry = p.d_0 * level + p.d_b * torch.abs(level) if self.two_levels else p.d_0 * level
         return p.d_a * torch.abs(s.rate) + p.d_2 * s.rate * torch.abs(s.rate) + dry
+
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """With levels that differ by direction."""
+        return () if self.two_levels else ((NonlinearDamping(two_levels=True), {**values, "d_b": 0.0}),)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         reach = around.ranges["rate"].reach

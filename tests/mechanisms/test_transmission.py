@@ -180,6 +180,18 @@ def test_the_gap_has_a_middle_of_its_own_where_sensors_show_the_deflection(law, 
     np.testing.assert_allclose(transmitted, expected, atol=1e-14)
 
 
+def test_the_valves_of_a_damper_differ_by_direction(law, around) -> None:
+    plain = {"d_a": 2.0, "d_2": 0.5, "d_0": 3.0, "r_0": 1e-3}
+    rate = np.array([-2.0, 0.0, 2.0])  # far beyond where either level is reached
+    np.testing.assert_allclose(law(NonlinearDamping(), plain, rate=rate), [-1.0, 0.0, 9.0], atol=1e-12)
+    ((richer, begun),) = NonlinearDamping().richer(plain)
+    assert [p.name for p in richer.parameters(around)] == ["d_a", "d_2", "d_0", "d_b", "r_0"] and not richer.richer(
+        begun
+    )
+    np.testing.assert_allclose(law(richer, begun, rate=rate), [-1.0, 0.0, 9.0], atol=1e-12)
+    np.testing.assert_allclose(law(richer, {**begun, "d_b": 1.0}, rate=rate), [0.0, 0.0, 10.0], atol=1e-12)
+
+
 def test_a_spring_runs_into_rubber_on_either_side(law) -> None:
     values = {"from_up": 0.02, "a_up": 100.0, "b_up": 5e3, "from_down": 0.04, "a_down": 50.0, "b_down": 0.0}
     force = law(NonlinearStiffness(stops=True), values, deflection=np.array([-0.05, -0.04, 0.0, 0.02, 0.03]))

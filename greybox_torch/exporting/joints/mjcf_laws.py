@@ -108,8 +108,9 @@ def damper(at: Place) -> Said:
         attributes["frictionloss"] = (v["d_0"],)
     elif v["d_0"]:
         left.append(f"a dry part that drives, d_0 = {v['d_0']:.6g}")
-    if v["d_a"]:
-        left.append(f"the difference between the directions, d_a = {v['d_a']:.6g}")
+    for difference in ("d_a", "d_b"):
+        if v.get(difference):
+            left.append(f"the difference between the directions, {difference} = {v[difference]:.6g}")
     return ([_tendon(at, attributes)] if attributes else []), left
 
 
