@@ -13,6 +13,7 @@ from greybox_torch.diagnosis.confirm.longer_windows import longer_windows, sente
 from greybox_torch.diagnosis.confirm.promotion import (
     Promotion,
     promote_for_a_rival,
+    promote_refusing,
     promote_unstable,
     promote_validation,
     replaces,
@@ -92,11 +93,14 @@ def _selected(
 
 
 def _promotion(found: Selection, others: HeldOut) -> Promotion | None:
-    """The data set with one more experiment to choose with: one that cannot score, that shows what the others do
-    not, or that speaks for another name."""
+    """The data set with one more experiment to choose with: one that cannot score, whose free runs refuse what windows bear out, that shows
+    what the others do not, or that speaks for another name."""
+    judged = found.judged if isinstance(found, Findings) else None
     cannot_score = promote_unstable(found.dataset, _unstable(found))
+    refused_in = "" if judged is None else judged.refused_in
+    refusing = promote_refusing(found.dataset, found.state, others, found.searched, refused_in)
     asked = found.study, found.dataset, found.state, others
-    return cannot_score or promote_validation(*asked) or promote_for_a_rival(*asked, found.gains)
+    return cannot_score or refusing or promote_validation(*asked) or promote_for_a_rival(*asked, found.gains)
 
 
 def _places(last: Selection, others: HeldOut) -> Places:

@@ -58,7 +58,7 @@ def selection(state: SearchState, dataset: Any, study: Any, others: Any) -> Sele
 
 def judged(selection: Selection, clock: Any) -> Findings:
     """Everything is borne out, whatever the clock."""
-    runs: Any = SimpleNamespace(unstable=frozenset())
+    runs: Any = SimpleNamespace(unstable=frozenset(), refused_in="")
     return Findings(**{f.name: getattr(selection, f.name) for f in fields(Selection)}, judged=runs)
 
 
@@ -193,7 +193,9 @@ def test_what_no_free_run_follows_is_chosen_with(monkeypatch, stub, first, more,
     asked: list[Any] = []
 
     def judge(selection: Selection, clock: Any) -> Findings:
-        runs: Any = stub(unstable=frozenset({"run 2"}) if selection.state is found.state else frozenset())
+        runs: Any = stub(
+            unstable=frozenset({"run 2"}) if selection.state is found.state else frozenset(), refused_in=""
+        )
         return replace(judged(selection, clock), judged=runs)
 
     def search(*args: Any, **named: Any) -> Selection:

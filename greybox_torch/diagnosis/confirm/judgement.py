@@ -22,13 +22,17 @@ from greybox_torch.estimate.problem import Problem
 
 @dataclass(frozen=True, eq=False)
 class Judgement:
-    """The models on every experiment: the card's values, the plain refit, and the model with effects (the refit where there are none)."""
+    """The models on every experiment: the card's values, the plain refit, and the model with effects (the refit where there are none).
+
+    ``refused_in``: the validation experiment of which free runs came out worst with the effects that were taken back for it; "" for none.
+    """
 
     free_runs: FreeRuns
     plain: Final
     augmented: Final
     refit: Comparison
     with_effects: Comparison
+    refused_in: str = ""
 
     @staticmethod
     def of(free_runs: FreeRuns, plain: Final) -> Judgement:
@@ -41,7 +45,8 @@ class Judgement:
 
     def without_effects(self) -> Judgement:
         """With the plain refit in the place of the model with effects."""
-        return replace(self, augmented=self.plain, with_effects=self.refit)
+        worst = max(self._worse, key=self._times_the_refit, default="")
+        return replace(self, augmented=self.plain, with_effects=self.refit, refused_in=worst or self.refused_in)
 
     @property
     def start(self) -> Comparison:
@@ -111,6 +116,12 @@ class Judgement:
     @cached_property
     def _worse(self) -> frozenset[str]:
         return frozenset(name for name in self.judges if worse_than_refit(self._rows, self.judges - {name}))
+
+    def _times_the_refit(self, experiment: str) -> float:
+        """How many times the refit's squared error in an experiment is left with effects."""
+        but = frozenset(self.judges - {experiment})
+        before, after = (self._energy(comparison, but) for comparison in (self.refit, self.with_effects))
+        return after / max(before, 1e-300)
 
     def _no_worse(self, but: frozenset[str]) -> bool:
         """Whether the model with effects simulates the validation experiments no worse, ``but`` for some.

@@ -10,7 +10,13 @@ import pytest
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm import promotion
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
-from greybox_torch.diagnosis.confirm.promotion import promote_unstable, promote_validation, replaces, serves
+from greybox_torch.diagnosis.confirm.promotion import (
+    promote_refusing,
+    promote_unstable,
+    promote_validation,
+    replaces,
+    serves,
+)
 from greybox_torch.diagnosis.pipeline import diagnose
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import attach
@@ -152,6 +158,34 @@ def test_an_experiment_that_no_free_run_follows_is_taken_as_long_as_another_judg
     )
     assert promote_unstable(more.dataset, {before}) is None
     assert promote_unstable(data, set()) is None
+
+
+@pytest.mark.parametrize(
+    ("refused_in", "effects", "removed", "taken"),
+    [
+        ("third", (), Gain(0.98, 0.01), True),
+        ("", (), Gain(0.98, 0.01), False),
+        ("third", ("something",), Gain(0.98, 0.01), False),
+        ("third", (), Gain(0.1, 0.01), False),
+        ("third", (), Gain(0.98, 0.9), False),
+    ],
+)
+def test_the_experiment_whose_free_runs_refuse_what_windows_bear_out_is_taken(
+    drag_at_speed, monkeypatch, stub, refused_in, effects, removed, taken
+) -> None:
+    """Seen: a bump in a stage's friction at 0.22 m/s, taken back for a recording of slow motion, and nothing told after 257 s."""
+    data = drag_at_speed()
+    names = {"third": data.recordings[2].name, "": ""}
+    others = stub(fits=lambda hypothesis: hypothesis, study=stub(settings=DiagnosisSettings()))
+    monkeypatch.setattr(promotion, "gain", lambda before, after: removed)
+    state = stub(effects=effects, plain="plain")
+    more = promote_refusing(data, state, others, stub(), names[refused_in])
+    assert (more is not None) is taken
+    if more is not None:
+        assert more.taken == names[refused_in] and "which windows bear out" in more.sentence()
+        assert promote_refusing(more.dataset, state, others, stub(), data.recordings[1].name) is None, (
+            "none would judge"
+        )
 
 
 @pytest.mark.parametrize(
