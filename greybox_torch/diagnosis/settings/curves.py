@@ -38,6 +38,20 @@ class CurveSettings:
     least_curve_share: float = share(
         0.02, "Part of the plain model's error that a free curve has to remove at some window length.", unit=GAIN
     )
+    least_curve_share_near_noise: float = share(
+        0.5,
+        "The same where the model as it stands leaves hardly more than noise (less than `far_above_noise`): of what is left then, a curve "
+        "draws some part whatever it is.",
+        unit=GAIN,
+        chosen_by="47 curves of proofs and unseen cases: those that were right removed 0.64 and more, that of a complete machine 0.25",
+    )
+    least_share_beside_curve: float = share(
+        0.67,
+        "Part of what a free curve leaves beyond noise that an effect beside it has to remove, unless it leaves hardly more than noise: a "
+        "curve is never exactly the machine's, and some law takes up what it lacks.",
+        unit="share of the mismatch that the curve leaves",
+        chosen_by="as `least_of_richer_form`",
+    )
     least_curve_share_beside_names: float = share(
         0.05,
         "The same beside named effects, whose laws are never exactly the machine's.",

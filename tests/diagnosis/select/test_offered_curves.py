@@ -7,15 +7,20 @@ from dataclasses import dataclass, replace
 
 import pytest
 
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.screen.candidates import attach
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
+from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select import finer_curve as module
+from greybox_torch.diagnosis.select import forward_step
+from greybox_torch.diagnosis.select.compare import Comparison
 from greybox_torch.diagnosis.select.finer_curve import as_fine_as_pays, with_finer_curve, with_tied_curves_finer
-from greybox_torch.diagnosis.select.forward_step import substantial
+from greybox_torch.diagnosis.select.forward_step import substantial, take_best
 from greybox_torch.diagnosis.select.offered import screen_scores
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import result_of
+from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.unknown import Unknown
 
 
@@ -49,8 +54,45 @@ def test_beside_named_effects_a_curve_has_to_remove_more(dead_zone_search, stub)
     fits = tuple(replace(f, mean_square=f.mean_square - 0.03 * size) for f in before.fits[:1])
     curve = stub(gain=1.0, fitted=stub(fits=fits))
     for effects, pays in (((), True), (("a law",), False)):
-        state = stub(plain=stub(fits=before.fits[:1]), current=stub(fits=before.fits[:1]), effects=effects)
+        state = stub(plain=replace(before, fits=before.fits[:1]), current=stub(fits=before.fits[:1]), effects=effects)
         assert substantial(stub(settings=settings), state, curve) is pays
+
+
+@pytest.mark.parametrize(("far", "removed", "pays"), [(True, 0.25, True), (False, 0.25, False), (False, 0.64, True)])
+def test_of_what_hardly_exceeds_the_noise_a_curve_has_to_explain_most(
+    dead_zone_search, stub, monkeypatch, far: bool, removed: float, pays: bool
+) -> None:
+    """Seen: a complete aeration basin, of whose disturbances a curve drew a quarter (0.97)."""
+    monkeypatch.setattr(forward_step, "far_above_noise", lambda fitted, settings: far)
+    before = dead_zone_search.state.current.fits[:1]
+    fits = tuple(replace(f, mean_square=(1.0 - removed) * f.mean_square) for f in before)
+    state = stub(plain=stub(fits=before), current=stub(fits=before), effects=())
+    curve = stub(gain=1.0, fitted=stub(fits=fits))
+    assert substantial(stub(settings=dead_zone_search.study.settings), state, curve) is pays
+
+
+@pytest.mark.parametrize(
+    ("removed", "complete", "stands"), [(0.4, False, False), (0.4, True, True), (0.8, False, True)]
+)
+def test_a_law_beside_a_curve_has_to_remove_most_of_what_that_leaves(
+    dead_zone_search, stub, monkeypatch, removed: float, complete: bool, stands: bool
+) -> None:
+    """Seen: a loss of heat above 187 degC (0.85) beside the curve of a brake whose friction depends on its temperature."""
+    study, model = dead_zone_search.study, dead_zone_search.study.problem.model
+    curve, law = attach(model, "rotor", Unknown("speed")), attach(model, "rotor", ConstantBias())
+    drawn = refitted(study, [curve], dead_zone_search.state.current)
+    assert drawn is not None
+    state = dead_zone_search.state.at(drawn)
+    left = tuple(replace(f, energies=(1.0 - removed) * f.energies) for f in drawn.fits)
+    fitted = replace(drawn, effects=(curve, law), fits=left)
+    beside = RankedCandidate(Candidate(law, (), 0.5), fitted, 0.3, 9.0)
+    monkeypatch.setattr(forward_step, "completes", lambda fitted, settings: complete)
+    monkeypatch.setattr(
+        forward_step, "compare", lambda study, parent, screened, ranked: Comparison(parent, tuple(ranked))
+    )
+    monkeypatch.setattr(forward_step, "sound", lambda study, ranked: True)
+    monkeypatch.setattr(forward_step, "little_is_left", lambda study, state: False)
+    assert result_of(take_best(study, state, (), [beside])).took_one is stands
 
 
 @pytest.fixture
