@@ -23,6 +23,7 @@ from greybox_torch.diagnosis.selection import Selection
 from greybox_torch.diagnosis.stopping import or_else
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.simulation.side_by_side import side_by_side
 
 FITTING = "final fits on whole records"
 JUDGING = "validation and report data"
@@ -60,8 +61,11 @@ def _finished(study: Study, state: SearchState, deadline: Deadline) -> tuple[tup
     def fits() -> tuple[Final, Final]:
         study.working_on("fitting whole records")
         fitted = partial(finish, settings=study.settings, budget=study.budget, records=study.recorded)
-        plain = fitted(state.plain)
-        return plain, fitted(state.current) if state.effects else plain
+        if not state.effects:
+            plain = fitted(state.plain)
+            return plain, plain
+        plain, augmented = side_by_side([partial(fitted, state.plain), partial(fitted, state.current)])
+        return plain, augmented
 
     def as_they_are() -> tuple[Final, Final]:
         plain = from_longest_windows(state.plain)

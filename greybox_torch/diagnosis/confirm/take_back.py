@@ -25,14 +25,21 @@ from greybox_torch.simulation.side_by_side import side_by_side
 
 
 def confirm(study: Study, state: SearchState, others: HeldOut) -> Stage[SearchState]:
-    """Take back, weakest first, every effect that gains nothing on held-out experiments; a free curve gives way to names."""
+    """Take back, weakest first, every effect that gains nothing on held-out experiments; a free curve gives way to names.
+
+    Where nothing is left of those names, the curve is asked. Seen: a brake along a part of a rail, whose curve removed 46 % of the held-out
+    error, 2.7 standard errors more than a mode that stood for it and removed none.
+    """
     if not state.effects:
         return state
     study.working_on("confirming on held-out experiments")
+    with_curve = state if state.has_curve else None
     state = yield from _names_for_curve(study, state, others)
     state = yield from with_simpler_laws(study, state, others)
     state = yield from with_wider_laws(study, state, others)
     state = yield from _what_is_borne_out(study, state, others)
+    if not state.effects and with_curve is not None and with_curve.named is not None:
+        state = yield from _what_is_borne_out(study, replace(with_curve, plain=state.plain, named=None), others)
     if not state.effects:
         state = yield from second_choice(study, state, others)
         state = yield from _what_is_borne_out(study, state, others)
@@ -81,7 +88,9 @@ def _names_for_curve(study: Study, state: SearchState, others: HeldOut) -> Stage
     """The named effects that were found in the place of a free curve, where that goes no farther on held-out experiments."""
     if state.named is None:
         return state
-    plain, named, curve = (others.fits(h) for h in (state.plain, state.named.current, state.current))
+    plain, named, curve = side_by_side(
+        partial(others.fits, h) for h in (state.plain, state.named.current, state.current)
+    )
     farther = gain(named, curve).errors_away >= study.settings.held_out_beyond_chance
     if farther or goes_farther_in_most_windows(plain, named, curve, study.settings):
         return state

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 
 from greybox_torch.diagnosis.hypothesis.above_noise import only_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import negligible
 from greybox_torch.diagnosis.hypothesis.significance import window_significance
+from greybox_torch.diagnosis.screen.shortlist import identity_of
 from greybox_torch.diagnosis.select.choice import alone_at_noise, chosen, least_gain
 from greybox_torch.diagnosis.select.flexed import flexed
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
@@ -23,13 +24,20 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.model.joined_bodies import joined_bodies
 
 
-def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> Stage[SearchState]:
+def take_effects(
+    study: Study,
+    state: SearchState,
+    *,
+    curves: bool = True,
+    hopeful: Callable[[SearchState], bool] = lambda state: True,
+) -> Stage[SearchState]:
     """Forward steps while one pays; a free curve gives way to named effects that come as far.
 
     Args:
         curves: whether free curves are offered.
+        hopeful: whether a further step may still change what is decided by the result.
     """
-    while len(state.effects) < study.budget.most_effects and not _done(study, state):
+    while len(state.effects) < study.budget.most_effects and hopeful(state) and not _done(study, state):
         if curves:
             state = yield from completed_by_memory(study, state)
         if _done(study, state):
@@ -51,7 +59,7 @@ def take_effects(study: Study, state: SearchState, *, curves: bool = True) -> St
             continue
         state = yield from with_richer_form(study, state)
         taken = state.steps[-1]
-        if taken.taken is not None and taken.taken.unknown:
+        if taken.taken is not None and taken.taken.unknown and not _stands_again(study, state):
             state = yield from _named_instead(study, before, state)
             if len(state.effects) == len(taken.parent.effects):
                 break  # what is there already comes as far as the curve, and no name goes farther
@@ -71,6 +79,16 @@ def _fine_curves_may_help(study: Study, state: SearchState, curves: bool) -> boo
     """Where nothing pays and yet more than noise is left, curves fine enough for a narrow law are tried."""
     times = times_noise(study.problem, state.current, study.settings)
     return curves and not state.has_curve and times > study.settings.above_noise
+
+
+def _stands_again(study: Study, with_curve: SearchState) -> bool:
+    """Whether a search with fewer experiments came to the same curve, and it leaves hardly more than noise here as well.
+
+    Names have had their turn there: what could not follow the curve on fewer experiments does not on more.
+    """
+    found, curve = with_curve.found_before, identity_of(with_curve.effects[-1])
+    known = found is not None and any(identity_of(effect) == curve for effect in found.effects)
+    return known and completes(with_curve.current, study.settings)
 
 
 def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -> Stage[SearchState]:
@@ -143,8 +161,22 @@ def _without_curves(study: Study, start: SearchState, with_curve: SearchState) -
     if branch.took_one:
         branch = yield from with_richer_form(study, branch)
     reached, ceiling = _gains(with_curve, branch)
-    promises = branch.took_one and reached >= study.settings.first_name_share * ceiling
-    return (yield from take_effects(study, branch, curves=False)) if promises else branch
+    if not branch.took_one or reached < study.settings.first_name_share * ceiling:
+        return branch
+    return (yield from take_effects(study, branch, curves=False, hopeful=partial(_within_reach, study, with_curve)))
+
+
+def _within_reach(study: Study, with_curve: SearchState, branch: SearchState) -> bool:
+    """Whether names may come as far as the curve, if each further one gains what the newest did.
+
+    The first one says nothing of that: two laws may need one another. Later ones seldom gain more than those before them.
+    """
+    if len(_added(with_curve, branch)) < 2:
+        return True
+    reached, ceiling = _gains(with_curve, branch)
+    newest = branch.steps[-1].parent.score - branch.current.score
+    further = study.budget.most_effects - len(branch.effects)
+    return reached + further * newest >= study.settings.named_share * ceiling
 
 
 def _gains(with_curve: SearchState, branch: SearchState) -> tuple[float, float]:

@@ -12,10 +12,12 @@ from greybox_torch.diagnosis.select.forward import (
     _before_pieces,
     _in_pieces,
     _name_before_fine_curve,
+    _stands_again,
+    _within_reach,
     _without_curves,
 )
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
-from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import result_of
 
 
@@ -113,6 +115,38 @@ def test_others_are_looked_for_beside_a_name_that_brings_a_part_of_what_the_curv
     study = stub(settings=DiagnosisSettings())
     assert result_of(_without_curves(study, stub(), with_curve)) is branch  # type: ignore[arg-type]
     assert bool(joined) is followed
+
+
+@pytest.mark.parametrize(
+    ("before", "complete", "again"),
+    [("speed", True, True), ("speed", False, False), ("time", True, False), ("", True, False)],
+)
+def test_names_are_not_asked_once_more_where_the_same_curve_completes_the_model_again(
+    monkeypatch, stub, before: str, complete: bool, again: bool
+) -> None:
+    """Seen: half a minute of names for a torque that fades with speed, whose curve the search with one experiment less had found."""
+
+    def curve(signal: str) -> object:
+        return stub(port="actuator", label="", mechanism=stub(name="unknown", signal=signal, factor="input"))
+
+    monkeypatch.setattr(forward, "completes", lambda fitted, settings: complete)
+    found = stub(effects=(curve(before),)) if before else None
+    with_curve = stub(effects=(curve("speed"),), current=stub(), found_before=found)
+    assert _stands_again(stub(settings=DiagnosisSettings()), with_curve) is again  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("gains", "within"), [((0.1,), True), ((0.9, 0.2), False), ((0.9, 0.9), True), ((0.9, 1.5, 0.1), False)]
+)
+def test_names_are_looked_for_as_long_as_they_may_come_as_far_as_the_curve(stub, gains, within: bool) -> None:
+    """Each further one, of four at most, is taken to gain what the newest did; the first one says nothing. Seen: half a minute on an arm's
+    third name, which had to gain 2.3 where the second gained 0.18."""
+    before, reached = stub(score=0.0, effects=()), sum(gains)
+    with_curve = stub(current=stub(score=-3.2), steps=(stub(parent=before),))
+    steps = (stub(parent=stub(score=gains[-1] - reached)),)
+    branch = stub(effects=gains, current=stub(score=-reached), steps=steps)
+    study = stub(settings=DiagnosisSettings(), budget=SearchBudget(most_effects=4))
+    assert _within_reach(study, with_curve, branch) is within  # type: ignore[arg-type]
 
 
 def test_of_names_that_are_pieces_of_a_curve_the_first_is_asked_where_the_curve_does_not_hold(stub) -> None:
