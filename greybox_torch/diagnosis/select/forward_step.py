@@ -8,6 +8,7 @@ from functools import cache, partial
 
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.refit.likelihood import cost_of, likelier
 from greybox_torch.diagnosis.refit.rank import rank
@@ -90,6 +91,7 @@ def _take(study: Study, state: SearchState, screened: Screened, compared: Compar
     in_turn = rank_by_likelihood([r for r in ranked if sound(study, r)], settings, study.budget)
     cost_before = cache(partial(cost_of, compared.parent))
     paying = [r for r in in_turn if r.gain > least_gain(r.fitted, settings) and _sure(cost_before, r, settings)]
+    paying = [r for r in paying if not _may_be_noise(study, state, r)]
     if little_is_left(study, state):
         paying = [r for r in paying if completes(r.fitted, settings)]
     if state.has_curve:
@@ -132,13 +134,27 @@ def substantial(study: Study, state: SearchState, curve: RankedCandidate) -> boo
     By less than the margin it would give way to names, or to nothing where no name pays. Of what hardly exceeds the noise it has to
     explain most. Seen: a complete aeration basin, of whose small disturbances a curve drew a quarter, told as unknown there (0.97).
     """
-    fits = zip(state.plain.fits, state.current.fits, curve.fitted.fits, strict=True)
     least = _least_curve_share(state, study.settings)
-    if not state.effects and not far_above_noise(state.plain, study.settings):
-        least = study.settings.least_curve_share_near_noise
-    return curve.gain > study.settings.curve_margin and any(
-        b.mean_square - a.mean_square > least * p.mean_square for p, b, a in fits
-    )
+    if not far_above_noise(state.plain, study.settings):
+        least = study.settings.least_share_near_noise
+    return curve.gain > study.settings.curve_margin and _removes(state, curve, least)
+
+
+def _may_be_noise(study: Study, state: SearchState, taken: RankedCandidate) -> bool:
+    """Whether an effect removes a small part of an error of which nobody knows how much is noise.
+
+    Seen: a complete preheater, of whose error a constant removed a tenth (0.45, its look-alikes with it 0.97).
+    """
+    settings = study.settings
+    if far_above_noise(state.plain, settings) or floor_known(state.plain.problem, settings):
+        return False
+    return not (state.effects or _removes(state, taken, settings.least_share_near_noise))
+
+
+def _removes(state: SearchState, taken: RankedCandidate, least: float) -> bool:
+    """Whether an effect removes more than a share of the plain model's squared error at some window length."""
+    fits = zip(state.plain.fits, state.current.fits, taken.fitted.fits, strict=True)
+    return any(b.mean_square - a.mean_square > least * p.mean_square for p, b, a in fits)
 
 
 def _more_than_a_curve_lacks(state: SearchState, beside: RankedCandidate, settings: DiagnosisSettings) -> bool:
