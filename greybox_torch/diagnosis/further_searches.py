@@ -79,7 +79,9 @@ def _selected(
                 names = _chosen_with(more.dataset)
                 if names not in known:
                     last.study.working_on(f"searching again, {more.taken} among the experiments to choose with")
-                    found = search(more.dataset, found_before=last.searched, places=_places(last, last.others))
+                    before = last.state if more.same_effects and last.state.effects else None
+                    places = _places(last, last.others)
+                    found = search(more.dataset, found_before=last.searched, places=places, before=before)
                     found = replace(found, more=(*last.more, more.sentence()))
                     known[names] = found if judged is None else judged(found)
                 last = known[names]

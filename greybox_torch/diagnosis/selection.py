@@ -70,6 +70,7 @@ def find(
     end: Deadline = Deadline(),
     found_before: Hypothesis | None = None,
     places: Places = NOWHERE,
+    before: SearchState | None = None,
 ) -> Selection:
     """Search on the estimation experiments, and let windows of the others confirm what was found or take it back.
 
@@ -78,6 +79,7 @@ def find(
         end: when the answer has to stand.
         found_before: what a search with fewer experiments came to.
         places: where positions begin beside it, in all experiments.
+        before: what that search left, if its effects are to be kept where they leave less than a finding.
     """
     study = make_study(_problem(dataset, model))
     used = excerpts(dataset, study.budget.most_samples)
@@ -91,7 +93,8 @@ def find(
     clock.lap("preparing")
     study, state = fit_plain_model(study)
     schedule = Schedule.within(end, free_runs.seconds, study.budget)
-    study, state, complete = _searched(study, replace(state, found_before=found_before), schedule.searching)
+    state = replace(state, found_before=found_before)
+    study, state, complete = _searched(study, state, before, schedule.searching)
     clock.lap(SEARCH)
     searched = state.current
     others = HeldOut(some.dataset, study) if dataset.validation() else None
@@ -117,7 +120,9 @@ def _problem(dataset: DataSet, model: GreyBoxModel) -> Problem:
     return all_starts_free(dataset, make_problem(dataset, model, dataset.estimation()))
 
 
-def _searched(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState, bool]:
+def _searched(
+    study: Study, state: SearchState, before: SearchState | None, deadline: Deadline
+) -> tuple[Study, SearchState, bool]:
     """The study with what is known of the ports, the best state, and whether the search ended by itself."""
 
     def told(better: SearchState) -> None:
@@ -130,7 +135,7 @@ def _searched(study: Study, state: SearchState, deadline: Deadline) -> tuple[Stu
             begun, complete = or_else(lambda: fit_plain_model(weighted_by_noise(study, state)), lambda: begun)
             begun = begun[0], replace(begun[1], found_before=state.found_before)
         if complete:
-            best, complete = best_so_far(search(*begun), begun[1], told)
+            best, complete = best_so_far(search(*begun, before), begun[1], told)
             return begun[0], best, complete
     return *begun, complete
 

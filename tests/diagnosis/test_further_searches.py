@@ -66,7 +66,7 @@ def judged(selection: Selection, clock: Any) -> Findings:
 def more(stub) -> Any:
     """What is taken to choose with as well."""
     both = stub(estimation=lambda: [stub(name="run 1"), stub(name="run 2")])
-    return stub(taken="run 2", dataset=both, sentence=lambda: "run 2 was taken")
+    return stub(taken="run 2", dataset=both, sentence=lambda: "run 2 was taken", same_effects=False)
 
 
 @pytest.mark.parametrize("stop", [KeyboardInterrupt, TimeIsUp])
@@ -185,12 +185,13 @@ def test_one_more_search_begins_from_all_that_was_found_before(monkeypatch, stub
 
 
 @pytest.mark.parametrize("limited", [False, True])
-@pytest.mark.parametrize("replaced", [True, False])
-def test_what_no_free_run_follows_is_chosen_with(monkeypatch, stub, first, more, replaced, limited) -> None:
+@pytest.mark.parametrize(("replaced", "same"), [(True, True), (False, True), (True, False)])
+def test_what_no_free_run_follows_is_chosen_with(monkeypatch, stub, first, more, replaced, same, limited) -> None:
     """Once; what is found with it takes the place of what was found before where it predicts the others no worse."""
     found = replace(first, state=SearchState(stub(effects=()), stub(effects=(stub(),))))
     again = replace(found, state=SearchState(stub(effects=()), stub(effects=(stub(),))), dataset=more.dataset)
     asked: list[Any] = []
+    more.same_effects = same
 
     def judge(selection: Selection, clock: Any) -> Findings:
         runs: Any = stub(
@@ -200,6 +201,7 @@ def test_what_no_free_run_follows_is_chosen_with(monkeypatch, stub, first, more,
 
     def search(*args: Any, **named: Any) -> Selection:
         asked.append(args)
+        assert named["before"] is (found.state if more.same_effects else None)
         return again
 
     steps: dict[str, Any] = {

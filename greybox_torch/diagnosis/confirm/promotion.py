@@ -23,21 +23,25 @@ from greybox_torch.mechanisms.attachment import Attachment
 
 @dataclass(frozen=True)
 class Promotion:
-    """A data set with the experiment ``taken`` among those to choose with, and why."""
+    """A data set with the experiment ``taken`` among those to choose with, and why.
+
+    ``same_effects``: whether what was found is to be kept where it leaves less than a finding, and only to be estimated anew.
+    """
 
     dataset: DataSet
     taken: str
     why: str
+    same_effects: bool = False
 
     def sentence(self) -> str:
         """What the reader of a verdict has to know of it."""
         return f"{self.taken} was taken to choose with as well, as {self.why}: it no longer counts as validation."
 
     @staticmethod
-    def of(dataset: DataSet, taken: str, why: str) -> Promotion:
+    def of(dataset: DataSet, taken: str, why: str, same_effects: bool = False) -> Promotion:
         """The validation experiment ``taken`` of a data set."""
         changed = (replace(r, role="estimation") if r.name == taken else r for r in dataset.recordings)
-        return Promotion(replace(dataset, recordings=tuple(changed)), taken, why)
+        return Promotion(replace(dataset, recordings=tuple(changed)), taken, why, same_effects)
 
 
 def promote_unstable(dataset: DataSet, unstable: Collection[str]) -> Promotion | None:
@@ -50,7 +54,7 @@ def promote_unstable(dataset: DataSet, unstable: Collection[str]) -> Promotion |
     names = {r.name for r in dataset.validation()}
     if len(names) < 2 or names <= set(unstable):
         return None
-    return Promotion.of(dataset, min(unstable), "no free run of the model found before follows it")
+    return Promotion.of(dataset, min(unstable), "no free run of the model found before follows it", same_effects=True)
 
 
 def promote_refusing(

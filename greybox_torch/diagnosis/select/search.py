@@ -16,6 +16,7 @@ from greybox_torch.diagnosis.select.forward_step import forward_step, take_best
 from greybox_torch.diagnosis.select.memory import with_memory
 from greybox_torch.diagnosis.select.posterior import separated
 from greybox_torch.diagnosis.select.rivals_beside import rivalled_beside_others
+from greybox_torch.diagnosis.select.same_effects import with_same_effects
 from greybox_torch.diagnosis.select.sparser_curve import with_sparser_curve
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage, result_of
@@ -24,8 +25,16 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.unknown import Unknown
 
 
-def search(study: Study, state: SearchState) -> Stage[SearchState]:
-    """Search until nothing pays any more. Every state that it yields can be answered with; see :mod:`greybox_torch.diagnosis.stopping`."""
+def search(study: Study, state: SearchState, before: SearchState | None = None) -> Stage[SearchState]:
+    """Search until nothing pays any more. Every state that it yields can be answered with; see :mod:`greybox_torch.diagnosis.stopping`.
+
+    Args:
+        before: what a search with fewer experiments came to, if its effects are to be kept where they leave less than a finding.
+    """
+    if before is not None:
+        same = yield from with_same_effects(study, state, before)
+        if same is not state:
+            return same
     state = yield from explore(study, state)
     state = yield from drop_superfluous(study, state)
     for _ in range(study.budget.most_revisions):

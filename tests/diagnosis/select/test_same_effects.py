@@ -1,0 +1,53 @@
+"""What was found, estimated from one more experiment in the place of another search."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from greybox_torch.diagnosis.screen.candidates import attach
+from greybox_torch.diagnosis.select import search as module
+from greybox_torch.diagnosis.select.same_effects import with_same_effects
+from greybox_torch.diagnosis.select.search import search
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.stopping import result_of
+from greybox_torch.mechanisms.actuator import ActuatorDeadzone
+from greybox_torch.mechanisms.forces import ConstantBias
+from greybox_torch.mechanisms.unknown import Unknown
+
+
+@pytest.fixture
+def with_one_more(motor_data, motor, begun, dead_zone_search):
+    """The search with both experiments of the motor with the dead zone, and how an effect was fitted to the first alone."""
+    data = motor_data(acting=dead_zone)
+    both = begun(replace(data, recordings=tuple(replace(r, role="estimation") for r in data.recordings)), motor)
+
+    def make(port: str, law) -> tuple:
+        effect = attach(motor, port, law)
+        fitted = dead_zone_search.refitted((effect,), dead_zone_search.plain)
+        return both, SearchState(dead_zone_search.plain, fitted)
+
+    return make
+
+
+def dead_zone(v):
+    return v.clip(max=-0.5) + 0.5 + v.clip(min=0.5) - 0.5
+
+
+@pytest.mark.parametrize("law", [ActuatorDeadzone(), Unknown("input", 40)])
+def test_what_leaves_less_than_a_finding_is_kept_and_estimated_from_both(with_one_more, law, monkeypatch) -> None:
+    """Seen: an arm's gear error and a bump in another's friction, searched anew for half a minute to come to the same."""
+    both, before = with_one_more("actuator", law)
+    monkeypatch.setattr(module, "explore", None)
+    state = result_of(search(both.study, both.state, before))
+    assert state.prefixes == before.prefixes and state.compared_without and state.plain is both.state.plain
+    assert len(state.current.problem.records.first) == 2 and state.steps == before.steps
+    if not law.free:
+        (half_width,) = (v for name, v in state.current.values().items() if name.endswith("half_width"))
+        assert half_width == pytest.approx(0.5, rel=0.02)
+
+
+def test_what_leaves_more_is_searched_anew(with_one_more) -> None:
+    both, before = with_one_more("rotor", ConstantBias())
+    assert result_of(with_same_effects(both.study, both.state, before)) is both.state
