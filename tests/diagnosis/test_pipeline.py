@@ -87,7 +87,7 @@ def test_no_estimation_experiment(motor_data, motor) -> None:
         diagnose(motor_data(200, ("validation", "validation")), motor)
 
 
-def nothing_found(study, state):
+def nothing_found(study, state, before=None):
     """A search that takes no step."""
     yield state
     return state

@@ -25,7 +25,9 @@ def with_one_more(motor_data, motor, begun, dead_zone_search):
 
     def make(port: str, law) -> tuple:
         effect = attach(motor, port, law)
-        fitted = dead_zone_search.refitted((effect,), dead_zone_search.plain)
+        sizes = {f"{effect.prefix}.{name}": 0.1 for name in law.amplitudes(both.surroundings[port])}
+        start = {**dead_zone_search.plain.values(), **sizes}
+        fitted = dead_zone_search.refitted((effect,), dead_zone_search.plain, [start])
         return both, SearchState(dead_zone_search.plain, fitted)
 
     return make
@@ -35,7 +37,7 @@ def dead_zone(v):
     return v.clip(max=-0.5) + 0.5 + v.clip(min=0.5) - 0.5
 
 
-@pytest.mark.parametrize("law", [ActuatorDeadzone(), Unknown("input", 40)])
+@pytest.mark.parametrize("law", [ActuatorDeadzone(), Unknown("input", 28)])
 def test_what_leaves_less_than_a_finding_is_kept_and_estimated_from_both(with_one_more, law, monkeypatch) -> None:
     """Seen: an arm's gear error and a bump in another's friction, searched anew for half a minute to come to the same."""
     both, before = with_one_more("actuator", law)
