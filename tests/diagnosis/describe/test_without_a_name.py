@@ -44,7 +44,7 @@ def test_what_no_law_explains_is_missing_where_it_repeats_or_is_large(
 def test_a_random_load_on_a_complete_model_is_no_missing_physics(motor_data, motor, monkeypatch) -> None:
     """Seen: a pump whose impeller was loaded at random, 5 times the noise: "something is missing"."""
 
-    def nothing_found(study, state):
+    def nothing_found(study, state, before=None):
         yield state
         return state
 
