@@ -97,12 +97,13 @@ def _selected(
 def _promotion(found: Selection, others: HeldOut) -> Promotion | None:
     """The data set with one more experiment to choose with: one that cannot score, whose free runs refuse what windows bear out, that shows
     what the others do not, or that speaks for another name."""
-    judged = found.judged if isinstance(found, Findings) else None
-    cannot_score = promote_unstable(found.dataset, _unstable(found))
-    refused_in = "" if judged is None else judged.refused_in
-    refusing = promote_refusing(found.dataset, found.state, others, found.searched, refused_in)
     asked = found.study, found.dataset, found.state, others
-    return cannot_score or refusing or promote_validation(*asked) or promote_for_a_rival(*asked, found.gains)
+    return (
+        promote_unstable(found.dataset, _unstable(found))
+        or promote_refusing(found.dataset, found.state, others, found.searched, _refused_in(found))
+        or promote_validation(*asked)
+        or promote_for_a_rival(*asked, found.gains)
+    )
 
 
 def _places(last: Selection, others: HeldOut) -> Places:
@@ -118,6 +119,11 @@ def _places(last: Selection, others: HeldOut) -> Places:
 def _unstable(found: Selection) -> frozenset[str]:
     """The experiments that no free run follows, where free runs were judged."""
     return found.judged.unstable if isinstance(found, Findings) else frozenset()
+
+
+def _refused_in(found: Selection) -> str:
+    """The experiment whose free runs took back what was found, where free runs were judged; "" for none."""
+    return found.judged.refused_in if isinstance(found, Findings) else ""
 
 
 def _chosen_with(dataset: DataSet) -> tuple[str, ...]:

@@ -106,6 +106,15 @@ def redrawn(
     return attachment, _without(fitted, curve) | _heights(attachment, around, *_drawn(fitted, curve, around))
 
 
+def over_its_range(
+    fitted: Hypothesis, effect: Attachment, surroundings: Mapping[str, Surroundings]
+) -> tuple[Attachment, dict[str, float]]:
+    """An effect and the values of the hypothesis with it; a curve with all its knots over the range that its signal has now."""
+    if not isinstance(effect.mechanism, Unknown):
+        return effect, fitted.values()
+    return redrawn(fitted, effect, surroundings[effect.port], effect.mechanism.knots)
+
+
 def absorbed(fitted: Hypothesis, law: Attachment, surroundings: Mapping[str, Surroundings]) -> dict[str, float] | None:
     """The values without a law, its force handed to the free curve of the same signal at its port; None where there is no such curve."""
     around, mechanism = surroundings[law.port], law.mechanism

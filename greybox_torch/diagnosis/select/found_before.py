@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from greybox_torch.diagnosis.refit.curve import redrawn
+from greybox_torch.diagnosis.refit.curve import over_its_range
 from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
@@ -34,10 +34,7 @@ def _known(study: Study, state: SearchState, curves: bool) -> dict[tuple, Candid
     for effect in before.effects:
         if effect.prefix in state.prefixes or (effect.mechanism.free and (state.has_curve or not curves)):
             continue
-        attachment, values = effect, before.values()
-        if isinstance(effect.mechanism, Unknown):
-            around = study.surroundings[effect.port]
-            attachment, values = redrawn(before, effect, around, effect.mechanism.knots)
+        attachment, values = over_its_range(before, effect, study.surroundings)
         offered.append(Candidate(attachment, (), 0.0, found_before=(values,)))
     return {identity_of(c.attachment): c for c in offered}
 

@@ -113,8 +113,7 @@ def test_what_is_left_without_effects_is_that_of_all_experiments(judged, monkeyp
 def test_effects_that_are_taken_back_leave_the_experiment_that_refused_them(judged) -> None:
     found = judged({}, 0.1, 0.05, 1.5, 0.9)
     refused = found.without_effects()
-    assert (
-        found.refused_in == "" and refused.refused_in == "fourth"
-    )  # three times the refit's error; the third 1.07 times
+    # three times the refit's error; the third 1.07 times
+    assert found.refused_in == "" and refused.refused_in == "fourth"
     assert refused.without_effects().refused_in == "fourth" and refused.holds
     assert judged({}, 0.1, 0.05, 1.3, 0.2).without_effects().refused_in == ""

@@ -52,4 +52,4 @@ def test_what_leaves_less_than_a_finding_is_kept_and_estimated_from_both(with_on
 
 def test_what_leaves_more_is_searched_anew(with_one_more) -> None:
     both, before = with_one_more("rotor", ConstantBias())
-    assert result_of(with_same_effects(both.study, both.state, before)) is both.state
+    assert with_same_effects(both.study, both.state, before) is both.state
