@@ -18,6 +18,7 @@ from greybox_torch.diagnosis.confirm.promotion import (
     promote_validation,
     replaces,
 )
+from greybox_torch.diagnosis.confirm.telling_apart import promote_to_tell_apart
 from greybox_torch.diagnosis.findings import Findings, judge
 from greybox_torch.diagnosis.hypothesis.start_positions import places_in
 from greybox_torch.diagnosis.places import NOWHERE, Places
@@ -85,7 +86,7 @@ def _selected(
                     found = replace(found, more=(*last.more, more.sentence()))
                     known[names] = found if judged is None else judged(found)
                 last = known[names]
-                if last.others and replaces(last.others, best.state, last.state, bool(_unstable(best))):
+                if last.others and replaces(last.others, best.state, last.state, more.same_effects):
                     best = last
                 elif best.state.effects:
                     break  # one more experiment does not better what was found, and each costs a whole search
@@ -103,6 +104,7 @@ def _promotion(found: Selection, others: HeldOut) -> Promotion | None:
         or promote_refusing(found.dataset, found.state, others, found.searched, _refused_in(found))
         or promote_validation(*asked)
         or promote_for_a_rival(*asked, found.gains)
+        or promote_to_tell_apart(*asked, found.gains)
     )
 
 

@@ -15,6 +15,7 @@ from greybox_torch.diagnosis.effect import Timeline
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, window_lengths
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.hypothesis.start_positions import placed, places_in
+from greybox_torch.diagnosis.hypothesis.window_errors import window_errors
 from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.study import Study
@@ -84,17 +85,25 @@ class HeldOut:
         ]
         return np.sqrt(np.max(squares, axis=0) / max(noise_floor(self.problem, self.study.settings), 1e-300))
 
+    def errors(self, hypothesis: Hypothesis) -> tuple[np.ndarray, ...]:
+        """Measured minus simulated over the longest windows, by experiment (n_y, N); none where it cannot be simulated there."""
+        fits, records = self.fits(hypothesis), self.problem.records
+        if not fits:
+            return ()
+        left = window_errors(fits[-1], self._simulator(hypothesis))
+        return tuple(left[:, records.span(e)] for e in range(len(records.first)))
+
     def fits_at(self, hypothesis: Hypothesis, values: Mapping[str, float]) -> tuple[WindowFit, ...]:
         """The hypothesis with other parameters."""
-        # Not with the hypothesis's own sub-steps: an earlier search may have taken others, and what is compared is simulated
-        # alike, but for what a law that is stiff asks for.
-        return held_out_fits(
-            hypothesis,
-            self.problem,
-            hypothesis.simulator.with_substeps(self.study.options.substeps),
-            values,
-            self.study.budget,
-        )
+        return held_out_fits(hypothesis, self.problem, self._simulator(hypothesis), values, self.study.budget)
+
+    def _simulator(self, hypothesis: Hypothesis) -> Simulator:
+        """What the hypothesis is simulated with.
+
+        Not with its own sub-steps: an earlier search may have taken others, and what is compared is simulated alike, but for what a law
+        that is stiff asks for.
+        """
+        return hypothesis.simulator.with_substeps(self.study.options.substeps)
 
 
 def held_out_fits(

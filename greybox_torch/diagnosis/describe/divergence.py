@@ -17,8 +17,12 @@ def divergence(one: Hypothesis, other: Hypothesis) -> float:
 
     Source: S. Kullback, R. A. Leibler, Annals of Mathematical Statistics 22, 1951 (Gaussian errors of equal covariance).
     """
+    return of_errors(*(window_errors(h.fits[-1], h.simulator) for h in (one, other)))
+
+
+def of_errors(errors: np.ndarray, others: np.ndarray) -> float:
+    """The same from what two hypotheses leave of the measurements, (n_y, N) each; what is NaN in one is not counted."""
     told = 0.0
-    errors, others = (window_errors(h.fits[-1], h.simulator) for h in (one, other))
     for own, its in zip(errors, others, strict=True):
         seen = ~(np.isnan(own) | np.isnan(its))
         if seen.any():

@@ -160,7 +160,7 @@ def _weight(chosen: RankedCandidate, rival: RankedCandidate, settings: Diagnosis
         return 0.0
     share = min(1.0, rival.gain / max(chosen.gain, 1e-12))
     simpler = float(np.exp(-max(0, rival.size - chosen.size)))
-    if _twins(chosen, rival):
+    if are_twins(chosen, rival):
         return share * simpler
     if chosen.cost is not None and rival.cost is not None:
         own, rivals = (priced_cost(r, max(1, white_samples(r.fitted, settings))) for r in (chosen, rival))
@@ -170,7 +170,7 @@ def _weight(chosen: RankedCandidate, rival: RankedCandidate, settings: Diagnosis
     return share * simpler * float(np.exp(-0.5 * (behind / settings.windows_temperature) ** 2))
 
 
-def _twins(chosen: RankedCandidate, rival: RankedCandidate) -> bool:
+def are_twins(chosen: RankedCandidate, rival: RankedCandidate) -> bool:
     """Whether two laws do the same to one input and one output; then what sets their fits apart is how each is computed."""
     records = chosen.fitted.problem.records
     alone = len(records.u) == 1 and len(records.y) == 1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from greybox_torch.diagnosis.settings.fields import ratio, share
+from greybox_torch.diagnosis.settings.fields import number, ratio, share
 
 NOISE_MULTIPLE = "times the noise (root mean square)"
 
@@ -36,6 +36,12 @@ class SearchingAgainSettings:
         "By how much a rival may have lost for held-out experiments to be asked about it.",
         unit="difference in the logarithm of the mean squared error",
         chosen_by="twins of time in three proofs: right ones lost by up to 0.09 while a stop or a limit beside them was not the machine's",
+    )
+    telling_divergence: float = number(
+        4.6,
+        "Log-likelihood ratio by which a validation experiment would tell an undecided rival, from which it is taken to choose with.",
+        unit="nats",
+        chosen_by="100 to 1, decisive evidence by H. Jeffreys, Theory of Probability, 1961",
     )
     slow_share: float = share(
         0.25,
