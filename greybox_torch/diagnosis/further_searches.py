@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.longer_windows import longer_windows, sentence, stands
 from greybox_torch.diagnosis.confirm.promotion import (
     Promotion,
+    promote_for_a_curve,
     promote_for_a_rival,
     promote_refusing,
     promote_unstable,
@@ -86,7 +87,9 @@ def _selected(
                     found = replace(found, more=(*last.more, more.sentence()))
                     known[names] = found if judged is None else judged(found)
                 last = known[names]
-                if last.others and replaces(last.others, best.state, last.state, more.same_effects):
+                if last.others and replaces(
+                    last.others, best.state, last.state, more.same_effects or bool(_unstable(best))
+                ):
                     best = last
                 elif best.state.effects:
                     break  # one more experiment does not better what was found, and each costs a whole search
@@ -102,6 +105,7 @@ def _promotion(found: Selection, others: HeldOut) -> Promotion | None:
     return (
         promote_unstable(found.dataset, _unstable(found))
         or promote_refusing(found.dataset, found.state, others, found.searched, _refused_in(found))
+        or promote_for_a_curve(found.dataset, found.state, others, found.searched)
         or promote_validation(*asked)
         or promote_for_a_rival(*asked, found.gains)
         or promote_to_tell_apart(*asked, found.gains)

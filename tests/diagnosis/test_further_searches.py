@@ -27,8 +27,9 @@ def no_unseen_positions(monkeypatch) -> None:
 
 
 @pytest.fixture(autouse=True)
-def no_rival(monkeypatch) -> None:
-    monkeypatch.setattr(further_searches, "promote_for_a_rival", lambda *args: None)
+def nothing_else_is_asked(monkeypatch) -> None:
+    for asked in ("promote_for_a_curve", "promote_for_a_rival", "promote_to_tell_apart"):
+        monkeypatch.setattr(further_searches, asked, lambda *args: None)
 
 
 @pytest.fixture

@@ -77,6 +77,28 @@ def promote_refusing(
     )
 
 
+def promote_for_a_curve(
+    dataset: DataSet, state: SearchState, others: HeldOut, searched: Hypothesis
+) -> Promotion | None:
+    """The data set with the validation experiment among those to choose with that a free curve follows worst, beside names in its place.
+
+    None where the search came to no curve, or to one that goes no farther than the names; where these leave hardly more than noise; and
+    where no validation experiment would be left. Beyond the range that it was drawn over a curve says nothing, so that a law which has the
+    wrong shape predicts better there. Seen: friction that comes in waves over a stage's speed, told as Coulomb friction (0.85) for a
+    recording of higher speeds.
+    """
+    settings = others.study.settings
+    curve, names = any(e.mechanism.free for e in searched.effects), state.effects and not state.has_curve
+    if not (curve and names) or len(dataset.validation()) < 2:
+        return None
+    left = others.times_noise(state.current)
+    if searched.score > state.current.score - settings.curve_margin or np.max(left) < settings.promote_error_beside:
+        return None
+    worst = int(np.argmax(others.times_noise(searched) / left))
+    why = "a curve goes farther than the laws in its place where it was drawn, and not there"
+    return Promotion.of(dataset, dataset.validation()[worst].name, why)
+
+
 def promote_validation(study: Study, dataset: DataSet, state: SearchState, others: HeldOut) -> Promotion | None:
     """The data set with the validation experiment that the search's model fits worst among those to choose with.
 

@@ -35,22 +35,28 @@ def promote_to_tell_apart(
     Args:
         gains: by effect, on held-out experiments.
     """
-    recordings, settings = dataset.validation(), study.settings
+    recordings = dataset.validation()
     if len(recordings) < 2 or not state.effects:
         return None
     small = refinements(study, state, others, gains, sizes(study, state, gains))
-    found: list[tuple[float, int, str]] = []
-    own = others.errors(state.current)
-    for effect in (e for e in state.effects if e.prefix not in small):
-        for law, rival in _instead(study, state, effect):
-            apart = [of_errors(*pair) for pair in zip(own, others.errors(rival), strict=False)]
-            if apart and max(apart) > settings.telling_divergence:
-                why = f"it tells {spoken_at(*law.named[::-1])} from {spoken_at(*effect.named[::-1])}"
-                found.append((max(apart), int(np.argmax(apart)), why))
-    if not found:
+    asked = [
+        (effect, *one)
+        for effect in state.effects
+        if effect.prefix not in small
+        for one in _instead(study, state, effect)
+    ]
+    told = [(*_farthest_apart(others, state.current, rival), effect, law) for effect, law, rival in asked]
+    most, where, effect, law = max(told, key=lambda one: one[0], default=(0.0, 0, None, None))
+    if effect is None or law is None or most <= study.settings.telling_divergence:
         return None
-    _, where, why = max(found)
+    why = f"it tells {spoken_at(*law.named[::-1])} from {spoken_at(*effect.named[::-1])}"
     return Promotion.of(dataset, recordings[where].name, why, same_effects=True)
+
+
+def _farthest_apart(others: HeldOut, one: Hypothesis, other: Hypothesis) -> tuple[float, int]:
+    """The largest log-likelihood ratio of two hypotheses on a validation experiment, and on which; zero where one cannot be simulated."""
+    apart = [of_errors(*pair) for pair in zip(others.errors(one), others.errors(other), strict=False)]
+    return max(apart, default=0.0), int(np.argmax(apart)) if apart else 0
 
 
 def _instead(study: Study, state: SearchState, effect: Attachment) -> Iterator[tuple[Attachment, Hypothesis]]:

@@ -12,7 +12,7 @@ from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.forward_step import take_best
 from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState
-from greybox_torch.diagnosis.select.undecided import undecided
+from greybox_torch.diagnosis.select.undecided import listed, undecided
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
@@ -31,23 +31,24 @@ def with_same_effects(study: Study, begun: SearchState, before: SearchState) -> 
         drawn, values = over_its_range(before.current, curve, study.surroundings)
         effects = before.with_law(curve, drawn)
     fitted = refitted(study, effects, begun.current, [values])
-    if fitted is None or remaining_share(begun.plain, fitted, study.settings) >= study.settings.least_size:
+    if fitted is None:
         return begun
     state = SearchState(begun.plain, fitted, before.steps)
     for effect in effects:
         state = _chosen_once_more(study, state, effect)
-    return state
+    enough = remaining_share(begun.plain, state.current, study.settings) < study.settings.least_size
+    return state if enough else begun
 
 
 def _chosen_once_more(study: Study, state: SearchState, effect: Attachment) -> SearchState:
     """The state with an undecided effect, or one of its rivals instead, as all experiments speak for; as it is where none is undecided."""
-    rivals, done = undecided(study, state, effect), state.step_of(effect.prefix)
-    if not rivals or done is None or done.taken is None:
+    done = state.step_of(effect.prefix)
+    if done is None or done.taken is None or not undecided(study, state, effect):
         return state
     study.working_on(f"choosing {effect.prefix} once more")
     rest = tuple(e for e in state.effects if e.prefix != effect.prefix)
     parent = (refitted(study, rest, state.current) if rest else None) or state.plain
-    offered = [_from_where_it_was(state, r) for r in (done.taken, *rivals)]
+    offered = [_from_where_it_was(state, r) for r in (done.taken, *listed(study, state, effect))]
     other = result_of(take_best(study, state.at(parent), done.screened, rank(study, parent, offered)))
     return other if other.took_one else state
 

@@ -11,6 +11,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm import promotion
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.promotion import (
+    promote_for_a_curve,
     promote_refusing,
     promote_unstable,
     promote_validation,
@@ -72,6 +73,36 @@ def test_the_experiment_that_shows_most_is_taken(drag_at_speed, motor, begun) ->
     assert more is not None and more.taken == data.recordings[2].name
     assert float(more.why.split("leaves ")[1].split(" times")[0]) > 1.5
     assert [r.role for r in more.dataset.recordings] == ["estimation", "validation", "estimation"]
+
+
+@pytest.mark.parametrize(
+    ("farther", "left", "roles", "taken"),
+    [
+        (0.6, (2.5, 9.0, 4.0), 3, True),
+        (0.0, (2.5, 9.0, 4.0), 3, False),
+        (0.6, (1.1, 1.4, 1.0), 3, False),
+        (0.6, (9.0,), 1, False),
+    ],
+    ids=["goes farther", "goes no farther", "noise alone is left", "none would be left"],
+)
+def test_where_a_curve_was_not_drawn_it_is_drawn_before_names_stand_for_it(
+    data_set, stub, farther, left, roles, taken
+) -> None:
+    """Seen: waves in a stage's friction over its speed, told as Coulomb friction (0.85), which left 6 % at 58 times the noise."""
+    runs = [{"force": np.zeros(3)} for _ in range(1 + roles)]
+    data = data_set({"force": "N"}, runs, roles=["estimation", *["validation"] * roles], sample_time=STEP)
+    curve, friction = (stub(mechanism=stub(free=free)) for free in (True, False))
+    searched, names = stub(effects=(curve,), score=-farther), stub(effects=(friction,), score=0.0)
+    noise = {searched: np.array([1.0, 30.0, 4.0][:roles]), names: np.array(left)}
+    others: Any = stub(times_noise=lambda hypothesis: noise[hypothesis], study=stub(settings=DiagnosisSettings()))
+    state: Any = stub(effects=(friction,), has_curve=False, current=names)
+    more = promote_for_a_curve(data, state, others, searched)  # type: ignore[arg-type]
+    assert (
+        (more is not None and more.taken == data.validation()[1].name and not more.same_effects)
+        if taken
+        else more is None
+    )
+    assert promote_for_a_curve(data, stub(effects=(), has_curve=False), others, searched) is None  # type: ignore[arg-type]
 
 
 def test_what_explains_the_others_is_left_as_it_is(drag_at_speed, motor, begun) -> None:
