@@ -53,6 +53,10 @@ class LinearLeak(Mechanism):
         return [Probe(("c",), {"reference": reference}) for reference in references]
 
 
+HALF_OF_ONSET, ONSET = 2.0, 4.0
+"""Widths above the threshold, and in all, over which three quarters of a soft onset's bend lie (tanh 1 = 0.76)."""
+
+
 class ThresholdFlow(Mechanism):
     """−c (level − threshold) above the threshold, where the flow sets in over a ``width`` w: −c w ln(1 + exp((level − threshold) / w)).
 
@@ -103,4 +107,11 @@ class ThresholdFlow(Mechanism):
         return [Probe(("c",), {"threshold": place, "width": 0.02 * level.span}) for place in places]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        return beyond("threshold", values["threshold"], around, "level")
+        return beyond("threshold", values["threshold"], around, "level") or self._bends_to_the_end(around, values)
+
+    def _bends_to_the_end(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        """The flow sets in over so much of the levels above the threshold that it is straight over less: a curve, and no threshold."""
+        above = around.ranges["level"].high - values["threshold"]
+        if values.get("width", 0.0) * (HALF_OF_ONSET + ONSET) <= above:
+            return None
+        return f"width = {values['width']:.3g} has the flow set in over most of the {above:.3g} that lie above the threshold"

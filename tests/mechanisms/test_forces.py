@@ -132,6 +132,14 @@ def test_threshold_flow_may_set_in_over_a_width(law) -> None:
     assert flow[0] == pytest.approx(0.0, abs=1e-4)
 
 
+@pytest.mark.parametrize(("width", "told"), [(0.0, False), (0.2, False), (0.24, False), (0.26, True)])
+def test_a_flow_that_bends_over_most_of_what_is_above_its_threshold_has_none(around, width, told) -> None:
+    """Seen: what evaporates from a dye bath, told as a threshold at 74.5 degC (0.97) with a width of 5.1 in a bath of 96 degC at most."""
+    flow, values = ThresholdFlow(), {"c": 2.0, "threshold": around.ranges["level"].high - 1.5, "width": width}
+    assert ("flow set in over most" in (flow.misplaced(around, values) or "")) is told
+    assert flow.misplaced(around, {"c": 2.0, "threshold": values["threshold"]}) is None, "without a width"
+
+
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_damped_end_stop_takes_energy_and_never_pulls(law, side) -> None:
     speed = 5.0 * np.cos(3.0 * ANGLES)

@@ -12,7 +12,11 @@ from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
+from greybox_torch.mechanisms.unknown import INPUT
 from greybox_torch.model.ports import Actuator, driving_body
+
+TINY = 1e-12
+"""Keeps a share of nothing finite in a quotient."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +60,7 @@ def shortlist(study: Study, screened: Sequence[Sequence[ScreenScore]], fits: Seq
 
     def first_few(best: list[ScreenScore]) -> list[ScreenScore]:
         named = _with_ties(study, [b for b in best if not b.attachment.mechanism.free])
-        curves = [b for b in best if b.attachment.mechanism.free]
+        curves = _plainest_first([b for b in best if b.attachment.mechanism.free], study.settings.curve_margin)
         return named + _with_body(study, curves, study.budget.curves_per_length)
 
     return _followed(study, screened, fits, first_few)
@@ -117,6 +121,26 @@ def _followed(
             else:
                 found[identity] = replace(before, starts=(*before.starts, *starts))
     return sorted(found.values(), key=lambda candidate: -candidate.explained)
+
+
+def _plainest_first(curves: Sequence[ScreenScore], margin: float) -> list[ScreenScore]:
+    """Free curves, best first; before one that another input multiplies the same curve without, unless that leaves more by the margin.
+
+    An input that hardly changes on these experiments (the room's temperature) multiplies as well as a constant does, and not on others.
+    """
+    first = next(iter(curves), None)
+    if first is None or not _of(first)[-1].startswith(INPUT):
+        return list(curves)
+    alone = next((c for c in curves if _of(c) == (*_of(first)[:-1], "")), None)
+    if alone is None or np.log(max(1.0 - alone.explained, TINY) / max(1.0 - first.explained, TINY)) >= margin:
+        return list(curves)
+    return [alone, *(c for c in curves if c is not alone)]
+
+
+def _of(curve: ScreenScore) -> tuple[str, str, str, str]:
+    """The port of a free curve, its kind, the signal that it is drawn over, and what it is multiplied by ("" for nothing)."""
+    law = curve.attachment.mechanism
+    return curve.attachment.port, law.name, getattr(law, "signal", ""), getattr(law, "factor", "")
 
 
 def _with_body(study: Study, curves: Sequence[ScreenScore], count: int) -> list[ScreenScore]:

@@ -119,3 +119,11 @@ def test_beside_a_drives_gain_over_speed_the_bodys_friction_is_asked(found, own,
     assert [c.attachment.port for c in found([gain, *curves])] == ports
     own_input = score(Unknown("input"), 0.330, 1.0, directions=("w_1",), port="actuator")
     assert [c.attachment.port for c in found([own_input, *curves])] == ["actuator"]
+
+
+@pytest.mark.parametrize(("alone", "factor"), [(0.9871, ""), (0.98, "input@voltage")])
+def test_a_curve_is_multiplied_by_an_input_only_where_that_leaves_less(found, alone, factor) -> None:
+    """Seen: evaporation from a bath in a room of nearly constant temperature, its curve times that of the room: 14 % left elsewhere."""
+    times = score(Unknown("speed", factor="input@voltage"), 0.9877, 1.0, directions=(SHARE,))
+    (candidate,) = found([times, score(Unknown("speed"), alone, 1.0, directions=(SHARE,))])
+    assert getattr(candidate.attachment.mechanism, "factor", None) == factor
