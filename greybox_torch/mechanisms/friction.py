@@ -102,6 +102,9 @@ class StribeckFriction(Mechanism):
             if width <= WIDEST_BESIDE_A_PEAK * share * reach
         ]
 
+    def begun_as(self, contained: str, values: Mapping[str, float]) -> Mapping[str, float]:
+        return {**values, "F_s": 0.0} if contained == CoulombFriction.name else {}
+
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
         """Bristles that slip at the same levels: what they bend before looks like a slow change of sign."""
         level, peak = values["F_c"], values["F_s"]

@@ -186,6 +186,10 @@ class Mechanism:
         """Where else a refit that came to ``values`` may begin, as its errors may have other minima; empty where nothing is known."""
         return ()
 
+    def begun_as(self, contained: str, values: Mapping[str, float]) -> Mapping[str, float]:
+        """Where the law begins as one that it contains, which was found at ``values``; empty where nothing is known."""
+        return {}
+
     def available(self, around: Surroundings) -> bool:
         """Whether the recordings have the signals that it needs."""
         return set(self.needs) - {"delayed"} <= set(around.ranges)

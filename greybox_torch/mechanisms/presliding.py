@@ -94,6 +94,9 @@ class PreslidingHysteresis(Mechanism):
         bent = -p.F * z.bristle / p.z_0
         return bent - p.sigma * self.rates(s, p, z)["bristle"] if self.sharp else bent
 
+    def begun_as(self, contained: str, values: Mapping[str, float]) -> Mapping[str, float]:
+        return {"F": values["F_c"]} if contained == "coulomb_friction" else {}
+
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
         """With slip that sets in at once, with a level that falls with speed, and with both."""
         forms = ((True, False), (False, True), (True, True))

@@ -76,6 +76,15 @@ def test_levels_that_hardly_differ_are_one(around, delta, told) -> None:
     assert CoulombAsymmetry().misplaced(around, {"delta": delta, "v_0": 0.1}) is None
 
 
+def test_stribeck_friction_begins_as_the_dry_friction_that_it_contains(law) -> None:
+    dry = {"F_c": 2.0, "v_0": 0.1}
+    begun = {"c": 0.0, "v_s": 1.0, **StribeckFriction().begun_as("coulomb_friction", dry)}
+    np.testing.assert_array_equal(
+        law(StribeckFriction(), begun, speed=SPEEDS), law(CoulombFriction(), dry, speed=SPEEDS)
+    )
+    assert not StribeckFriction().begun_as("viscous_friction", {"c": 0.3})
+
+
 def test_drag_is_quadratic(law) -> None:
     slow, fast = law(QuadraticDrag(), {"c": 0.3}, speed=np.array([2.0, 4.0]))
     assert (slow, fast) == (pytest.approx(-1.2), pytest.approx(-4.8))

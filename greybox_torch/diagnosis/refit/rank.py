@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.refit.finalists import Trial, finalists, leading_an
 from greybox_torch.diagnosis.refit.order import in_better_order, in_both_orders, joined
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
-from greybox_torch.diagnosis.refit.twins import from_twin
+from greybox_torch.diagnosis.refit.twins import from_contained, from_twin
 from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of, with_substeps
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.problem import problem_for
@@ -103,8 +103,8 @@ def rank(
     known = list(zip(found, reached, strict=True))
 
     def tried_again(candidate: Candidate, simulator: Simulator, own: Hypothesis | None) -> Hypothesis | None:
-        start = from_twin(candidate, own, known, study.settings.score_tie)
-        starts = [start] if start else []
+        taken_over = (of(candidate, own, known, study.settings.score_tie) for of in (from_twin, from_contained))
+        starts = [start for start in taken_over if start]
         if candidate.absent and (own is None or own.score > _score_over(current, steps[middle])):
             without = next(f for f in current.fits if f.windows.steps == steps[middle])
             starts.append(

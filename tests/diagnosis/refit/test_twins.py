@@ -1,13 +1,15 @@
-"""Start values that a law takes over from its twin."""
+"""Start values that a law takes over from its twin, or from a law that it contains."""
 
 from __future__ import annotations
 
 import pytest
 
-from greybox_torch.diagnosis.refit.twins import from_twin
+from greybox_torch.diagnosis.refit.twins import from_contained, from_twin
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.mechanisms.actuator import InputDelay, InputLag
 from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction, ViscousFriction
+from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorLag
 
 EARLY, LATE, LAG = (
@@ -49,3 +51,30 @@ def test_a_lag_begins_where_that_of_the_other_end_came_to(reached) -> None:
     assert from_twin(LAG, stuck, tried, 0.03) == {"J": 0.2, "actuator.input_lag.T": 0.009}
     assert from_twin(late_lag, found, tried, 0.03) == {}
     assert not set(InputLag.twins) & {"sensor_lag"}, "well fitted, nonlinear friction tells them apart"
+
+
+@pytest.mark.parametrize(
+    ("law", "begun"),
+    [(PreslidingHysteresis(), {"F": 0.05}), (StribeckFriction(), {"F_c": 0.05, "F_s": 0.0, "v_0": 0.09})],
+)
+def test_a_law_that_ends_worse_than_one_that_it_contains_begins_as_that(reached, law, begun) -> None:
+    """Seen: bristles of a capper's motor, which left five times as much as its dry friction; begun as that, a fifth less."""
+    wider, dry, viscous, elsewhere = (
+        Candidate(Attachment(port, one), (), 0.5)
+        for port, one in (
+            ("motor", law),
+            ("motor", CoulombFriction()),
+            ("motor", ViscousFriction()),
+            ("chuck", CoulombFriction()),
+        )
+    )
+    stuck, found = (
+        reached(-0.8),
+        reached(-2.4, **{"J": 0.2, "motor.coulomb_friction.F_c": 0.05, "motor.coulomb_friction.v_0": 0.09}),
+    )
+    tried = [(wider, stuck), (dry, found), (viscous, reached(-3.0)), (elsewhere, reached(-3.0))]
+    expected = {"J": 0.2} | {f"motor.{law.name}.{name}": value for name, value in begun.items()}
+    assert from_contained(wider, stuck, tried, 0.03) == expected
+    assert from_contained(wider, None, tried, 0.03) == expected
+    assert from_contained(wider, reached(-2.39), tried, 0.03) == {}, "they tie"
+    assert from_contained(dry, found, tried, 0.03) == {}
