@@ -225,7 +225,7 @@ def test_a_law_whose_amplitudes_are_all_zero_is_none_whatever_is_known_of_them(n
 def test_a_flow_that_sets_in_over_the_whole_range_has_no_threshold(around: Surroundings) -> None:
     """Seen: what a solar collector loses by the square of its temperature, told as a flow above a threshold (0.97)."""
     width = next(p for p in law_of("threshold_flow").parameters(around) if p.name == "width").bounds[1]
-    wide = SOUND["threshold_flow"] | {"width": width}
+    wide = SOUND["threshold_flow"] | {"width": width, "threshold": 1.5}
     assert (
         law_of("threshold_flow").degenerate(around, wide, small(wide)) == f"width = {width:.3g} is at its upper bound"
     )

@@ -14,7 +14,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.promotion import Promotion
 from greybox_torch.diagnosis.confirm.standing import refinements, sizes
-from greybox_torch.diagnosis.describe.divergence import of_errors
+from greybox_torch.diagnosis.hypothesis.divergence import of_errors
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.select.flexed import in_its_place

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
-from greybox_torch.diagnosis.describe.divergence import divergence
 from greybox_torch.diagnosis.describe.statement import Member, statement
+from greybox_torch.diagnosis.hypothesis.divergence import divergence
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.select.posterior import shares, told_of

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.describe import divergence as measured
-from greybox_torch.diagnosis.describe.divergence import correlation_length, divergence
+from greybox_torch.diagnosis.hypothesis import divergence as measured
+from greybox_torch.diagnosis.hypothesis.divergence import correlation_length, divergence
 
 
 @pytest.fixture
