@@ -158,6 +158,22 @@ def test_what_free_runs_take_back_is_selected_once_more_with_that_known(monkeypa
     assert find_with_more(begun, stub(), stub(), stub()).state is again.state
 
 
+def test_what_tells_rivals_apart_is_estimated_anew_and_settles(monkeypatch, stub, first, more) -> None:
+    found = replace(first, state=SearchState(stub(effects=()), stub(effects=(stub(),))))
+    more.same_effects, begun = True, []
+
+    def find(*args: Any, before: Any, **named: Any) -> Selection:
+        begun.append(before)
+        return replace(found, dataset=more.dataset)
+
+    monkeypatch.setattr(further_searches, "promote_validation", lambda *args: None)
+    monkeypatch.setattr(further_searches, "promote_to_tell_apart", lambda *args: None if begun else more)
+    monkeypatch.setattr(further_searches, "find", find)
+    monkeypatch.setattr(further_searches, "replaces", lambda others, before, after, settles: settles)
+    best = find_with_more(found, stub(), stub(), stub())
+    assert begun == [found.state] and best.dataset is more.dataset and best.more == ("run 2 was taken",)
+
+
 def test_positions_begin_where_the_search_and_the_held_out_windows_have_them(stub) -> None:
     names = ("angle", "arm.position")
     model = stub(states=[stub(name=n) for n in names], start_trials=lambda values: [{"arm.position": 0.0}])

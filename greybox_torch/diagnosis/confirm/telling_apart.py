@@ -6,7 +6,7 @@ rivals predict of it, not from which of them it bears out.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -45,7 +45,8 @@ def promote_to_tell_apart(
         if effect.prefix not in small
         for one in _instead(study, state, effect)
     ]
-    told = [(*_farthest_apart(others, state.current, rival), effect, law) for effect, law, rival in asked]
+    own = others.errors(state.current) if asked else ()
+    told = [(*_farthest_apart(own, others.errors(rival)), effect, law) for effect, law, rival in asked]
     most, where, effect, law = max(told, key=lambda one: one[0], default=(0.0, 0, None, None))
     if effect is None or law is None or most <= study.settings.telling_divergence:
         return None
@@ -53,9 +54,11 @@ def promote_to_tell_apart(
     return Promotion.of(dataset, recordings[where].name, why, same_effects=True)
 
 
-def _farthest_apart(others: HeldOut, one: Hypothesis, other: Hypothesis) -> tuple[float, int]:
-    """The largest log-likelihood ratio of two hypotheses on a validation experiment, and on which; zero where one cannot be simulated."""
-    apart = [of_errors(*pair) for pair in zip(others.errors(one), others.errors(other), strict=False)]
+def _farthest_apart(own: Sequence[np.ndarray], others: Sequence[np.ndarray]) -> tuple[float, int]:
+    """The largest log-likelihood ratio of two hypotheses on one experiment, and on which, from what each leaves of every experiment
+    (n_y, N); zero where one cannot be simulated.
+    """
+    apart = [of_errors(*pair) for pair in zip(own, others, strict=False)]
     return max(apart, default=0.0), int(np.argmax(apart)) if apart else 0
 
 

@@ -63,8 +63,9 @@ def test_none_is_taken_where_none_would_tell_or_none_would_be_left(rubbing, moto
 
 def test_what_was_undecided_is_chosen_once_more_and_nothing_else(rubbing, motor, begun) -> None:
     data = rubbing(ONE_WAY, ONE_WAY, BOTH_WAYS, ONE_WAY)
-    before = stepped(begun(data, motor))
-    more = promote_to_tell_apart(*(lambda s: (s.study, data, before, HeldOut(data, s.study)))(begun(data, motor)), {})
+    search = begun(data, motor)
+    before = stepped(search)
+    more = promote_to_tell_apart(search.study, data, before, HeldOut(data, search.study), {})
     assert more is not None
     both = begun(more.dataset, motor)
     after = with_same_effects(both.study, both.state, before)
@@ -74,7 +75,7 @@ def test_what_was_undecided_is_chosen_once_more_and_nothing_else(rubbing, motor,
     assert after.current.values()["rotor.coulomb_friction.F_c"] == pytest.approx(0.03, rel=0.03)
 
 
-def test_the_verdict_says_which_experiment_told_them_apart(rubbing, motor) -> None:
+def test_what_one_way_motion_leaves_undecided_is_told_by_its_name(rubbing, motor) -> None:
     data = rubbing(ONE_WAY, ONE_WAY, BOTH_WAYS, BOTH_WAYS)
     verdict = diagnose(data, motor).verdict
     (effect,) = verdict.effects
