@@ -13,7 +13,7 @@ from functools import partial
 
 from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, until
-from greybox_torch.diagnosis.coarser import coarser
+from greybox_torch.diagnosis.coarser import Coarser, coarser
 from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.take_back import confirm, held_out_gains
@@ -23,7 +23,7 @@ from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.schedule import Schedule
 from greybox_torch.diagnosis.select.backward import drop_superfluous
-from greybox_torch.diagnosis.select.plain_model import fit_plain_model, weighted_by_noise
+from greybox_torch.diagnosis.select.plain_model import fit_plain_model, squared_errors, weighted_by_noise
 from greybox_torch.diagnosis.select.search import search
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import best_so_far, or_else
@@ -86,12 +86,18 @@ def find(
     if used.dataset is not dataset:
         study = replace(study, problem=_problem(used.dataset, model))
     simulator, problem_of = simulator_for(study.problem, study.options), partial(_problem, model=model)
-    some = coarser(used.dataset, study.problem, simulator, problem_of, study.settings, study.budget)
-    recorded = None if some.problem is study.problem else study.problem.records
-    study = replace(study, places=places, problem=some.problem, recorded=recorded, options=simulator.options)
+    fewer = partial(
+        coarser, used.dataset, study.problem, simulator, problem_of, settings=study.settings, budget=study.budget
+    )
+    some = fewer()
+    study = _searching(replace(study, places=places, options=simulator.options), some)
     free_runs = FreeRuns(study, dataset)
     clock.lap("preparing")
     study, state = fit_plain_model(study)
+    if study.recorded is None:
+        some = fewer(left=squared_errors(state.plain))
+        if some.problem is not study.problem:
+            study, state = fit_plain_model(_searching(study, some))
     schedule = Schedule.within(end, free_runs.seconds, study.budget)
     state = replace(state, found_before=found_before)
     study, state, complete = _searched(study, state, before, schedule.searching)
@@ -114,6 +120,13 @@ def find(
         more=(*used.sentences, *some.sentences),
         cut=tuple(stage for stage, whole in ended.items() if not whole),
     )
+
+
+def _searching(study: Study, some: Coarser) -> Study:
+    """The study with the samples that are searched, and with all of them where those are fewer."""
+    if some.problem is study.problem:
+        return study
+    return replace(study, problem=some.problem, recorded=study.problem.records, motion=None)
 
 
 def _problem(dataset: DataSet, model: GreyBoxModel) -> Problem:

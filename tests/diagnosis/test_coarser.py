@@ -19,19 +19,22 @@ SAMPLES, NOISE = 6000, 0.02
 Recorded = Callable[..., gt.DataSet]
 
 
-@given(some.integers(2, 9), some.lists(some.floats(-5, 5), min_size=40, max_size=80))
+Held = some.tuples(some.floats(-5, 5), some.floats(0.5, 1.5))
+"""A value, and for how long it is held."""
+
+
+@given(some.integers(2, 9), some.lists(Held, min_size=40, max_size=80))
 def test_a_held_input_moves_an_integrator_as_before(every, held) -> None:
-    """From one sample to the next, the integral of the input is that of its mean."""
-    voltage = np.array(held)
-    integral = np.concatenate([[0.0], np.cumsum(voltage)])
-    data = gt.DataSet(
-        [gt.Recording.from_arrays("one", {"u": voltage, "y": integral[:-1]}, sample_time=1.0)],
-        held_out_by_default=False,
-    )
+    """From one sample to the next, the integral of the input is that of its mean, also where samples are not as far apart."""
+    voltage, steps = np.array([*held[:-1], (held[-1][0], 1.0)]).T
+    time = np.concatenate([[0.0], np.cumsum(steps)])
+    integral = np.concatenate([[0.0], np.cumsum(voltage * steps)])
+    recording = gt.Recording.from_arrays("one", {"u": voltage, "y": integral[:-1]}, sample_time=1.0)
+    data = gt.DataSet([replace(recording, time=time[:-1])], held_out_by_default=False)
     found = sampled(data, every, ["u"]).recordings[0]
-    assert np.array_equal(found.time, every * np.arange(len(held) // every))
-    assert np.array_equal(found.signals["y"], integral[found.time.astype(int)])
-    assert np.allclose(integral[found.time.astype(int) + every] - found.signals["y"], every * found.signals["u"])
+    at = every * np.arange(len(held) // every)
+    assert np.array_equal(found.time, time[at]) and np.array_equal(found.signals["y"], integral[at])
+    assert np.allclose(integral[at + every] - integral[at], (time[at + every] - time[at]) * found.signals["u"])
     assert found.sample_time == every
 
 
@@ -64,13 +67,16 @@ def recorded(data_set, motor_speed) -> Recorded:
     return make
 
 
-def searched(data: gt.DataSet, motor: gt.GreyBoxModel, least: int = 1000, most: int = 9) -> Coarser:
+def searched(
+    data: gt.DataSet, motor: gt.GreyBoxModel, least: int = 1000, most: int = 9, left: float | None = None
+) -> Coarser:
     def problem_of(these: gt.DataSet) -> Problem:
         return make_problem(these, motor, these.estimation())
 
     problem = problem_of(data)
     budget = gt.SearchBudget(least_samples=least, most_passed_over=most)
-    return coarser(data, problem, simulator_for(problem), problem_of, gt.DiagnosisSettings(), budget)
+    squared = None if left is None else np.array([left**2])
+    return coarser(data, problem, simulator_for(problem), problem_of, gt.DiagnosisSettings(), budget, squared)
 
 
 def test_as_many_samples_are_passed_over_as_show_nothing_but_noise(recorded, motor) -> None:
@@ -81,12 +87,19 @@ def test_as_many_samples_are_passed_over_as_show_nothing_but_noise(recorded, mot
     assert faster.sentences == ()
 
 
-@pytest.mark.parametrize("why", ["short", "uneven", "no noise", "all wanted"])
+def test_where_the_noise_is_not_known_what_the_model_leaves_says_how_many(recorded, motor) -> None:
+    """An encoder of fine resolution: what is between its samples is motion, of which a large error is no part."""
+    data = recorded(period=200.0, noise=0.0)
+    assert searched(data, motor).sentences == ()
+    found = {left: len(searched(data, motor, left=left).dataset.recordings[0]) for left in (1e-4, 0.02, 100.0)}
+    assert found[1e-4] == SAMPLES > found[0.02] > found[100.0]
+    told = searched(data, motor, left=100.0).sentences[0]
+    assert "next to nothing of what the model leaves is between them" in told
+
+
+@pytest.mark.parametrize("why", ["short", "no noise", "all wanted"])
 def test_recordings_stay_as_they_are(recorded, motor, why) -> None:
     data = recorded(noise=0.0) if why == "no noise" else recorded()
-    if why == "uneven":
-        late = [replace(r, time=r.time + 0.002 * (np.arange(SAMPLES) % 2)) for r in data.recordings]
-        data = replace(data, recordings=tuple(late))
     found = searched(data, motor, 4000 if why == "short" else 1000, 0 if why == "all wanted" else 9)
     assert found.dataset is data
     assert found.sentences == ()

@@ -148,7 +148,7 @@ def _may_be_noise(study: Study, state: SearchState, taken: RankedCandidate) -> b
     settings = study.settings
     if far_above_noise(state.plain, settings) or floor_known(state.plain.problem, settings):
         return False
-    return not (state.effects or _removes(state, taken, settings.least_share_near_noise))
+    return not (state.effects or _removes(state, taken, settings.least_law_share_near_noise))
 
 
 def _removes(state: SearchState, taken: RankedCandidate, least: float) -> bool:

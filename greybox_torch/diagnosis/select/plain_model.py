@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.window_errors import window_errors
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.screen.views import views_of
@@ -82,7 +83,11 @@ def weighted_by_noise(study: Study, state: SearchState) -> Study:
     A noisy sensor must not drown an exact one. This is the maximum-likelihood weighting where the outputs' noises are independent, their
     sizes estimated from a first fit.
     """
-    errors = window_errors(state.plain.fits[0], state.plain.simulator)
     spread = np.nanstd(study.problem.records.y, axis=1)
-    weights = 1.0 / np.sqrt(np.nanmean(errors**2, axis=1) + (1e-4 * spread) ** 2 + 1e-300)
+    weights = 1.0 / np.sqrt(squared_errors(state.plain) + (1e-4 * spread) ** 2 + 1e-300)
     return replace(study, problem=replace(study.problem, weights=weights))
+
+
+def squared_errors(fitted: Hypothesis) -> np.ndarray:
+    """The mean squared errors (n_y,) of a hypothesis over its shortest windows, in output units."""
+    return np.nanmean(window_errors(fitted.fits[0], fitted.simulator) ** 2, axis=1)

@@ -52,6 +52,12 @@ class NoiseSettings:
         unit="times the error of the experiments to choose with",
         chosen_by="convention",
     )
+    between_samples: float = share(
+        1e-3,
+        "Part of the squared error of the model as it stands that may be between samples that a search passes over.",
+        unit="share of the squared error",
+        chosen_by="far below the share of a mismatch that is a finding",
+    )
     negligible_error: float = number(
         1e-5,
         "Error below which nothing matters.",

@@ -94,11 +94,12 @@ def named(dragged: Begun) -> SearchState:
 def test_it_takes_the_place_of_a_name_that_leaves_more(
     dragged: Begun, found: SearchState, named: SearchState, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The name is kept at hand, for held-out experiments to prefer it."""
+    """The name is kept at hand, for held-out experiments to prefer it; so is one that had its place before, of a curve."""
     monkeypatch.setattr(memory, "_linear", lambda study, state, *rest: replace(found, named=None))
-    instead = result_of(with_memory(dragged.study, named))
-    assert instead.effects == found.effects and instead.memory is not None
-    assert instead.named is not None and instead.named.effects == named.effects
+    for standing, names in ((named, named), (replace(named, named=dragged.state), dragged.state)):
+        instead = result_of(with_memory(dragged.study, standing))
+        assert instead.effects == found.effects and instead.memory is not None
+        assert instead.named is not None and instead.named.effects == names.effects
 
 
 def test_where_it_comes_little_farther_the_name_stands_and_it_is_the_ceiling(
