@@ -85,7 +85,7 @@ def _step_sentence(done: SelectionStep, settings: DiagnosisSettings) -> str:
             f"{done.taken.significance:.1f} standard errors away from chance.{preferred}"
         )
     if not done.ranked:
-        return "No candidate explains any of the remaining error."
+        return "No further candidate promised enough in the screen to be refitted."
     best = done.ranked[0]
     return (
         f"The best further candidate, {_name(best.candidate.attachment)}, would lower it by {100 * (1 - np.exp(-best.gain)):.2g} % "

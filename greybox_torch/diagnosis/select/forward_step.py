@@ -21,7 +21,7 @@ from greybox_torch.diagnosis.select.finer_curve import with_finer_curve, with_ti
 from greybox_torch.diagnosis.select.found_before import with_found_before
 from greybox_torch.diagnosis.select.offered import Screened, from_card, from_motion, screen_scores
 from greybox_torch.diagnosis.select.posterior import believed
-from greybox_torch.diagnosis.select.remaining import completes, remaining_share
+from greybox_torch.diagnosis.select.remaining import completes, left_to_complete, remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import Stage
@@ -52,6 +52,8 @@ def forward_step(
         found = with_motion(found, from_card(study, state))
         found = with_motion(found, from_motion(study, state))
         found = with_found_before(study, state, found, curves=curves)
+    if little_is_left(study, state):
+        found = _that_may_complete(study, state, found)
     if found and not state.effects:
         first = max(found, key=lambda candidate: candidate.explained)
         study.journal.pointed_at(first.attachment.named, first.explained)
@@ -180,6 +182,12 @@ def _worth_a_refit(study: Study, state: SearchState, screened: Screened, fine: b
         least = settings.least_screen_share_beside_curve
     found = shortlist(study, screened, state.current.fits)
     return [k for k in found if k.explained >= least and (not k.unknown or _promising(study, state, k))]
+
+
+def _that_may_complete(study: Study, state: SearchState, found: Sequence[Candidate]) -> list[Candidate]:
+    """Those of which the screen leaves hope that nothing but noise is left with them, where nothing less is taken."""
+    least = study.settings.completing_promise * left_to_complete(state.current, study.settings)
+    return [k for k in found if k.found_before or k.explained >= least]
 
 
 def _promising(study: Study, state: SearchState, curve: Candidate) -> bool:

@@ -7,6 +7,8 @@ nothing but noise remains with it: then it completes the model.
 
 from __future__ import annotations
 
+import numpy as np
+
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -31,3 +33,11 @@ def completes(fitted: Hypothesis, settings: DiagnosisSettings) -> bool:
     """Whether a hypothesis leaves hardly more than noise at every window length (an upper bound, where part of the floor is motion)."""
     most = settings.above_noise**2
     return all(fit.mean_square < most * noise_floor(fit.problem, settings) for fit in fitted.fits)
+
+
+def left_to_complete(fitted: Hypothesis, settings: DiagnosisSettings) -> float:
+    """The share of its squared error that has to go before a hypothesis is complete, of the window length that lacks most."""
+    most = settings.above_noise**2
+    return max(
+        1.0 - most * noise_floor(f.problem, settings) / max(f.mean_square, np.finfo(float).tiny) for f in fitted.fits
+    )

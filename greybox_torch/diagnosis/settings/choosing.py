@@ -88,6 +88,13 @@ class ScreenSettings:
         "Error of the equations along the measured motion from which laws are looked for in it: below, simulated windows are right.",
         unit="share of the measured rates (root mean square)",
     )
+    completing_promise: float = share(
+        0.5,
+        "Part of what has to go before noise alone is left that a candidate has to promise for its refits, where so little of the mismatch "
+        "is left that only what completes the model is taken.",
+        unit="share of what has to go",
+        chosen_by="48 cases: what completed a model promised all of it, or nearly (0.94)",
+    )
     screen_tie: float = share(
         0.97, "Share of the best candidate's from which another ties with it.", unit="share of what the best explains"
     )
