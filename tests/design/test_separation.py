@@ -13,13 +13,18 @@ from greybox_torch.experiment_design.separation import (
     seconds_for,
 )
 
-RNG = np.random.default_rng(0)
-SLOPES = RNG.normal(size=(200, 3))
+SLOPES = np.random.default_rng(0).normal(size=(200, 3))
 NOTHING = np.zeros((3, 3))
 
 
-def test_half_the_squared_difference_where_the_rival_has_nothing_to_adjust() -> None:
-    difference = RNG.normal(size=200)
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """The same draws for every test, whatever ran before in its process."""
+    return np.random.default_rng(1)
+
+
+def test_half_the_squared_difference_where_the_rival_has_nothing_to_adjust(rng: np.random.Generator) -> None:
+    difference = rng.normal(size=200)
     assert evidence(difference, np.zeros((200, 1)), np.zeros((1, 1))) == pytest.approx(0.5 * difference @ difference)
 
 
@@ -33,8 +38,8 @@ def test_what_is_known_keeps_the_rival_from_imitating() -> None:
     assert known == sorted(known) and known[-1] == pytest.approx(0.5 * difference @ difference, rel=1e-6)
 
 
-def test_evidence_is_the_minimum_over_the_rivals_unknowns() -> None:
-    difference, known = RNG.normal(size=200), np.diag([1.0, 20.0, 300.0])
+def test_evidence_is_the_minimum_over_the_rivals_unknowns(rng: np.random.Generator) -> None:
+    difference, known = rng.normal(size=200), np.diag([1.0, 20.0, 300.0])
     found = evidence(difference, SLOPES, known)
 
     def at(step: np.ndarray) -> float:
@@ -43,23 +48,23 @@ def test_evidence_is_the_minimum_over_the_rivals_unknowns() -> None:
 
     best = np.linalg.solve(SLOPES.T @ SLOPES + known, SLOPES.T @ difference)
     assert found == pytest.approx(at(best))
-    assert all(at(best + 0.01 * RNG.normal(size=3)) >= found for _ in range(20))
+    assert all(at(best + 0.01 * rng.normal(size=3)) >= found for _ in range(20))
 
 
-def test_units_do_not_matter() -> None:
-    difference, scale = RNG.normal(size=200), np.array([1e-9, 1.0, 1e9])
+def test_units_do_not_matter(rng: np.random.Generator) -> None:
+    difference, scale = rng.normal(size=200), np.array([1e-9, 1.0, 1e9])
     known = np.diag([1.0, 20.0, 300.0])
     other = evidence(difference, SLOPES * scale, known * np.outer(scale, scale))
     assert other == pytest.approx(evidence(difference, SLOPES, known), rel=1e-6)
 
 
-def test_probability_after_simulated_experiments() -> None:
+def test_probability_after_simulated_experiments(rng: np.random.Generator) -> None:
     """Two hypotheses with known outputs in white noise: Bayes's rule over many noises comes to the expectation."""
-    difference, before = 0.15 * RNG.normal(size=200), (0.7, 0.3)
+    difference, before = 0.15 * rng.normal(size=200), (0.7, 0.3)
     nats = 0.5 * float(difference @ difference)
     right = []
     for own, sign in zip(before, (1.0, -1.0), strict=True):
-        told = sign * nats + RNG.normal(size=(4000, 200)) @ difference  # log-likelihood of the first against the second
+        told = sign * nats + rng.normal(size=(4000, 200)) @ difference  # log-likelihood of the first against the second
         first = before[0] / (before[0] + before[1] * np.exp(-told))
         right.append(own * np.mean(first if sign > 0 else 1 - first))
     expected = expected_probability(before, np.array([[0.0, nats], [nats, 0.0]]))

@@ -8,7 +8,12 @@ from greybox_torch.estimate.frequency_response import frequency_response
 
 STEP = 0.01
 POLE = 0.9
-RNG = np.random.default_rng(5)
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    """The same draws for every test, whatever ran before in its process."""
+    return np.random.default_rng(5)
 
 
 def lag(u: np.ndarray, start: float = 0.0) -> np.ndarray:
@@ -36,18 +41,18 @@ def test_the_region_holds_the_true_response() -> None:
     assert 0.9 < np.mean(inside) < 0.99
 
 
-def test_records_are_taken_together() -> None:
+def test_records_are_taken_together(rng: np.random.Generator) -> None:
     """With four records a frequency has four times the lines, and half the standard deviation."""
-    u = RNG.normal(size=(4, 1, 2000))
-    y = np.array([lag(one[0], start=float(k)) + 0.05 * RNG.normal(size=2000) for k, one in enumerate(u)])[:, None]
+    u = rng.normal(size=(4, 1, 2000))
+    y = np.array([lag(one[0], start=float(k)) + 0.05 * rng.normal(size=2000) for k, one in enumerate(u)])[:, None]
     alone, together = frequency_response(list(u[:1]), list(y[:1]), STEP), frequency_response(list(u), list(y), STEP)
     assert alone is not None and together is not None
     same = np.interp(together.frequency, alone.frequency, np.sqrt(alone.variance[0, 0]))
     assert np.median(np.sqrt(together.variance[0, 0]) / same) == pytest.approx(0.5, rel=0.2)
 
 
-def test_two_inputs_and_two_outputs() -> None:
-    u = RNG.normal(size=(2, 6000))
+def test_two_inputs_and_two_outputs(rng: np.random.Generator) -> None:
+    u = rng.normal(size=(2, 6000))
     y = np.stack([lag(u[0]) + 3.0 * u[1], -2.0 * u[0]])
     found = frequency_response([u], [y], STEP)
     assert found is not None
@@ -57,20 +62,20 @@ def test_two_inputs_and_two_outputs() -> None:
     assert found.outputs[1] == pytest.approx(4.0 * found.inputs[0])
 
 
-def test_what_is_not_excited_is_not_known() -> None:
+def test_what_is_not_excited_is_not_known(rng: np.random.Generator) -> None:
     """An input at rest, and two that move alike: the variance says so, and nothing is made up."""
-    u = RNG.normal(size=4000)
+    u = rng.normal(size=4000)
     resting = frequency_response([np.stack([u, np.zeros(4000)])], [lag(u)[None]], STEP)
     assert resting is not None and np.isinf(resting.variance[0, 1]).all()
-    alike = frequency_response([np.stack([u, u])], [(lag(u) + 0.01 * RNG.normal(size=4000))[None]], STEP)
+    alike = frequency_response([np.stack([u, u])], [(lag(u) + 0.01 * rng.normal(size=4000))[None]], STEP)
     assert alike is not None and (np.sqrt(alike.variance) > 10.0 * np.abs(alike.gain)).all()
 
 
-def test_frequencies_without_input_power() -> None:
+def test_frequencies_without_input_power(rng: np.random.Generator) -> None:
     """A sum of sines leaves most lines without power: there the deviation is as large as the response."""
     time = STEP * np.arange(4000)
     u = np.sum([np.sin(2 * np.pi * f * time + f) for f in np.arange(0.5, 5.0, 0.025)], axis=0)
-    found = frequency_response([u[None]], [(lag(u) + 0.001 * RNG.normal(size=4000))[None]], STEP)
+    found = frequency_response([u[None]], [(lag(u) + 0.001 * rng.normal(size=4000))[None]], STEP)
     assert found is not None
     uncertain = np.sqrt(found.variance[0, 0]) / np.abs(found.gain[0, 0])
     assert (uncertain[found.frequency > 8.0] > 0.5).all()
@@ -78,10 +83,10 @@ def test_frequencies_without_input_power() -> None:
     assert (uncertain[within] < 0.05).all()
 
 
-def test_power_without_leakage() -> None:
+def test_power_without_leakage(rng: np.random.Generator) -> None:
     """A slow drift a thousand times as large as the rest leaves the power at high frequencies what it is."""
     time = STEP * np.arange(8000)
-    u = RNG.normal(size=8000)
+    u = rng.normal(size=8000)
     found = frequency_response([(u + 1000.0 * time / time[-1])[None]], [u[None]], STEP)
     assert found is not None
     high = found.frequency > 10.0
@@ -89,8 +94,8 @@ def test_power_without_leakage() -> None:
 
 
 @pytest.mark.parametrize("samples", [0, 1, 8, 18])
-def test_a_record_too_short(samples: int) -> None:
-    u = RNG.normal(size=(1, samples))
+def test_a_record_too_short(samples: int, rng: np.random.Generator) -> None:
+    u = rng.normal(size=(1, samples))
     assert frequency_response([u], [u], STEP) is None
 
 
