@@ -36,7 +36,7 @@ def coarser(
     problem_of: Callable[[DataSet], Problem],
     settings: DiagnosisSettings,
     budget: SearchBudget,
-    left: np.ndarray | None = None,
+    left: Callable[[], np.ndarray] | None = None,
 ) -> Coarser:
     """``dataset`` with as few samples as still show nothing but noise between them, and need no more sub-steps; as it is where all do.
 
@@ -44,13 +44,14 @@ def coarser(
         problem: of the estimation experiments of ``dataset``.
         simulator: with the sub-steps that ``problem`` needs.
         problem_of: makes such a problem of a data set.
-        left: mean squared errors (n_y,) of the model as it stands, in output units. With them, motion may be between the samples as well
-            that is a small part of these (``between_samples``); without, where the recordings do not tell their noise all samples are kept.
+        left: simulates the mean squared errors (n_y,) of the model as it stands, in output units. With them, motion may be between the
+            samples as well that is a small part of these (``between_samples``); without, where the recordings do not tell their noise all
+            samples are kept.
     """
     most = min(budget.most_passed_over + 1, _fewest(dataset) // budget.least_samples)
     if most < 2 or (left is None and not floor_known(problem, settings)):
         return Coarser(dataset, problem)
-    beside = np.zeros(len(problem.weights)) if left is None else settings.between_samples * left
+    beside = np.zeros(len(problem.weights)) if left is None else settings.between_samples * left()
     between = "nothing but noise is" if left is None else "next to nothing of what the model leaves is"
     inputs = [i.name for i in problem.model.inputs]
     for every in range(most, 1, -1):

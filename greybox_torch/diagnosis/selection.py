@@ -95,7 +95,7 @@ def find(
     clock.lap("preparing")
     study, state = fit_plain_model(study)
     if study.recorded is None:
-        some = fewer(left=squared_errors(state.plain))
+        some = fewer(left=partial(squared_errors, state.plain))
         if some.problem is not study.problem:
             study, state = fit_plain_model(_searching(study, some))
     schedule = Schedule.within(end, free_runs.seconds, study.budget)

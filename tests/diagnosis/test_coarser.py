@@ -75,7 +75,7 @@ def searched(
 
     problem = problem_of(data)
     budget = gt.SearchBudget(least_samples=least, most_passed_over=most)
-    squared = None if left is None else np.array([left**2])
+    squared = None if left is None else lambda: np.array([left**2])
     return coarser(data, problem, simulator_for(problem), problem_of, gt.DiagnosisSettings(), budget, squared)
 
 

@@ -17,7 +17,7 @@ from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
 from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.forward_step import little_is_left, take_best
 from greybox_torch.diagnosis.select.offered import Place, memory_scores, place
-from greybox_torch.diagnosis.select.remaining import completes, remaining_share
+from greybox_torch.diagnosis.select.remaining import completes, left_to_complete, remaining_share
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage, result_of
 from greybox_torch.diagnosis.study import Study
@@ -138,4 +138,4 @@ def _share_to_remove(study: Study, state: SearchState, standing: SearchState) ->
         return 1.0 - remaining_share(standing.plain, standing.current, study.settings)
     if not state.effects:
         return 0.0
-    return 1.0 - (study.settings.above_noise / times_noise(study.problem, state.current, study.settings)) ** 2
+    return left_to_complete(state.current, study.settings)

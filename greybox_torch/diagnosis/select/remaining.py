@@ -7,8 +7,7 @@ nothing but noise remains with it: then it completes the model.
 
 from __future__ import annotations
 
-import numpy as np
-
+from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -37,7 +36,7 @@ def completes(fitted: Hypothesis, settings: DiagnosisSettings) -> bool:
 
 def left_to_complete(fitted: Hypothesis, settings: DiagnosisSettings) -> float:
     """The share of its squared error that has to go before a hypothesis is complete, of the window length that lacks most."""
-    most = settings.above_noise**2
-    return max(
-        1.0 - most * noise_floor(f.problem, settings) / max(f.mean_square, np.finfo(float).tiny) for f in fitted.fits
-    )
+    left = max(
+        times_noise(fitted.problem, fitted, settings), 1e-100
+    )  # nothing at all, of a simulated record without noise
+    return 1.0 - (settings.above_noise / left) ** 2
