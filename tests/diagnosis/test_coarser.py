@@ -87,6 +87,13 @@ def test_as_many_samples_are_passed_over_as_show_nothing_but_noise(recorded, mot
     assert faster.sentences == ()
 
 
+def test_samples_that_are_not_as_far_apart_are_passed_over_as_well(recorded, motor) -> None:
+    data = recorded()
+    late = [replace(r, time=r.time + 0.002 * (np.arange(SAMPLES) % 2)) for r in data.recordings]
+    found = searched(replace(data, recordings=tuple(late)), motor)
+    assert [len(r) for r in found.dataset.recordings] == 2 * [SAMPLES // 6]
+
+
 def test_where_the_noise_is_not_known_what_the_model_leaves_says_how_many(recorded, motor) -> None:
     """An encoder of fine resolution: what is between its samples is motion, of which a large error is no part."""
     data = recorded(period=200.0, noise=0.0)
