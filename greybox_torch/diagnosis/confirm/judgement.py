@@ -59,6 +59,14 @@ class Judgement:
         return self._energy(self.refit, self.unstable), self._energy(self.with_effects, self.unstable)
 
     @property
+    def missed(self) -> float:
+        """Mean squared error beyond the noise of the model with effects, in the variances of its outputs, over the validation experiments
+        that count; none where none does.
+        """
+        among = self.judges - self.unstable
+        return self.mismatch(True, among) / max(1, len(among) * len(self.problem.model.outputs))
+
+    @property
     def problem(self) -> Problem:
         """The plain model on all experiments, which are in the order of the card."""
         return self.free_runs.problem

@@ -16,7 +16,7 @@ from greybox_torch.diagnosis.describe.profiles import explained_energy, local_si
 from greybox_torch.diagnosis.effect import Curve, Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.one_of import Alternative
-from greybox_torch.diagnosis.select.posterior import by_comparison, for_all_that_is_left, shared
+from greybox_torch.diagnosis.select.posterior import LeftInFreeRuns, by_comparison, for_all_that_is_left, shared
 from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.study import Study
@@ -34,6 +34,7 @@ def describe(
     sums: tuple[float, ...],
     gains: Mapping[str, Gain],
     sizes: Mapping[str, float],
+    missed: float = 0.0,
 ) -> tuple[Effect, ...]:
     """The effects of the search's final hypothesis.
 
@@ -42,12 +43,13 @@ def describe(
         sums: mean squared validation errors of the plain and the augmented model, summed over experiments.
         gains: by effect, on held-out experiments, where there are any.
         sizes: by effect, the share of the whole mismatch that it accounts for.
+        missed: mean squared error of free validation runs with them, beyond the noise and in variances of what was measured.
     """
     hypothesis = state.current
     assert isinstance(hypothesis.model, AugmentedModel)
     floor = min(f.mean_square for f in hypothesis.fits) * max(1, len(study.problem.records.first))
     whole = max(0.0, (sums[0] - sums[1]) / max(sums[0] - floor, 1e-300))
-    parts, left = _parts(state), _left(sums)
+    parts, left = _parts(state), LeftInFreeRuns(_left(sums), missed)
     return tuple(
         replace(
             _effect(study, state, hypothesis.model, e, final, min(1.0, whole * part), gains.get(e.prefix), left),
@@ -80,7 +82,7 @@ def _effect(
     final: Final,
     explained: float,
     gain: Gain | None,
-    left: float,
+    left: LeftInFreeRuns,
 ) -> Effect:
     taken = state.step_beside_others(attachment.prefix)
     probability, alternatives = _probability(study, state, attachment, taken, left)
@@ -114,20 +116,16 @@ def _effect(
 
 
 def _probability(
-    study: Study, state: SearchState, attachment: Attachment, taken: SelectionStep | None, left: float
+    study: Study, state: SearchState, attachment: Attachment, taken: SelectionStep | None, left: LeftInFreeRuns
 ) -> tuple[float, tuple[Alternative, ...]]:
-    """The probability of an effect and of its alternatives; of a law less where much of the mismatch is left with all of them, over
-    windows or in free runs, of which ``left`` is.
-    """
+    """The probability of an effect and of its alternatives: less where much is left with all of them, over windows or in free runs."""
     if taken is None or taken.taken is None:
         without = state.without.get(attachment.prefix, state.plain)
         probability, alternatives = by_comparison(without, state.current, study.settings), ()
     else:
         probability, alternatives = shared(taken.taken, taken.ranked, study.settings, study.beliefs, taken.led)
-    if attachment.mechanism.free:
-        return probability, alternatives
-    share = remaining_share(state.plain, state.current, study.settings)
-    return for_all_that_is_left(probability, share, state.current, study.settings, left), alternatives
+    share, free = remaining_share(state.plain, state.current, study.settings), attachment.mechanism.free
+    return for_all_that_is_left(probability, share, state.current, study.settings, left, free=free), alternatives
 
 
 def ceiling_share(done: SelectionStep, memory: SelectionStep | None = None) -> float | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,20 +30,43 @@ def of_a_stopped_search(effects: Sequence[Effect], settings: DiagnosisSettings) 
     )
 
 
-def for_all_that_is_left(
-    probability: float, share: float, left: Hypothesis, settings: DiagnosisSettings, of_free_runs: float = 0.0
-) -> float:
-    """The probability of a name, given what all findings together leave: much more than noise, and more than a finding is.
+@dataclass(frozen=True)
+class LeftInFreeRuns:
+    """What all findings together leave in free runs of the validation experiments.
 
-    Where that is most of the mismatch, what is named may be a part of what takes the place of the machine's own law.
+    ``of_mismatch``: share of the squared error of the model as it stands. ``of_measured``: mean squared error beyond the noise, in variances
+    of what was measured.
+    """
+
+    of_mismatch: float = 0.0
+    of_measured: float = 0.0
+
+
+def for_all_that_is_left(
+    probability: float,
+    share: float,
+    left: Hypothesis,
+    settings: DiagnosisSettings,
+    free_runs: LeftInFreeRuns = LeftInFreeRuns(),
+    *,
+    free: bool = False,
+) -> float:
+    """The probability of a finding, given what all findings together leave: much more than noise, and more than a finding is.
+
+    Where that is most of the mismatch, what is named may be a part of what takes the place of the machine's own law. Where free runs miss
+    much of what was measured, no law and no curve is known to be the machine's, however much better it is than none.
 
     Args:
         share: of the whole mismatch, that ``left`` leaves.
-        of_free_runs: share of the squared error of free validation runs that is left.
+        free: whether it is a free curve, which no law of the machine can be mistaken for.
     """
     if not far_above_noise(left, settings) or share <= settings.least_size:
         return probability
-    most_is_left = max(share, of_free_runs) > settings.most_of_mismatch
+    if free_runs.of_measured > settings.most_of_measured:
+        return min(probability, settings.highest_probability_where_most_is_left)
+    if free:
+        return probability
+    most_is_left = max(share, free_runs.of_mismatch) > settings.most_of_mismatch
     highest = (
         settings.highest_probability_where_most_is_left
         if most_is_left

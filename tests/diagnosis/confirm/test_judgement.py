@@ -73,6 +73,7 @@ def test_an_experiment_that_no_free_run_follows_does_not_count(judged, monkeypat
     monkeypatch.setattr(judgement, "output_floors", lambda problem, settings: np.zeros((4, 1)))
     assert found.left(True)[0] == pytest.approx((0.1**2 + 0.2**2) / (1.4**2 + 0.3**2))
     assert found.mismatch(True, {"second"}) == pytest.approx(0.25)
+    assert found.missed == pytest.approx((0.1**2 + 0.2**2) / 2), "of those that count, by experiment and output"
 
 
 def test_where_runs_stay_together_they_have_the_last_word(judged) -> None:

@@ -2,24 +2,45 @@
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any
 
-from greybox_torch.diagnosis.select.posterior import for_all_that_is_left
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.select.posterior import LeftInFreeRuns, for_all_that_is_left
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 SETTINGS, SAMPLES = DiagnosisSettings(), 20_000
 
 
-def test_a_name_is_less_sure_the_more_is_left_with_it(stub) -> None:
-    """Seen: dry friction at the wrong port, 0.85, which left 82 times the noise and four fifths of the mismatch."""
+@pytest.fixture
+def left_much(stub) -> Any:
+    """Hypotheses that leave a mean squared error over noise of a hundredth."""
     y = 0.1 * np.random.default_rng(5).normal(size=(1, SAMPLES))
     records = stub(y=y, u=y, first=np.array([0]), span=lambda e: slice(0, SAMPLES))
     problem = stub(records=records, weights=np.ones(1))
-    much, little = (stub(fits=(stub(mean_square=error),), problem=problem) for error in (1.0, 0.011))
+    return lambda error: stub(fits=(stub(mean_square=error),), problem=problem)
+
+
+def test_a_name_is_less_sure_the_more_is_left_with_it(left_much) -> None:
+    """Seen: dry friction at the wrong port, 0.85, which left 82 times the noise and four fifths of the mismatch."""
+    much, little = left_much(1.0), left_much(0.011)
     assert [for_all_that_is_left(0.97, share, much, SETTINGS) for share in (0.01, 0.3, 0.8)] == [0.97, 0.85, 0.5]
     assert for_all_that_is_left(0.3, 0.8, much, SETTINGS) == 0.3
     assert for_all_that_is_left(0.97, 0.8, little, SETTINGS) == 0.97, "near the noise"
-    free_runs = [for_all_that_is_left(0.97, 0.01, much, SETTINGS, of_free_runs=left) for left in (0.5, 0.9)]
+    worse, far_worse = LeftInFreeRuns(of_mismatch=0.5), LeftInFreeRuns(of_mismatch=0.9)
+    free_runs = [for_all_that_is_left(0.97, 0.01, much, SETTINGS, left) for left in (worse, far_worse)]
     assert free_runs == [0.97, 0.97], "over windows next to nothing is left"
-    assert for_all_that_is_left(0.97, 0.3, much, SETTINGS, of_free_runs=0.9) == 0.5
-    assert for_all_that_is_left(0.97, 0.3, little, SETTINGS, of_free_runs=0.9) == 0.97
+    assert for_all_that_is_left(0.97, 0.3, much, SETTINGS, far_worse) == 0.5
+    assert for_all_that_is_left(0.97, 0.3, much, SETTINGS, far_worse, free=True) == 0.97, "a curve may be a part"
+    assert for_all_that_is_left(0.97, 0.3, little, SETTINGS, far_worse) == 0.97
+
+
+@pytest.mark.parametrize("free", [False, True])
+def test_no_finding_is_sure_where_free_runs_follow_little_of_what_was_measured(left_much, free: bool) -> None:
+    """Seen: a cogging motor under control, told with a lag and a mode (0.85) and a curve (0.97), none of them known of; a fit of 53 %."""
+    much, little = left_much(1.0), left_much(0.011)
+    followed, missed = LeftInFreeRuns(of_measured=0.1), LeftInFreeRuns(of_measured=0.2)
+    assert for_all_that_is_left(0.97, 0.3, much, SETTINGS, followed, free=free) == (0.97 if free else 0.85)
+    assert for_all_that_is_left(0.97, 0.3, much, SETTINGS, missed, free=free) == 0.5
+    assert for_all_that_is_left(0.97, 0.3, little, SETTINGS, missed, free=free) == 0.97, "what they miss is noise"
