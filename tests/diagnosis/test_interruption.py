@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis import findings, selection
-from greybox_torch.diagnosis.confirm import held_out
+from greybox_torch.diagnosis.confirm import exercised, held_out
 from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
 from greybox_torch.diagnosis.pipeline import Diagnosis, diagnose
 from greybox_torch.diagnosis.refit import rank, refitted
 from greybox_torch.diagnosis.screen.score_test import Screen
-from greybox_torch.diagnosis.select import offered
+from greybox_torch.diagnosis.select import offered, plain_model
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.estimate.problem import Problem
@@ -69,7 +69,9 @@ def remembered() -> Any:
     once(offered, "scan_orders", lambda study, effects, free, fits: tuple(map(id, fits)))
     once(Screen, "of", lambda model, effects, there, *rest, **how: (fingerprint(effects), fingerprint(there)))
     once(Screen, "scores", lambda screen, fit, *rest: (id(screen), id(fit)))
-    once(held_out, "held_out_fits", lambda hypothesis, *rest: (id(hypothesis), fingerprint(rest)))
+    for module in (held_out, exercised):
+        once(module, "held_out_fits", lambda hypothesis, *rest: (id(hypothesis), fingerprint(rest)))
+    once(plain_model, "views_of", lambda problem, motion: problem.weights.tobytes())
     once(findings, "finish", lambda hypothesis, *rest, **how: id(hypothesis))
     once(
         FreeRuns,

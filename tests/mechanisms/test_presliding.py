@@ -25,15 +25,15 @@ def test_bristle_only_stores_and_dissipates(law, rates, v, z) -> None:
 
 
 def test_bristle_dissipates_over_a_closed_cycle(law, rates) -> None:
-    step, bristle, work = 1e-4, 0.0, []
-    for t in np.arange(0.0, 4.0, step):
+    step, bristle, work = 2e-4, 0.0, []
+    for t in step * np.arange(15_000):
         v, memory = np.array(3.0 * np.cos(2 * np.pi * t)), {"bristle": np.array(bristle)}
         work.append(float(law(PreslidingHysteresis(), BRISTLE, memory, speed=v) * v) * step)
         bristle += step * float(rates(PreslidingHysteresis(), BRISTLE, memory, speed=v)[0])
-    per_cycle = np.array(work).reshape(4, -1).sum(axis=1)
-    assert per_cycle[3] == pytest.approx(per_cycle[2], rel=1e-3)
+    per_cycle = np.array(work).reshape(3, -1).sum(axis=1)
+    assert per_cycle[2] == pytest.approx(per_cycle[1], rel=1e-3)
     travel = 4 * 3.0 / (2 * np.pi)
-    assert -2.0 * travel < per_cycle[3] < -0.8 * 2.0 * travel  # at most that of full sliding, and a good part of it
+    assert -2.0 * travel < per_cycle[2] < -0.8 * 2.0 * travel  # at most that of full sliding, and a good part of it
 
 
 SHARP = {**BRISTLE, "sharpness": 0.7, "sigma": 0.3}
@@ -48,14 +48,22 @@ def test_richer_bristles_only_store_and_dissipate(law, rates, v, z, m, s) -> Non
     assert force * v + 2.0 / 0.05 * memory["bristle"] * rate <= 1e-12
 
 
-def _slid(law, rates, mechanism, values, v: float, steps: int = 4000) -> list[float]:
+def _slid(law, rates, mechanism, values, v: float) -> list[float]:
     """The force while a body begins to move at a speed."""
     bristle, forces = 0.0, []
-    for _ in range(steps):
+    for _ in range(4000):
         memory = {"bristle": np.array(bristle)}
         forces.append(float(law(mechanism, values, memory, speed=np.array(v))))
         bristle += 1e-4 * float(rates(mechanism, values, memory, speed=np.array(v))[0])
     return forces
+
+
+def _sliding(law, rates, mechanism, values, v: np.ndarray) -> np.ndarray:
+    """The force once bodies have moved at their speeds for long: 20 times as far as bristles bend at the slowest."""
+    bristle = np.zeros_like(v)
+    for _ in range(10_000):
+        bristle = bristle + 2e-4 * rates(mechanism, values, {"bristle": bristle}, speed=v)[0]
+    return law(mechanism, values, {"bristle": bristle}, speed=v)
 
 
 def test_slip_sets_in_at_once(law, rates) -> None:
@@ -67,11 +75,10 @@ def test_slip_sets_in_at_once(law, rates) -> None:
     assert abs(plain[349]) < 0.8 * abs(spring[-1]) and sharp[-1] == pytest.approx(-2.0, rel=1e-3)
 
 
-@pytest.mark.parametrize("v", [0.5, 2.0, -2.0])
-def test_the_level_of_sliding_falls_with_speed(law, rates, v) -> None:
-    values = {**BRISTLE, "s": 0.6, "v_s": 1.5}
-    slid = _slid(law, rates, PreslidingHysteresis(falling=True), values, v, 20_000)[-1]
-    assert slid == pytest.approx(-2.0 * np.sign(v) * (1.0 + 0.6 * np.exp(-((v / 1.5) ** 2))), rel=1e-3)
+def test_the_level_of_sliding_falls_with_speed(law, rates) -> None:
+    values, v = {**BRISTLE, "s": 0.6, "v_s": 1.5}, np.array([0.5, 2.0, -2.0])
+    slid = _sliding(law, rates, PreslidingHysteresis(falling=True), values, v)
+    np.testing.assert_allclose(slid, -2.0 * np.sign(v) * (1.0 + 0.6 * np.exp(-((v / 1.5) ** 2))), rtol=1e-3)
 
 
 def test_bristles_damp_by_their_own_rate(law, rates) -> None:
@@ -96,8 +103,7 @@ def test_richer_forms_of_presliding_begin_where_it_was_found() -> None:
     assert not PreslidingHysteresis(True, True).richer(SHARP)
 
 
-@pytest.mark.parametrize("v", [0.5, 2.0, -9.0])
-def test_stribeck_friction_may_be_that_of_bristles(law, rates, v) -> None:
+def test_stribeck_friction_may_be_that_of_bristles(law, rates) -> None:
     """A law with a memory that slides at the same level. Seen: a painting robot's motor, whose bristles change the sign of the force so
     slowly that Stribeck friction was refused, and told without a name (149 s)."""
     values = {"F_c": 2.0, "F_s": 1.2, "c": 0.0, "v_s": 1.5, "v_0": 0.01}
@@ -107,8 +113,9 @@ def test_stribeck_friction_may_be_that_of_bristles(law, rates, v) -> None:
         {"sharp": True, "falling": True},
     ]
     form, begun = forms[0]
-    slid = _slid(law, rates, form, {"z_0": 0.05, **begun}, v, 20_000)[-1]
-    assert slid == pytest.approx(float(law(StribeckFriction(), values, speed=np.array(v))), rel=1e-3)
+    v = np.array([0.5, 2.0, -9.0])
+    slid = _sliding(law, rates, form, {"z_0": 0.05, **begun}, v)
+    np.testing.assert_allclose(slid, law(StribeckFriction(), values, speed=v), rtol=1e-3)
 
 
 def test_friction_without_a_level_is_not_that_of_bristles() -> None:
