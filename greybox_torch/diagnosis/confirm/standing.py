@@ -78,7 +78,7 @@ def refinements(
     """
     if others is not None and _made_of_little_things(study, state, others, gains, sizes):
         return set(state.prefixes)
-    within = {e.prefix for e in state.effects if _within_a_sample(study, state, e)}
+    within = {e.prefix for e in state.effects if _within_a_sample(study, state, e, sizes[e.prefix])}
     small = _too_small(study, state, others, gains, sizes)
     return small | within if within and _little_is_missing(study, state, others) else small
 
@@ -106,12 +106,18 @@ def _too_small(
     return {p for p in state.prefixes if not sizes[p] >= least or doubtful(p) or part_of_another(p)}
 
 
-def _within_a_sample(study: Study, state: SearchState, effect: Attachment) -> bool:
-    """Whether an effect is a shift in time by a small part of the interval between two recorded samples."""
+def _within_a_sample(study: Study, state: SearchState, effect: Attachment, accounts_for: float) -> bool:
+    """Whether an effect is a shift in time by a small part of the interval between two recorded samples.
+
+    One that does not account for nearly all that is missing has to be larger: an input that does not change at once but over the interval
+    is late by half of it. Seen: a complete reactor, told as a dead time of 0.3 samples (0.97), 72 % of what it left beyond the noise.
+    """
     if effect.mechanism.nature != Lag.nature:
         return False
+    settings = study.settings
     recorded = study.problem.records if study.recorded is None else study.recorded
-    return state.current.values()[f"{effect.prefix}.T"] < study.settings.shortest_shift * float(np.median(recorded.dt))
+    least = settings.shortest_shift if accounts_for >= settings.nearly_all else settings.shift_of_a_hold
+    return state.current.values()[f"{effect.prefix}.T"] < least * float(np.median(recorded.dt))
 
 
 def _made_of_little_things(

@@ -35,3 +35,15 @@ class SamplingSettings:
         unit="sampling intervals",
         chosen_by="a filter of a fifth of a sample and an edge of a twentieth; delays that were concealed last half a sample and more",
     )
+    shift_of_a_hold: float = share(
+        0.5,
+        "The same where it does not account for nearly all of what is missing: an input that changes over the interval is as late.",
+        unit="sampling intervals",
+        chosen_by="the mean delay of an input that is interpolated where the card says that it is held",
+    )
+    nearly_all: float = share(
+        0.9,
+        "Size from which a shift in time accounts for nearly all that is missing.",
+        unit="share of the plain model's held-out mismatch",
+        chosen_by="concealed shifts of less than half a sample near the noise: 0.97 to 1; a complete reactor's: 0.72",
+    )

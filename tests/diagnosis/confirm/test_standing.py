@@ -121,9 +121,18 @@ def test_where_little_is_missing_one_effect_accounts_for_most_of_that_or_none_is
 
 
 @pytest.mark.parametrize("law", [InputDelay(), InputLag(), SensorLag(True)])
-@pytest.mark.parametrize(("samples", "times", "told"), [(0.22, 1.7, False), (0.59, 1.7, True), (0.17, 390.0, True)])
+@pytest.mark.parametrize(
+    ("samples", "size", "times", "told"),
+    [
+        (0.22, 0.95, 1.7, False),
+        (0.30, 0.95, 1.7, True),
+        (0.30, 0.72, 1.7, False),
+        (0.59, 0.72, 1.7, True),
+        (0.17, 0.72, 390.0, True),
+    ],
+)
 def test_a_shift_within_a_sampling_interval_is_no_finding_near_the_noise(
-    dead_zone_search, fits, stub, law, samples, times, told
+    dead_zone_search, fits, stub, law, samples, size, times, told
 ) -> None:
     """Seen: a drone that nothing is missing from, told as a dead time of a tenth of a sample (0.97). As recorded, not as it is searched.
 
@@ -140,7 +149,7 @@ def test_a_shift_within_a_sampling_interval_is_no_finding_near_the_noise(
         state = stub(effects=(effect,), prefixes={effect.prefix}, current=current, plain=plain)
         others = stub(times_noise=lambda hypothesis: np.array([1.0]))
         asked = replace(study, recorded=recorded)
-        assert (not refinements(asked, state, others, {}, {effect.prefix: 0.9})) is told
+        assert (not refinements(asked, state, others, {}, {effect.prefix: size})) is told
 
 
 def test_of_two_laws_of_friction_at_one_body_or_of_one_spring_the_small_one_is_part_of_the_other(
