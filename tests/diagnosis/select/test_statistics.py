@@ -11,6 +11,7 @@ from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.confirm.held_out import Gain, gain
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.significance import likelihood_significance
+from greybox_torch.diagnosis.one_of import Alternative, OneOf
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.choice import least_gain
@@ -145,12 +146,17 @@ def test_what_makes_a_model_simulate_gains_everything(fitted) -> None:
     assert gain(fits, ()).errors_away == 0.0
 
 
-def test_a_stopped_search_is_not_sure_of_a_curve() -> None:
-    """Names may not have been tried in its place."""
+def test_a_stopped_search_is_not_sure() -> None:
+    """Of a curve, in the place of which names may not have been tried, less than of a name; of a class as sure as before."""
     curve = Effect("motor", "unknown", 0.97, ("speed",), "", {}, 0.5, (), None)
-    named = replace(curve, mechanism="backlash", port="gear_spring")
-    less, same = of_a_stopped_search((curve, named), SETTINGS)
-    assert less.probability == 0.5 and same == named
+    shares = (Alternative("gear_spring", "backlash", 0.9), Alternative("gear_spring", "end_stop", 0.06))
+    whole = OneOf("a gap at gear_spring", 0.96, shares)
+    named = replace(curve, mechanism="backlash", port="gear_spring", probability=0.9, one_of=whole)
+    unsure = replace(named, probability=0.3, one_of=None)
+    less, at_most, same = of_a_stopped_search((curve, named, unsure), SETTINGS)
+    assert less.probability == 0.5 and same == unsure
+    assert at_most.probability == 0.85 and at_most.one_of is not None and at_most.one_of.probability == 0.96
+    assert [m.probability for m in at_most.one_of.members] == [0.85, 0.06]
 
 
 @pytest.mark.parametrize(("noise", "first"), [(1.0, "coulomb_asymmetry"), (0.1, "constant_bias")])
