@@ -6,8 +6,15 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.estimate.window_information import window_information
+from greybox_torch.linear_algebra import solve
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.mechanisms.sign_change import WIDE, WIDTH
+
+DEVIATIONS = 2.0
+"""Standard deviations by which a width has to be larger than dry friction's."""
 
 
 def degenerate(
@@ -29,3 +36,25 @@ def degenerate(
         {n.removeprefix(start): v for n, v in some.items() if n.startswith(start)} for some in (values, finite)
     )
     return effect.mechanism.degenerate(surroundings[effect.port], own, known)
+
+
+def grows_with_speed(fitted: Hypothesis, effect: Attachment, surroundings: Mapping[str, Surroundings]) -> bool:
+    """Whether dry friction, as it is fitted over windows, surely changes its sign over so many speeds that it is none.
+
+    A width that the recordings hardly determine, as they pass through rest within a sample or two, says nothing. Seen: two eddy-current
+    brakes, whose force rises up to a speed and falls beyond it, told as Coulomb friction (0.97).
+    """
+    name, values = f"{effect.prefix}.{WIDTH}", fitted.values()
+    free = fitted.problem.free_names
+    if not effect.mechanism.rubs or name not in free:
+        return False
+    wide = WIDE * surroundings[effect.port].ranges["speed"].reach
+    if values[name] < wide:
+        return False
+    longest, at = fitted.fits[-1], free.index(name)
+    known = window_information(longest, fitted.simulator)
+    if known is None:
+        return False
+    own = np.eye(len(free))[at]
+    variance = longest.mean_square * float(own @ solve(known, own))
+    return bool(values[name] - DEVIATIONS * np.sqrt(max(variance, 0.0)) >= wide)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from greybox_torch.diagnosis.hypothesis.degenerate import degenerate
+from greybox_torch.diagnosis.hypothesis.degenerate import degenerate, grows_with_speed
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import white_samples, window_significance
 from greybox_torch.diagnosis.screen.shortlist import Candidate
@@ -77,4 +77,6 @@ def judged(
 
 def sound(study: Study, ranked: RankedCandidate) -> bool:
     """Whether the newest effect's parameters, as they were refitted, say something of the machine."""
-    return degenerate(ranked.candidate.attachment, study.surroundings, ranked.fitted.values()) is None
+    effect, fitted = ranked.candidate.attachment, ranked.fitted
+    says_something = degenerate(effect, study.surroundings, fitted.values()) is None
+    return says_something and not grows_with_speed(fitted, effect, study.surroundings)

@@ -43,6 +43,11 @@ a voice coil that leaves its gap, a damper whose oil is torn along, a rope or a 
 brake that acts over a part of the way.
 """
 
+OWN = {"body": ("speed",), "balance": ("level",)}
+"""By kind of port, what a level elsewhere may change the effect of: friction with a temperature, a rate of reaction or a resistance with a
+temperature or a charge.
+"""
+
 MOST_FROM_ELSEWHERE, MOST_KNOTS_FROM_ELSEWHERE = 24, 20
 """Curves of signals of other ports that are tried at all, and how fine they may be: each knot costs the screen as much as a law."""
 
@@ -128,8 +133,8 @@ def _curves(model: GreyBoxModel, port: Port, knots: int) -> Iterable[Unknown]:
 
 
 def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
-    """What another part of the machine does to a port by where it stands: by itself, or to what an input or the body's speed does there.
-    What it does by how fast it is (the air that a turning rotor drags along) it does by itself.
+    """What another part of the machine does to a port by where it stands: by itself, or to what an input, the body's speed or the level
+    does there. What it does by how fast it is (the air that a turning rotor drags along) it does by itself.
 
     No more than ``MOST_FROM_ELSEWHERE``, which the ports take in turn.
     """
@@ -137,8 +142,8 @@ def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unk
 
     def of(port: Port) -> Iterator[tuple[Port, Unknown]]:
         for signal in signals_elsewhere(model, port):
-            speed = ["speed"] if isinstance(port, Body) and signal.startswith(LEVEL) else []
-            factors = ("",) if signal.startswith(SPEED) else ("", *inputs, *speed)
+            own = OWN.get(port.kind, ()) if signal.startswith(LEVEL) else ()
+            factors = ("",) if signal.startswith(SPEED) else ("", *inputs, *own)
             yield from ((port, Unknown(signal, knots, factor)) for factor in factors)
 
     in_turn = (way for turn in zip_longest(*map(of, model.ports)) for way in turn if way is not None)

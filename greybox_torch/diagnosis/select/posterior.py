@@ -39,8 +39,8 @@ def _at_most(highest: float, effect: Effect) -> Effect:
 class LeftInFreeRuns:
     """What all findings together leave in free runs of the validation experiments.
 
-    ``of_mismatch``: share of the squared error of the model as it stands. ``of_measured``: mean squared error beyond the noise, in variances
-    of what was measured.
+    ``of_mismatch``: share of the squared error of the model as it stands. ``of_measured``: mean squared error beyond the noise, in
+    variances of what was measured.
     """
 
     of_mismatch: float = 0.0

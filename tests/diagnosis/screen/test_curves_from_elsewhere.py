@@ -112,7 +112,10 @@ class Cell(GreyBoxModel):
 
 
 def test_a_balance_is_offered_the_levels_of_others_and_its_only_input() -> None:
-    """Seen: the heat of a battery's reaction, the current times a curve of the charge: "without a name", after 142 s."""
+    """Seen: the heat of a battery's reaction, the current times a curve of the charge: "without a name", after 142 s.
+
+    And a battery whose polarisation fades by a curve of the charge: "without a name", after 53 s.
+    """
     cell, wave = Cell(), np.sin(np.arange(40.0) / 5)
     dataset = gt.DataSet([gt.Recording.from_arrays("run", {"current": wave, "surface": wave}, sample_time=1.0)])
     problem = make_problem(dataset, cell, dataset.recordings)
@@ -121,7 +124,7 @@ def test_a_balance_is_offered_the_levels_of_others_and_its_only_input() -> None:
     )
     curves = [a for a in candidates(cell, {}, around, flexible=True) if isinstance(a.mechanism, Unknown)]
     at_heat = {(a.mechanism.signal, a.mechanism.factor) for a in curves if a.port == "heat"}
-    others = {(f"level@{name}", factor) for name in ("charge", "skin") for factor in ("", "input@current")}
+    others = {(f"level@{name}", factor) for name in ("charge", "skin") for factor in ("", "input@current", "level")}
     assert at_heat == {("level", ""), *others}
     assert around["charge"].ranges["level@heat"].high == pytest.approx(7.0)
     assert around["heat"].ranges["input@current"].low < 0.0
