@@ -11,6 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
+from greybox_torch.diagnosis.confirm.within_tolerance import within_tolerance
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.size import size
@@ -19,7 +20,6 @@ from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.lag import Lag
 from greybox_torch.mechanisms.mechanism import Mechanism
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.transmission import HystereticSpring
@@ -66,8 +66,7 @@ def refinements(
 ) -> set[str]:
     """The effects that are too small to be findings, or that small and not confirmed by held-out experiments beyond chance.
 
-    Where the model leaves little more than noise: all of them, if none accounts for most of that, and a shift in time by a small part of a
-    sampling interval: when within it a sample was taken, and an input began to act, hardly anybody knows better than that.
+    Where the model leaves little more than noise: all of them, if none accounts for most of that, and those that no model is exact to.
 
     Of two laws of friction at one body, or of one spring, the smaller one has to be larger than other effects: it may be what the other
     lacks. So has any law at the port of a larger one, where more than noise is left in spite of both. Of two hystereses of one motion the
@@ -78,8 +77,9 @@ def refinements(
     """
     if others is not None and _made_of_little_things(study, state, others, gains, sizes):
         return set(state.prefixes)
-    within = {e.prefix for e in state.effects if _within_a_sample(study, state, e, sizes[e.prefix])}
     small = _too_small(study, state, others, gains, sizes)
+    rest = [e for e in state.effects if e.prefix not in small]
+    within = {e.prefix for e in rest if within_tolerance(study, state, e, sizes[e.prefix])}
     return small | within if within and _little_is_missing(study, state, others) else small
 
 
@@ -104,20 +104,6 @@ def _too_small(
         return lacks and sizes[prefix] < settings.least_size_beside_larger
 
     return {p for p in state.prefixes if not sizes[p] >= least or doubtful(p) or part_of_another(p)}
-
-
-def _within_a_sample(study: Study, state: SearchState, effect: Attachment, accounts_for: float) -> bool:
-    """Whether an effect is a shift in time by a small part of the interval between two recorded samples.
-
-    One that does not account for nearly all that is missing has to be larger: an input that does not change at once but over the interval
-    is late by half of it. Seen: a complete reactor, told as a dead time of 0.3 samples (0.97), 72 % of what it left beyond the noise.
-    """
-    if effect.mechanism.nature != Lag.nature:
-        return False
-    settings = study.settings
-    recorded = study.problem.records if study.recorded is None else study.recorded
-    least = settings.shortest_shift if accounts_for >= settings.nearly_all else settings.shift_of_a_hold
-    return state.current.values()[f"{effect.prefix}.T"] < least * float(np.median(recorded.dt))
 
 
 def _made_of_little_things(

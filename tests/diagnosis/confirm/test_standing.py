@@ -109,7 +109,9 @@ def test_where_little_is_missing_one_effect_accounts_for_most_of_that_or_none_is
     effects = tuple(Attachment("rotor", law) for law in (ConstantBias(), CoulombFriction())[: len(parts)])
     names = [e.prefix for e in effects]
     there = fits(noise * before**2)
-    plain, found = (stub(error=e, fits=there, problem=there[0].problem) for e in (before, 1.05))
+    problem = there[0].problem
+    values = {**problem.model.values(), "rotor.coulomb_friction.F_c": 1.0}
+    plain, found = (stub(error=e, fits=there, problem=problem, values=lambda: values) for e in (before, 1.05))
     state = stub(effects=effects, prefixes=set(names), plain=plain, current=found)
     others = stub(times_noise=lambda h: np.array([1.0, h.error]), fits=lambda h: fits(noise * h.error**2))
     gains, sizes_there = {n: Gain(0.3, 0.01, size=0.3) for n in names}, dict(zip(names, parts, strict=True))

@@ -1,0 +1,43 @@
+"""The dry friction that a model has at a body already."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import torch
+
+from greybox_torch.model.greybox_model import GreyBoxModel
+from greybox_torch.model.ports import Body
+from greybox_torch.model.signals import Signals
+
+NEAR_REST = 0.1
+"""Share of the fastest speed by which rounded dry friction has come to its level."""
+
+
+def dry_friction(model: GreyBoxModel, body: Body, fastest: float, values: Mapping[str, float]) -> float:
+    """The level of the force on ``body`` that changes its sign about rest and hardly grows with speed, in the unit of its port.
+
+    It is where the straight line through the force near rest and at the fastest speed, mean of both directions, meets rest, all other
+    states and the inputs at zero. Zero where the speed is no state of the model, so that it cannot be changed alone.
+
+    Args:
+        fastest: the largest speed, in the model's unit.
+        values: parameters by name.
+    """
+    names, speed = [s.name for s in model.states], body.speed
+    if not isinstance(speed, str) or speed not in names:
+        return 0.0
+    at, parts = names.index(speed), (-1.0, -NEAR_REST, NEAR_REST, 1.0)
+    x = torch.zeros(len(names), len(parts), dtype=torch.float64)
+    x[at] = fastest * torch.tensor(parts, dtype=torch.float64)
+    u = torch.zeros(len(model.inputs), len(parts), dtype=torch.float64)
+    p = Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in values.items()})
+    none = Signals("port", {q.name: torch.zeros((), dtype=torch.float64) for q in model.all_ports})
+    pushed = none.replaced(**{body.name: torch.ones((), dtype=torch.float64)})
+    here, there = (
+        torch.as_tensor(model.derivative(*model.named_signals(x, u), p, forces)[speed]).expand(len(parts))
+        for forces in (none, pushed)
+    )
+    force = here / (there - here)
+    near, whole = float(force[1] - force[2]) / 2, float(force[0] - force[3]) / 2
+    return (near - NEAR_REST * whole) / (1.0 - NEAR_REST)

@@ -1,0 +1,50 @@
+"""What is told of a model that leaves little more than noise, and is no missing physics: small errors of gains, and friction of its own."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from greybox_torch.diagnosis.confirm import within_tolerance as module
+from greybox_torch.diagnosis.confirm.within_tolerance import within_tolerance
+from greybox_torch.mechanisms.actuator import InputGain
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.forces import ConstantBias
+from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
+from greybox_torch.mechanisms.mechanism import Mechanism
+from greybox_torch.mechanisms.presliding import PreslidingHysteresis
+from greybox_torch.mechanisms.sensor import SensorGain
+
+
+@pytest.fixture
+def state(stub) -> Any:
+    return lambda **values: stub(current=stub(values=lambda: values), plain=stub(values=dict))
+
+
+@pytest.mark.parametrize(("port", "law"), [("actuator", InputGain()), ("sensor", SensorGain())])
+@pytest.mark.parametrize(("error", "within"), [(0.0007, True), (-0.0016, True), (0.0041, False), (-0.2, False)])
+def test_an_error_of_a_gain_is_larger_than_calibrations_are(dead_zone_search, state, port, law, error, within) -> None:
+    effect = Attachment(port, law)
+    found = state(**{f"{effect.prefix}.gain_error": error})
+    assert within_tolerance(dead_zone_search.study, found, effect, 1.0) is within
+
+
+@pytest.mark.parametrize(
+    ("law", "within"),
+    [
+        (CoulombFriction(), True),
+        (StribeckFriction(), True),
+        (PreslidingHysteresis(), False),  # a memory that the model's own law has not
+        (ConstantBias(), False),
+    ],
+)
+def test_friction_by_speed_of_a_body_that_has_it_bends_what_is_there(
+    dead_zone_search, stub, monkeypatch, law: Mechanism, within: bool
+) -> None:
+    """Seen: a complete drum mixer, told as Coulomb friction (0.97): its rollers stick, where the model rounds."""
+    effect = Attachment("rotor", law)
+    found = stub(current=stub(values=lambda: {f"{effect.prefix}.F_c": 1.0}), plain=stub(values=dict))
+    for own, enough in ((0.0, False), (0.2, False), (0.5, True)):
+        monkeypatch.setattr(module, "dry_friction", lambda model, body, fastest, values, own=own: own)
+        assert within_tolerance(dead_zone_search.study, found, effect, 1.0) is (within and enough)
