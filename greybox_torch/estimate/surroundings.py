@@ -17,7 +17,7 @@ from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Sig
 from greybox_torch.model.joined_bodies import turns_with
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
 from greybox_torch.model.sensed_states import sensed_states
-from greybox_torch.model.signals_elsewhere import positions_elsewhere, signals_elsewhere
+from greybox_torch.model.signals_elsewhere import DIFFERENCE, positions_elsewhere, signals_elsewhere
 from greybox_torch.model.states_of import states_of
 from greybox_torch.simulation.simulator import Simulator
 
@@ -131,6 +131,8 @@ def _units(model: GreyBoxModel, port: Port) -> dict[str, str]:
         units |= {name: position_unit(model, b) for name, b in positions_elsewhere(model, port).items()}
     if isinstance(port, Body | Balance):
         units |= {f"{INPUT}{one.name}": one.unit for one in model.inputs}
+    if isinstance(port, Balance) and "level" in units:
+        units |= {name: units["level"] for name in signals if name.startswith(DIFFERENCE)}
     if isinstance(port, Actuator):
         units["input"] = of[port.input]
     body = driving_body(model.ports)

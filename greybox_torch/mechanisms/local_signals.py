@@ -12,8 +12,9 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.delayed_input import channels
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.spring_force import moved_states, spring_force
-from greybox_torch.model import Body, Coupling, GreyBoxModel, Signals
+from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Signals
 from greybox_torch.model.ports import Actuator, Port, Sensor, driving_body, value_of
+from greybox_torch.model.signals_elsewhere import DIFFERENCE, difference
 
 
 class LocalSignals:
@@ -57,7 +58,7 @@ class LocalSignals:
                 values[names[0]] = value + (p[f"{a.prefix}.T"] - at) * slope
         values |= {f"input@{name}": u[name] for name in a.mechanism.drives}
         values |= {f"position@{link}": self._position(link, x, u, p) for link in a.mechanism.links}
-        values |= {one: self._from_elsewhere(one, x, u, p) for one in a.mechanism.reads}
+        values |= {one: self._from_elsewhere(site, one, x, u, p) for one in a.mechanism.reads}
         values |= self.clock(x)
         return Signals("signal", values)
 
@@ -141,10 +142,16 @@ class LocalSignals:
                 why = "" if kind == "port" else f", which the effect at '{a.port}' depends on"
                 raise UserError(f"model {self.base.title} has no {told} '{name}'{why} (it has: {', '.join(there)})")
 
-    def _from_elsewhere(self, signal: str, x: Signals, u: Signals, p: Signals) -> Any:
-        """An input of the model, or a signal of another port."""
+    def _from_elsewhere(self, site: Port, signal: str, x: Signals, u: Signals, p: Signals) -> Any:
+        """An input of the model, a signal of another port, or by how much the level of a balance is above another one's."""
         kind, _, name = signal.partition("@")
-        return u[name] if kind == "input" else value_of(self.ports[name].signals[kind], x, u, p)
+        if kind == "input":
+            return u[name]
+        other = self.ports[name]
+        if signal.startswith(DIFFERENCE):
+            assert isinstance(site, Balance) and isinstance(other, Balance)
+            return value_of(difference(site, other), x, u, p)
+        return value_of(other.signals[kind], x, u, p)
 
     def _position(self, name: str, x: Signals, u: Signals, p: Signals) -> Any:
         signal = self.body(name).position

@@ -10,6 +10,7 @@ import torch
 
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
+from greybox_torch.model.signals_elsewhere import DIFFERENCE
 
 REACH = 4
 """To either side of how many neighbours a bump is computed with: an exponential costs as much as ten products."""
@@ -28,7 +29,8 @@ class Unknown(Mechanism):
     ``knots`` bumps exp(−((s − s_k) / w)²) with centres spread evenly over where the signal moved; beyond that the curve stays level.
     With a ``factor`` the curve is what that other signal is multiplied by: a gain that changes. The factor may be an input of the model,
     ``input@NAME``, also where it does not act; the signal may be that of another port, ``position@BODY`` or ``level@BALANCE``: what one
-    axis does to the other, or a charge to how a battery warms. Bumps that are ``left_out`` are zero.
+    axis does to the other, or a charge to how a battery warms. Of a ``difference@BALANCE`` of levels it is what two balances exchange: the
+    other one has it with the opposite sign. Bumps that are ``left_out`` are zero.
     """
 
     name = "unknown"
@@ -75,6 +77,10 @@ class Unknown(Mechanism):
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         curve = self.curve(s, p)
         return curve * s[self.factor] if self.factor in s else curve
+
+    def elsewhere(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
+        taken = next((n.removeprefix(DIFFERENCE) for n in self.reads if n.startswith(DIFFERENCE)), None)
+        return {} if taken is None else {taken: -self.force(s, p, z)}
 
     def curve(self, s: Signals, p: Signals) -> Any:
         """The sum of the bumps at the signal."""

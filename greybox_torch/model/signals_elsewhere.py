@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.joined_bodies import bodies_apart
-from greybox_torch.model.ports import Balance, Body, Port, Signal
+from greybox_torch.model.ports import Balance, Body, Port, Signal, value_of
 
 LEVEL, POSITION, SPEED = "level@", "position@", "speed@"
 """Beginnings of the names of such signals; the name of their port follows."""
 
+DIFFERENCE = "difference@"
+"""That of a balance's level less another one's, which drives what the two exchange."""
+
 
 def signals_elsewhere(model: GreyBoxModel, port: Port) -> dict[str, Signal]:
-    """By name, at a body the positions and speeds of other axes and the levels of balances, at a balance the levels of others.
+    """By name, at a body the positions and speeds of other axes and the levels of balances, at a balance the levels of others, and by how
+    much its own is above those of them that have its unit.
 
     A force by the speed of what a spring joins with a body is friction there, or the spring's damping.
     """
@@ -24,7 +28,25 @@ def signals_elsewhere(model: GreyBoxModel, port: Port) -> dict[str, Signal]:
         found |= {f"{LEVEL}{q.name}": q.level for q in balances}
     if isinstance(port, Body):
         found |= {f"{SPEED}{b.name}": b.speed for b in bodies_apart(model, port)}
+    if isinstance(port, Balance):
+        found |= {f"{DIFFERENCE}{other.name}": difference(port, other) for other in balances_alike(model, port)}
     return found
+
+
+def difference(balance: Balance, other: Balance) -> Signal:
+    """The level of a balance less that of another."""
+    return lambda x, u, p: value_of(balance.level, x, u, p) - value_of(other.level, x, u, p)
+
+
+def balances_alike(model: GreyBoxModel, balance: Balance) -> list[Balance]:
+    """The other balances whose levels are states of the same unit."""
+    units = {s.name: s.unit for s in model.states}
+
+    def unit(one: Balance) -> str | None:
+        return units.get(one.level) if isinstance(one.level, str) else None
+
+    others = (q for q in model.ports if isinstance(q, Balance) and q.name != balance.name)
+    return [q for q in others if unit(q) is not None and unit(q) == unit(balance)]
 
 
 def positions_elsewhere(model: GreyBoxModel, body: Body) -> dict[str, Body]:

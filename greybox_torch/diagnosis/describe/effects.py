@@ -25,6 +25,7 @@ from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.model import Coupling, GreyBoxModel
 from greybox_torch.model.ports import Actuator, Port, driving_body
+from greybox_torch.model.signals_elsewhere import DIFFERENCE
 
 
 def describe(
@@ -162,6 +163,9 @@ def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:
         return str(getattr(site, signal, signal))
     if signal.startswith(INPUT):
         return signal.removeprefix(INPUT)
+    if signal.startswith(DIFFERENCE):
+        other = next(q for q in model.all_ports if q.name == signal.removeprefix(DIFFERENCE))
+        return f"{signal_name(model, site, 'level')} - {signal_name(model, other, 'level')}"
     if "@" in signal:
         kind, _, elsewhere = signal.partition("@")
         return signal_name(model, next(q for q in model.all_ports if q.name == elsewhere), kind)

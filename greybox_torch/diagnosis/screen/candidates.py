@@ -19,7 +19,7 @@ from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port
 from greybox_torch.model.joined_bodies import joined_bodies
 from greybox_torch.model.ports import Actuator, driving_body
-from greybox_torch.model.signals_elsewhere import LEVEL, SPEED, signals_elsewhere
+from greybox_torch.model.signals_elsewhere import DIFFERENCE, LEVEL, SPEED, balances_alike, signals_elsewhere
 
 ANGLES = ("rad", "deg", "rev", "turn")
 """Beginnings of the units of angles: only on an angle does gravity repeat."""
@@ -48,8 +48,10 @@ OWN = {"body": ("speed",), "balance": ("level",)}
 temperature or a charge.
 """
 
-MOST_FROM_ELSEWHERE, MOST_KNOTS_FROM_ELSEWHERE = 24, 20
-"""Curves of signals of other ports that are tried at all, and how fine they may be: each knot costs the screen as much as a law."""
+MOST_FROM_ELSEWHERE, MOST_EXCHANGED, MOST_KNOTS_FROM_ELSEWHERE = 24, 12, 20
+"""Curves of signals of other ports, and of what balances exchange, that are tried at all, and how fine they may be: each knot costs the
+screen as much as a law.
+"""
 
 
 def candidates(
@@ -75,7 +77,8 @@ def candidates(
                 found += [] if law is None else [attach(model, port.name, law, shifted)]
     if not flexible:
         return [*found, *chain_candidates(model, surroundings), *common_delays(model)]
-    elsewhere = [] if knots > MOST_KNOTS_FROM_ELSEWHERE else _from_elsewhere(model, knots)
+    coarse = knots <= MOST_KNOTS_FROM_ELSEWHERE
+    elsewhere = [*_from_elsewhere(model, knots), *_exchanged(model, knots)] if coarse else []
     return [*found, *(attach(model, port.name, c) for port, c in elsewhere if c.available(surroundings[port.name]))]
 
 
@@ -141,13 +144,31 @@ def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unk
     inputs = [f"{INPUT}{one.name}" for one in model.inputs]
 
     def of(port: Port) -> Iterator[tuple[Port, Unknown]]:
-        for signal in signals_elsewhere(model, port):
+        for signal in (n for n in signals_elsewhere(model, port) if not n.startswith(DIFFERENCE)):
             own = OWN.get(port.kind, ()) if signal.startswith(LEVEL) else ()
             factors = ("",) if signal.startswith(SPEED) else ("", *inputs, *own)
             yield from ((port, Unknown(signal, knots, factor)) for factor in factors)
 
     in_turn = (way for turn in zip_longest(*map(of, model.ports)) for way in turn if way is not None)
     return islice(in_turn, MOST_FROM_ELSEWHERE)
+
+
+def _exchanged(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """What two balances exchange: by how far their levels are apart, and in proportion to that, by what may change the coefficient: an
+    input (a heat exchanger's flow), or either level. No more than ``MOST_EXCHANGED``.
+    """
+    inputs = [f"{INPUT}{one.name}" for one in model.inputs]
+
+    def between(port: Balance, other: Balance) -> Iterator[tuple[Port, Unknown]]:
+        apart = f"{DIFFERENCE}{other.name}"
+        yield port, Unknown(apart, knots)
+        yield from ((port, Unknown(one, knots, apart)) for one in (*inputs, "level", f"{LEVEL}{other.name}"))
+
+    balances = [q for q in model.ports if isinstance(q, Balance)]
+    pairs = [(q, other) for q in balances for other in balances_alike(model, q)]
+    each_once = [between(q, other) for q, other in pairs if balances.index(q) < balances.index(other)]
+    in_turn = (way for turn in zip_longest(*each_once) for way in turn if way is not None)
+    return islice(in_turn, MOST_EXCHANGED)
 
 
 def memory_candidates(
