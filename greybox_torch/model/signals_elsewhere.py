@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.joined_bodies import bodies_apart
-from greybox_torch.model.ports import Balance, Body, Port, Signal, value_of
+from greybox_torch.model.ports import Actuator, Balance, Body, Port, Signal, value_of
 
 LEVEL, POSITION, SPEED = "level@", "position@", "speed@"
 """Beginnings of the names of such signals; the name of their port follows."""
@@ -14,8 +14,8 @@ DIFFERENCE = "difference@"
 
 
 def signals_elsewhere(model: GreyBoxModel, port: Port) -> dict[str, Signal]:
-    """By name, at a body the positions and speeds of other axes and the levels of balances, at a balance the levels of others, and by how
-    much its own is above those of them that have its unit.
+    """By name, at a body the positions and speeds of other axes and the levels of balances, at an actuator those levels, at a balance the
+    levels of others, and by how much its own is above those of them that have its unit.
 
     A force by the speed of what a spring joins with a body is friction there, or the spring's damping.
     """
@@ -23,7 +23,7 @@ def signals_elsewhere(model: GreyBoxModel, port: Port) -> dict[str, Signal]:
     if isinstance(port, Body):
         there = positions_elsewhere(model, port).items()
         found |= {name: body.position for name, body in there if body.position is not None}
-    if isinstance(port, Body | Balance):
+    if isinstance(port, Actuator | Body | Balance):
         balances = (q for q in model.ports if isinstance(q, Balance) and q.name != port.name)
         found |= {f"{LEVEL}{q.name}": q.level for q in balances}
     if isinstance(port, Body):

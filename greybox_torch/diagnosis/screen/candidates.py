@@ -137,7 +137,8 @@ def _curves(model: GreyBoxModel, port: Port, knots: int) -> Iterable[Unknown]:
 
 def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
     """What another part of the machine does to a port by where it stands: by itself, or to what an input, the body's speed or the level
-    does there. What it does by how fast it is (the air that a turning rotor drags along) it does by itself.
+    does there. What it does by how fast it is (the air that a turning rotor drags along) it does by itself. What a level does to an actuator
+    is to its gain (a pump's, that works against a tank).
 
     No more than ``MOST_FROM_ELSEWHERE``, which the ports take in turn.
     """
@@ -149,7 +150,12 @@ def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unk
             factors = ("",) if signal.startswith(SPEED) else ("", *inputs, *own)
             yield from ((port, Unknown(signal, knots, factor)) for factor in factors)
 
-    in_turn = (way for turn in zip_longest(*map(of, model.ports)) for way in turn if way is not None)
+    def at(actuator: Actuator) -> Iterator[tuple[Port, Unknown]]:
+        yield from ((actuator, Unknown(level, knots, "input")) for level in signals_elsewhere(model, actuator))
+
+    actuators = (q for q in model.all_ports if isinstance(q, Actuator))
+    ways = (*map(of, model.ports), *map(at, actuators))
+    in_turn = (way for turn in zip_longest(*ways) for way in turn if way is not None)
     return islice(in_turn, MOST_FROM_ELSEWHERE)
 
 
