@@ -11,12 +11,6 @@ from greybox_torch.mechanisms.linear_law import LinearLaw
 from greybox_torch.mechanisms.mechanism import Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
 
-WIDE = 0.07
-"""Share of the fastest speed: friction that changes its sign over more of it grows with speed, and is not dry. Of 254 laws of dry friction
-that were named in six proofs and on unseen machines none was surely wider, but two that stood for eddy-current brakes.
-"""
-
-
 WIDTH = "v_0"
 """Name of the speed over which dry friction changes its sign."""
 

@@ -7,14 +7,12 @@ from collections.abc import Mapping
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.estimate.window_information import window_information
 from greybox_torch.linear_algebra import solve
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.mechanisms.sign_change import WIDE, WIDTH
-
-DEVIATIONS = 2.0
-"""Standard deviations by which a width has to be larger than dry friction's."""
+from greybox_torch.mechanisms.sign_change import WIDTH
 
 
 def degenerate(
@@ -38,7 +36,9 @@ def degenerate(
     return effect.mechanism.degenerate(surroundings[effect.port], own, known)
 
 
-def grows_with_speed(fitted: Hypothesis, effect: Attachment, surroundings: Mapping[str, Surroundings]) -> bool:
+def grows_with_speed(
+    fitted: Hypothesis, effect: Attachment, surroundings: Mapping[str, Surroundings], settings: DiagnosisSettings
+) -> bool:
     """Whether dry friction, as it is fitted over windows, surely changes its sign over so many speeds that it is none.
 
     A width that the recordings hardly determine, as they pass through rest within a sample or two, says nothing. Seen: two eddy-current
@@ -48,7 +48,7 @@ def grows_with_speed(fitted: Hypothesis, effect: Attachment, surroundings: Mappi
     free = fitted.problem.free_names
     if not effect.mechanism.rubs or name not in free:
         return False
-    wide = WIDE * surroundings[effect.port].ranges["speed"].reach
+    wide = settings.widest_dry_friction * surroundings[effect.port].ranges["speed"].reach
     if values[name] < wide:
         return False
     longest, at = fitted.fits[-1], free.index(name)
@@ -57,4 +57,4 @@ def grows_with_speed(fitted: Hypothesis, effect: Attachment, surroundings: Mappi
         return False
     own = np.eye(len(free))[at]
     variance = longest.mean_square * float(own @ solve(known, own))
-    return bool(values[name] - DEVIATIONS * np.sqrt(max(variance, 0.0)) >= wide)
+    return bool(values[name] - settings.surely_wide * np.sqrt(max(variance, 0.0)) >= wide)

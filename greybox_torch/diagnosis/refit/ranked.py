@@ -79,4 +79,4 @@ def sound(study: Study, ranked: RankedCandidate) -> bool:
     """Whether the newest effect's parameters, as they were refitted, say something of the machine."""
     effect, fitted = ranked.candidate.attachment, ranked.fitted
     says_something = degenerate(effect, study.surroundings, fitted.values()) is None
-    return says_something and not grows_with_speed(fitted, effect, study.surroundings)
+    return says_something and not grows_with_speed(fitted, effect, study.surroundings, study.settings)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from greybox_torch.diagnosis.settings.choosing import GAIN, LOG_ERROR
-from greybox_torch.diagnosis.settings.fields import number, ratio, share
+from greybox_torch.diagnosis.settings.fields import SIGMA, number, ratio, share
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,4 +69,17 @@ class CurveSettings:
     )
     curve_gain_ratio: float = ratio(
         1.5, "How many times the gain of the best name a free curve must gain to be preferred.", unit="times the gain"
+    )
+    widest_dry_friction: float = share(
+        0.07,
+        "Width of the change of sign from which friction grows with speed, and is not dry: a curve says what it is.",
+        unit="share of the fastest speed",
+        chosen_by="254 laws of dry friction in six proofs and on unseen machines: none was surely wider but two, of eddy-current brakes",
+    )
+    surely_wide: float = number(
+        2.0,
+        "Standard deviations by which a width has to be larger than that.",
+        unit=SIGMA,
+        least=0.0,
+        chosen_by="two-sided chance of 5 %",
     )

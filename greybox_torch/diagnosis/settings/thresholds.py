@@ -11,9 +11,10 @@ from greybox_torch.diagnosis.settings.choosing import (
     ScreenSettings,
     SelectionSettings,
 )
-from greybox_torch.diagnosis.settings.claiming import ConfirmationSettings, ProbabilitySettings, ResidualSettings
+from greybox_torch.diagnosis.settings.claiming import ConfirmationSettings, ResidualSettings
 from greybox_torch.diagnosis.settings.curves import CurveSettings
 from greybox_torch.diagnosis.settings.fields import check
+from greybox_torch.diagnosis.settings.probability import ProbabilitySettings
 from greybox_torch.diagnosis.settings.sampling import SamplingSettings
 from greybox_torch.diagnosis.settings.searching_again import SearchingAgainSettings
 

@@ -9,6 +9,7 @@ import pytest
 
 from greybox_torch.diagnosis.hypothesis import degenerate
 from greybox_torch.diagnosis.hypothesis.degenerate import grows_with_speed
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombFriction
@@ -40,15 +41,15 @@ def fitted(stub, monkeypatch) -> Any:
 )
 def test_a_width_beyond_that_of_dry_friction_counts_where_it_is_determined(fitted, width, deviation, grows) -> None:
     """Seen: eddy-current brakes, 9.3 +- 0.6 and 10 % of the fastest speed; dry friction near the noise, 10 +- 2.5 %."""
-    assert grows_with_speed(fitted(width, deviation), FRICTION, AROUND) is grows
+    assert grows_with_speed(fitted(width, deviation), FRICTION, AROUND, DiagnosisSettings()) is grows
 
 
 def test_what_does_not_rub_has_no_width(fitted) -> None:
     bias = Attachment("roller", ConstantBias())
-    assert not grows_with_speed(fitted(5.0, 0.1, bias), bias, AROUND)
+    assert not grows_with_speed(fitted(5.0, 0.1, bias), bias, AROUND, DiagnosisSettings())
 
 
 def test_nor_has_friction_whose_width_is_fixed(fitted) -> None:
     found = fitted(5.0, 0.1)
     found.problem.free_names = found.problem.free_names[:1]
-    assert not grows_with_speed(found, FRICTION, AROUND)
+    assert not grows_with_speed(found, FRICTION, AROUND, DiagnosisSettings())

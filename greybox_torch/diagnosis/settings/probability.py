@@ -1,0 +1,94 @@
+"""How sure the verdict is, by what it found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greybox_torch.diagnosis.settings.fields import SIGMA, number, share
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProbabilitySettings:
+    """How sure the verdict is, by what it found."""
+
+    windows_temperature: float = number(
+        2.0,
+        "Standard errors that count as one: windows are not independent, and no law is exactly the machine's.",
+        unit=SIGMA,
+        least=1e-3,
+    )
+    share_exponent: float = number(
+        2.0,
+        "Power of the weights by which a finding and its rivals share a probability: what leads is right more often than they say.",
+        unit="",
+        least=1.0,
+        chosen_by="two blind proofs, tested on a third: the smallest squared error of the names' probabilities",
+    )
+    highest_probability: float = share(
+        0.97, "The most that is ever claimed.", unit="probability", chosen_by="the proof's calibration"
+    )
+    highest_probability_far_above_noise: float = share(
+        0.85,
+        "The most that is claimed for a name where the laws together leave much more than noise.",
+        unit="probability",
+    )
+    highest_probability_where_most_is_left: float = share(
+        0.5, "The same where that is also most of the mismatch.", unit="probability", chosen_by="even odds"
+    )
+    most_of_mismatch: float = share(
+        0.67,
+        "Share of the plain model's mismatch from which most of it is left, at the window length where it is largest, or in free "
+        "runs of the validation experiments.",
+        unit="share of the plain model's mismatch",
+        chosen_by="two thirds: what is named is then the smaller part",
+    )
+    most_of_measured: float = share(
+        0.16,
+        "Mean squared error of free validation runs from which they follow too little of what was measured for a sure finding.",
+        unit="variances of what was measured",
+        chosen_by="a fit of 60 %: of 1060 names that were right as often as claimed, 1059 stood at fits of 70 % and more",
+    )
+    highest_probability_of_stopped_curve: float = share(
+        0.5,
+        "The most that is claimed for a free curve where the search was stopped before names were tried.",
+        unit="probability",
+    )
+    highest_probability_of_stopped_name: float = share(
+        0.85,
+        "The most that is claimed for a law where the search was stopped.",
+        unit="probability",
+        chosen_by="six proofs and unseen machines: of 18 names that stopped searches were surer of, 15 were right",
+    )
+    least_alternative: float = share(
+        0.005, "Probability from which a rival is listed.", unit="probability", chosen_by="legibility"
+    )
+    least_class_share: float = share(
+        0.05,
+        "Probability from which a rival is told together with the finding, as one statement, wherever its fitted outputs lie.",
+        unit="probability",
+        chosen_by="19 to 1 counts as decided",
+    )
+    visible_divergence: float = number(
+        3.0,
+        "Log-likelihood ratio below which the difference of two hypotheses' fitted outputs cannot be seen.",
+        unit="nats",
+        chosen_by="20 to 1, strong evidence by H. Jeffreys, Theory of Probability, 1961",
+    )
+    confidence_missing_unnamed: float = share(
+        0.8, 'Confidence in "something is missing" where the size of the error alone says so.', unit="probability"
+    )
+    confidence_nothing: float = share(
+        0.95, 'Confidence in "nothing is missing" where no candidate gained anything.', unit="probability"
+    )
+    confidence_nothing_with_rivals: float = share(
+        0.8, "The same where some candidate gained least_gain or more and yet was not taken.", unit="probability"
+    )
+    confidence_nothing_above_noise: float = share(
+        0.6, "The same where the error is more than noise.", unit="probability"
+    )
+    confidence_stopped: float = share(
+        0.5,
+        "The same where the search was stopped before it found anything.",
+        unit="probability",
+        chosen_by="no answer",
+    )
