@@ -137,8 +137,8 @@ def _curves(model: GreyBoxModel, port: Port, knots: int) -> Iterable[Unknown]:
 
 def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
     """What another part of the machine does to a port by where it stands: by itself, or to what an input, the body's speed or the level
-    does there. What it does by how fast it is (the air that a turning rotor drags along) it does by itself. What a level does to an actuator
-    is to its gain (a pump's, that works against a tank).
+    does there. What it does by how fast it is (the air that a turning rotor drags along) it does by itself. At an actuator a level changes
+    the gain (a pump's, that works against a tank).
 
     No more than ``MOST_FROM_ELSEWHERE``, which the ports take in turn.
     """
