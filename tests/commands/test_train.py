@@ -172,7 +172,7 @@ def test_killed_and_resumed(motor_folder: Make) -> None:
         "train",
         str(folder / "dataset.toml"),
         *QUICK[:-1],
-        "40",
+        "25",
         "--no-explain",
         "--json",
     ]

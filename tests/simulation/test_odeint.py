@@ -27,9 +27,9 @@ def test_against_torchdiffeq(hold: str, method: str, tolerance: float) -> None:
 @pytest.mark.parametrize(("method", "adjoint"), [("rk4", False), ("rk4", True), ("dopri5", True)])
 def test_gradients_of_the_torchdiffeq_route(method: str, adjoint: bool) -> None:
     """Against differences of the stepper's loss, which has no step control to make it rough."""
-    records = arm_records((24,))
+    records = arm_records((14,))
     windows, stepper = whole_records(records), native(names=())
-    target = np.linspace(14.0, 17.0, 24)
+    target = np.linspace(14.0, 17.0, 14)
 
     def loss(p: np.ndarray, x0: np.ndarray) -> float:
         return float(((stepper.run(records, Pass(windows, p, x0[None]), substeps=8).y[0, :, 0] - target) ** 2).sum())
