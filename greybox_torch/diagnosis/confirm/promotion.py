@@ -10,7 +10,7 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
-from greybox_torch.diagnosis.confirm.standing import refinements, sizes
+from greybox_torch.diagnosis.confirm.standing import findings
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.size import size
@@ -138,8 +138,8 @@ def promote_for_a_rival(
     recordings, settings = dataset.validation(), study.settings
     if len(recordings) < 2 or not state.effects or np.max(others.times_noise(state.current)) < settings.rival_error:
         return None
-    found, small = others.fits(state.current), refinements(study, state, others, gains, sizes(study, state, gains))
-    for effect in (e for e in state.effects if e.prefix not in small):
+    found = others.fits(state.current)
+    for effect in findings(study, state, others, gains):
         for rival in rivals_in_its_place(study, state, effect, settings.rival_margin):
             further = gain(found, others.fits(rival))
             if further.errors_away > settings.held_out_beyond_chance and further.share > settings.least_gain:

@@ -83,6 +83,12 @@ def refinements(
     return small | within if within and _little_is_missing(study, state, others) else small
 
 
+def findings(study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain]) -> list[Attachment]:
+    """The effects that are no refinements; ``gains`` by effect, on held-out experiments."""
+    small = refinements(study, state, others, gains, sizes(study, state, gains))
+    return [e for e in state.effects if e.prefix not in small]
+
+
 def _too_small(
     study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], sizes: Mapping[str, float]
 ) -> set[str]:

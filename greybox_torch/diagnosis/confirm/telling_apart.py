@@ -13,7 +13,7 @@ import numpy as np
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.promotion import Promotion
-from greybox_torch.diagnosis.confirm.standing import refinements, sizes
+from greybox_torch.diagnosis.confirm.standing import findings
 from greybox_torch.diagnosis.hypothesis.divergence import of_errors
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.one_of import spoken_at
@@ -38,13 +38,8 @@ def promote_to_tell_apart(
     recordings = dataset.validation()
     if len(recordings) < 2 or not state.effects:
         return None
-    small = refinements(study, state, others, gains, sizes(study, state, gains))
-    asked = [
-        (effect, *one)
-        for effect in state.effects
-        if effect.prefix not in small
-        for one in _instead(study, state, effect)
-    ]
+    found = findings(study, state, others, gains)
+    asked = [(effect, *one) for effect in found for one in _instead(study, state, effect)]
     own = others.errors(state.current) if asked else ()
     told = [(*_farthest_apart(own, others.errors(rival)), effect, law) for effect, law, rival in asked]
     most, where, effect, law = max(told, key=lambda one: one[0], default=(0.0, 0, None, None))
