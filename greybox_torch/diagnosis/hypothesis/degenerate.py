@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.estimate.window_information import window_information
@@ -41,15 +42,15 @@ def grows_with_speed(
 ) -> bool:
     """Whether dry friction, as it is fitted over windows, surely changes its sign over so many speeds that it is none.
 
-    A width that the recordings hardly determine, as they pass through rest within a sample or two, says nothing. Seen: two eddy-current
-    brakes, whose force rises up to a speed and falls beyond it, told as Coulomb friction (0.97).
+    A width that the recordings hardly determine, as they pass through rest within a sample or two, says nothing; nor does one with which
+    noise alone is left. Seen: two eddy-current brakes, whose force rises up to a speed and falls beyond it, told as Coulomb friction.
     """
     name, values = f"{effect.prefix}.{WIDTH}", fitted.values()
     free = fitted.problem.free_names
     if not effect.mechanism.rubs or name not in free:
         return False
     wide = settings.widest_dry_friction * surroundings[effect.port].ranges["speed"].reach
-    if values[name] < wide:
+    if values[name] < wide or times_noise(fitted.problem, fitted, settings) < settings.above_noise:
         return False
     longest, at = fitted.fits[-1], free.index(name)
     known = window_information(longest, fitted.simulator)

@@ -14,7 +14,7 @@ from greybox_torch.diagnosis.select.choice import alone_at_noise, chosen, least_
 from greybox_torch.diagnosis.select.flexed import flexed
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
 from greybox_torch.diagnosis.select.memory import completed_by_memory
-from greybox_torch.diagnosis.select.remaining import completes
+from greybox_torch.diagnosis.select.remaining import completes, little_things_are_missing
 from greybox_torch.diagnosis.select.richer import richer_instead, with_earlier_law_richer, with_richer_form
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.select.two_laws import second_step, with_first_of_two
@@ -41,6 +41,8 @@ def take_effects(
         if curves:
             state = yield from completed_by_memory(study, state)
         if _done(study, state):
+            break
+        if curves and little_things_are_missing(study, state):
             break
         before = state
         state = yield from forward_step(study, before, curves=curves)

@@ -10,7 +10,9 @@ from __future__ import annotations
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
+from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.diagnosis.study import Study
 
 
 def remaining_share(plain: Hypothesis, fitted: Hypothesis, settings: DiagnosisSettings) -> float:
@@ -40,3 +42,16 @@ def left_to_complete(fitted: Hypothesis, settings: DiagnosisSettings) -> float:
         times_noise(fitted.problem, fitted, settings), 1e-100
     )  # nothing at all, of a simulated record without noise
     return 1.0 - (settings.above_noise / left) ** 2
+
+
+def little_things_are_missing(study: Study, state: SearchState) -> bool:
+    """Whether the model as it stands leaves little more than noise, and what was found accounts for a small part of that.
+
+    Of a machine whose model is complete each law takes up a little, and many follow; there one has to account for most to be a finding
+    (``least_of_little``). Not where free runs have shown that more is missing.
+    """
+    if not state.effects or study.more_is_missing:
+        return False
+    settings = study.settings
+    little = times_noise(study.problem, state.plain, settings) < settings.far_above_noise
+    return little and remaining_share(state.plain, state.current, settings) > 1.0 - settings.least_first_of_little

@@ -120,6 +120,12 @@ class ConfirmationSettings:
         unit="share of the plain model's held-out mismatch",
         chosen_by="blind sets and proofs: real weak effects account for 0.82 to 1 of it, imperfections for 0.03 to 0.62",
     )
+    least_first_of_little: float = share(
+        0.35,
+        "The same of what was found so far, for more to be looked for: two effects that need one another bring half of it each.",
+        unit="share of the plain model's mismatch",
+        chosen_by="half of `least_of_little`",
+    )
     least_size_at_noise: float = share(
         5e-3,
         "The same where with all effects hardly more than noise is left on held-out experiments: then nothing lacks that it could be.",

@@ -23,7 +23,8 @@ FRICTION = Attachment("roller", CoulombFriction())
 def fitted(stub, monkeypatch) -> Any:
     """A hypothesis whose width is known with a deviation; the level trades with it a little."""
 
-    def make(width: float, deviation: float | None, effect: Attachment = FRICTION) -> Any:
+    def make(width: float, deviation: float | None, effect: Attachment = FRICTION, times: float = 3.0) -> Any:
+        monkeypatch.setattr(degenerate, "times_noise", lambda problem, fitted, settings: times)
         information = np.linalg.inv(np.array([[1.0, 0.1], [0.1, 1.0]]) * ((deviation or 1.0) / 0.2) ** 2)
         monkeypatch.setattr(
             degenerate, "window_information", lambda fit, simulator: None if deviation is None else information
@@ -42,6 +43,10 @@ def fitted(stub, monkeypatch) -> Any:
 def test_a_width_beyond_that_of_dry_friction_counts_where_it_is_determined(fitted, width, deviation, grows) -> None:
     """Seen: eddy-current brakes, 9.3 +- 0.6 and 10 % of the fastest speed; dry friction near the noise, 10 +- 2.5 %."""
     assert grows_with_speed(fitted(width, deviation), FRICTION, AROUND, DiagnosisSettings()) is grows
+
+
+def test_nor_does_a_width_with_which_noise_alone_is_left(fitted) -> None:
+    assert not grows_with_speed(fitted(4.6, 0.3, times=1.02), FRICTION, AROUND, DiagnosisSettings())
 
 
 def test_what_does_not_rub_has_no_width(fitted) -> None:

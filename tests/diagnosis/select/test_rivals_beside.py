@@ -88,7 +88,7 @@ def test_not_where_what_was_found_is_right_or_no_experiment_would_be_left(told) 
 @pytest.mark.parametrize("gone", [True, False])
 def test_a_curve_that_stands_alone_at_last_is_asked_for_a_name(motor_data, motor, begun, gone: bool) -> None:
     """Seen: a knee's stop, told as a curve: three laws stood for parts of it until the curve came, and fell away beside it."""
-    search = begun(motor_data(torque=lambda q, v: -0.06 * np.tanh(v / 0.3)), motor)
+    search = begun(motor_data(torque=lambda q, v: -0.06 * np.tanh(v / 0.2)), motor)
     curve, other = attach(motor, "rotor", Unknown("speed", 24)), attach(motor, "rotor", ConstantBias())
     begin = {f"{curve.prefix}.w_{k}": 0.02 * (1 if k < 12 else -1) for k in range(24)}
     fitted = search.refitted((curve,), search.plain, [search.plain.values() | begin])

@@ -22,7 +22,7 @@ from greybox_torch.mechanisms.unknown import Unknown
 
 def uneven(q: float, v: float) -> float:
     """Dry friction of 0.09 N m forwards and 0.03 N m backwards."""
-    return -0.06 * np.tanh(v / 0.3) - 0.03 * np.tanh(v / 0.3) ** 2
+    return -0.06 * np.tanh(v / 0.2) - 0.03 * np.tanh(v / 0.2) ** 2
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,7 @@ def drawn(motor_data, motor, begun):
     ("torque", "second", "parameter"),
     [
         (uneven, "coulomb_asymmetry", "delta"),
-        (lambda q, v: -0.06 * np.tanh(v / 0.3) - 0.03, "constant_bias", "bias"),
+        (lambda q, v: -0.06 * np.tanh(v / 0.2) - 0.03, "constant_bias", "bias"),
     ],
 )
 def test_a_level_and_another_law_stand_for_the_curve(drawn, torque, second, parameter) -> None:
@@ -66,7 +66,7 @@ def test_a_level_and_another_law_stand_for_the_curve(drawn, torque, second, para
 
 
 def test_not_where_one_law_does_or_no_effect_may_be_added(drawn) -> None:
-    search, with_curve = drawn(lambda q, v: -0.06 * np.tanh(v / 0.3))
+    search, with_curve = drawn(lambda q, v: -0.06 * np.tanh(v / 0.2))
     assert with_first_of_two(search.study, search.state, with_curve) is None
     search, with_curve = drawn(uneven)
     first = with_first_of_two(search.study, search.state, with_curve)
