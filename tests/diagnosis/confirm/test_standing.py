@@ -18,7 +18,6 @@ from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombFriction, ViscousFriction
 from greybox_torch.mechanisms.mechanism import Mechanism
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
-from greybox_torch.mechanisms.sensor import SensorLag
 from greybox_torch.mechanisms.stiffness import NonlinearStiffness
 from greybox_torch.mechanisms.transmission import Backlash
 
@@ -120,38 +119,6 @@ def test_where_little_is_missing_one_effect_accounts_for_most_of_that_or_none_is
     unexercised = {n: Gain(0.0, 1e-4, size=0.0) for n in names}
     assert not refinements(study, state, others, unexercised, sizes_there), "nothing that could tell"
     assert not refinements(study, state, None, {}, sizes_there)
-
-
-@pytest.mark.parametrize("law", [InputDelay(), InputLag(), SensorLag(True)])
-@pytest.mark.parametrize(
-    ("samples", "size", "times", "told"),
-    [
-        (0.22, 0.95, 1.7, False),
-        (0.30, 0.95, 1.7, True),
-        (0.30, 0.72, 1.7, False),
-        (0.59, 0.72, 1.7, True),
-        (0.17, 0.72, 390.0, True),
-    ],
-)
-def test_a_shift_within_a_sampling_interval_is_no_finding_near_the_noise(
-    dead_zone_search, fits, stub, law, samples, size, times, told
-) -> None:
-    """Seen: a drone that nothing is missing from, told as a dead time of a tenth of a sample (0.97). As recorded, not as it is searched.
-
-    And a lag of a sixth of a sample that stood 390 times above the noise, as which it is a finding.
-    """
-    effect = Attachment("actuator" if law.name.startswith("input") else "sensor", law)
-    study = dead_zone_search.study
-    for factor in (1.0, 5.0):
-        records = replace(study.problem.records, dt=study.problem.records.dt / factor)
-        recorded = None if factor == 1.0 else records
-        seconds = samples * float(records.dt[0])
-        current = stub(values=lambda seconds=seconds: {f"{effect.prefix}.T": seconds}, problem=study.problem)
-        plain = stub(fits=[replace(f, mean_square=4e-4 * times**2) for f in fits(1.0)])
-        state = stub(effects=(effect,), prefixes={effect.prefix}, current=current, plain=plain)
-        others = stub(times_noise=lambda hypothesis: np.array([1.0]))
-        asked = replace(study, recorded=recorded)
-        assert (not refinements(asked, state, others, {}, {effect.prefix: size})) is told
 
 
 def test_of_two_laws_of_friction_at_one_body_or_of_one_spring_the_small_one_is_part_of_the_other(

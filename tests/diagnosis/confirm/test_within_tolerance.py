@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.confirm import within_tolerance as module
+from greybox_torch.diagnosis.confirm.standing import refinements
 from greybox_torch.diagnosis.confirm.within_tolerance import within_tolerance
-from greybox_torch.mechanisms.actuator import InputGain
+from greybox_torch.mechanisms.actuator import InputDelay, InputGain, InputLag
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
 from greybox_torch.mechanisms.mechanism import Mechanism
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
-from greybox_torch.mechanisms.sensor import SensorGain
+from greybox_torch.mechanisms.sensor import SensorGain, SensorLag
 
 
 @pytest.fixture
@@ -48,3 +51,35 @@ def test_friction_by_speed_of_a_body_that_has_it_bends_what_is_there(
     for own, enough in ((0.0, False), (0.2, False), (0.5, True)):
         monkeypatch.setattr(module, "dry_friction", lambda model, body, fastest, values, own=own: own)
         assert within_tolerance(dead_zone_search.study, found, effect, 1.0) is (within and enough)
+
+
+@pytest.mark.parametrize("law", [InputDelay(), InputLag(), SensorLag(True)])
+@pytest.mark.parametrize(
+    ("samples", "size", "times", "told"),
+    [
+        (0.22, 0.95, 1.7, False),
+        (0.30, 0.95, 1.7, True),
+        (0.30, 0.72, 1.7, False),
+        (0.59, 0.72, 1.7, True),
+        (0.17, 0.72, 390.0, True),
+    ],
+)
+def test_a_shift_within_a_sampling_interval_is_no_finding_near_the_noise(
+    dead_zone_search, stub, law, samples, size, times, told
+) -> None:
+    """Seen: a drone that nothing is missing from, told as a dead time of a tenth of a sample (0.97). As recorded, not as it is searched.
+
+    And a lag of a sixth of a sample that stood 390 times above the noise, as which it is a finding.
+    """
+    effect = Attachment("actuator" if law.name.startswith("input") else "sensor", law)
+    study = dead_zone_search.study
+    for factor in (1.0, 5.0):
+        records = replace(study.problem.records, dt=study.problem.records.dt / factor)
+        recorded = None if factor == 1.0 else records
+        seconds = samples * float(records.dt[0])
+        current = stub(values=lambda seconds=seconds: {f"{effect.prefix}.T": seconds}, problem=study.problem)
+        plain = stub(fits=[replace(f, mean_square=4e-4 * times**2) for f in dead_zone_search.plain.fits])
+        state = stub(effects=(effect,), prefixes={effect.prefix}, current=current, plain=plain)
+        others = stub(times_noise=lambda hypothesis: np.array([1.0]))
+        asked = replace(study, recorded=recorded)
+        assert (not refinements(asked, state, others, {}, {effect.prefix: size})) is told
