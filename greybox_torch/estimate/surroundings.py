@@ -15,6 +15,7 @@ from greybox_torch.mechanisms.spring_force import moved_states, spring_force
 from greybox_torch.mechanisms.unknown import INPUT
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
 from greybox_torch.model.joined_bodies import turns_with
+from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
 from greybox_torch.model.sensed_states import sensed_states
 from greybox_torch.model.signals_elsewhere import DIFFERENCE, positions_elsewhere, signals_elsewhere
@@ -91,7 +92,7 @@ def _load(
     shifted = shifted_state(model, problem, port)
     if body.position is None or not shifted:
         return {}
-    none = Signals("port", {q.name: torch.zeros((), dtype=torch.float64) for q in model.all_ports})
+    none = no_forces(model)
     force = spring_force(model, port.name, shifted, moved_states(model, port.name, none), x, u, p, none)
     return {"load": np.broadcast_to(np.asarray(force.detach(), dtype=float), times.shape)}
 

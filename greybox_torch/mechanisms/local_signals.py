@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-import torch
-
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.delayed_input import channels
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.spring_force import moved_states, spring_force
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Signals
+from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Port, Sensor, driving_body, value_of
 from greybox_torch.model.signals_elsewhere import DIFFERENCE, difference
 
@@ -125,7 +124,7 @@ class LocalSignals:
 
     def no_forces(self) -> Signals:
         """The forces at all ports where nothing acts."""
-        return Signals("port", dict.fromkeys(self.ports, torch.zeros((), dtype=torch.float64)))
+        return no_forces(self.base)
 
     def check(self, a: Attachment) -> None:
         """Whether the model has the port of an attachment, and all that it reads a signal of.

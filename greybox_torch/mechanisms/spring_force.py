@@ -9,6 +9,7 @@ import torch
 
 from greybox_torch.mechanisms import shift
 from greybox_torch.model import GreyBoxModel, Signals
+from greybox_torch.model.port_forces import with_one
 from greybox_torch.model.ports import value_of
 from greybox_torch.model.random_points import random_points
 
@@ -21,7 +22,7 @@ def moved_states(base: GreyBoxModel, coupling: str, none: Signals) -> list[str]:
     """
     *points, p = random_points(base)
     x, u = base.named_signals(*points)
-    here, pushed = (base.derivative(x, u, p, forces) for forces in (none, _with_one(none, coupling)))
+    here, pushed = (base.derivative(x, u, p, forces) for forces in (none, with_one(none, coupling)))
     return [s.name for s in base.states if torch.as_tensor(pushed[s.name] != here[s.name]).any()]
 
 
@@ -51,11 +52,6 @@ def spring_force(
     released = x.replaced(**{name: x[name] - per_deflection * deflection})
     here, without = (base.derivative(s, u, p, none) for s in (x, released))
     # Where the spring is released, as beside its force one of one would be lost to rounding.
-    pushed = base.derivative(released, u, p, _with_one(none, coupling))
+    pushed = base.derivative(released, u, p, with_one(none, coupling))
     along = {s: pushed[s] - without[s] for s in moved}
     return sum((here[s] - without[s]) * along[s] for s in moved) / sum(a * a for a in along.values())
-
-
-def _with_one(none: Signals, coupling: str) -> Signals:
-    """A force of one at a coupling, and none elsewhere."""
-    return none.replaced(**{coupling: none[coupling] + 1.0})

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import torch
 
 from greybox_torch.model.greybox_model import GreyBoxModel
+from greybox_torch.model.port_forces import no_forces, with_one
 from greybox_torch.model.ports import Body
 from greybox_torch.model.signals import Signals
 
@@ -32,11 +33,10 @@ def dry_friction(model: GreyBoxModel, body: Body, fastest: float, values: Mappin
     x[at] = fastest * torch.tensor(parts, dtype=torch.float64)
     u = torch.zeros(len(model.inputs), len(parts), dtype=torch.float64)
     p = Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in values.items()})
-    none = Signals("port", {q.name: torch.zeros((), dtype=torch.float64) for q in model.all_ports})
-    pushed = none.replaced(**{body.name: torch.ones((), dtype=torch.float64)})
+    none = no_forces(model)
     here, there = (
         torch.as_tensor(model.derivative(*model.named_signals(x, u), p, forces)[speed]).expand(len(parts))
-        for forces in (none, pushed)
+        for forces in (none, with_one(none, body.name))
     )
     force = here / (there - here)
     near, whole = float(force[1] - force[2]) / 2, float(force[0] - force[3]) / 2
