@@ -15,12 +15,17 @@ from greybox_torch.mechanisms.spring_force import moved_states, spring_force
 from greybox_torch.mechanisms.unknown import INPUT
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
 from greybox_torch.model.joined_bodies import turns_with
+from greybox_torch.model.own_rate import RATE, balanced_state, own_rate, unit_of_rate
 from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
 from greybox_torch.model.sensed_states import sensed_states
 from greybox_torch.model.signals_elsewhere import DIFFERENCE, positions_elsewhere, signals_elsewhere
 from greybox_torch.model.states_of import states_of
+from greybox_torch.model.within_turn import TURN, WHOLE
 from greybox_torch.simulation.simulator import Simulator
+
+SEEN_AGAIN = 1.5
+"""Turns that a shaft has to travel for what depends on its angle to be seen to repeat."""
 
 
 def survey(model: GreyBoxModel, problem: Problem, simulator: Simulator) -> dict[str, Surroundings]:
@@ -58,6 +63,8 @@ def _around(
     if isinstance(port, Body | Balance):
         values |= {f"{INPUT}{one.name}": np.asarray(u[one.name], dtype=float) for one in model.inputs}
     values |= {name: _evaluated(signal, x, u, p, times) for name, signal in signals_elsewhere(model, port).items()}
+    if balanced_state(model, port):
+        values[f"{RATE}{port.name}"] = _evaluated(_rate(model, port), x, u, p, times)
     if isinstance(port, Sensor):
         row = [o.name for o in model.outputs].index(port.output)
         values["output"] = problem.records.y[row][~np.isnan(problem.records.y[row])]
@@ -73,6 +80,8 @@ def _around(
             ranges["deflection"] = farther(ranges["deflection"], measured)
     if isinstance(port, Body) and port.position is not None and _is_measured(model, port.position):
         ranges["position"] = no_farther(ranges["position"], as_measured(model, port.position, x, u, problem))
+    if isinstance(port, Body) and _repeats(port, ranges["position"], units["position"]):
+        ranges[TURN], units[TURN] = Range(0.0, WHOLE, WHOLE / 3**0.5), "rad"
     return Surroundings(ranges, units, _force_unit(port, units), float(np.median(problem.records.dt)), hidden)
 
 
@@ -95,6 +104,15 @@ def _load(
     none = no_forces(model)
     force = spring_force(model, port.name, shifted, moved_states(model, port.name, none), x, u, p, none)
     return {"load": np.broadcast_to(np.asarray(force.detach(), dtype=float), times.shape)}
+
+
+def _repeats(body: Body, travel: Range, unit: str) -> bool:
+    """Whether the recordings show again what depends on where a shaft stands within its turn."""
+    return body.position is not None and unit == "rad" and travel.span > SEEN_AGAIN * WHOLE
+
+
+def _rate(model: GreyBoxModel, port: Port) -> Signal:
+    return lambda x, u, p: own_rate(model, port, x, u, p, no_forces(model))
 
 
 def _is_measured(model: GreyBoxModel, signal: Signal) -> bool:
@@ -134,6 +152,8 @@ def _units(model: GreyBoxModel, port: Port) -> dict[str, str]:
         units |= {f"{INPUT}{one.name}": one.unit for one in model.inputs}
     if isinstance(port, Balance) and "level" in units:
         units |= {name: units["level"] for name in signals if name.startswith(DIFFERENCE)}
+    if state := balanced_state(model, port):
+        units[f"{RATE}{port.name}"] = unit_of_rate(of[state])
     if isinstance(port, Actuator):
         units["input"] = of[port.input]
     body = driving_body(model.ports)

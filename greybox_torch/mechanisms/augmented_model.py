@@ -11,6 +11,7 @@ import torch
 
 from greybox_torch.mechanisms import shift
 from greybox_torch.mechanisms.added_declarations import added_inputs, added_parameters, added_states, started_at
+from greybox_torch.mechanisms.added_forces import AddedForces
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.delayed_input import after, delayed
 from greybox_torch.mechanisms.late_outputs import without_what_was_before
@@ -20,7 +21,7 @@ from greybox_torch.mechanisms.memories_begun import memories_begun
 from greybox_torch.mechanisms.signal_paths import SignalPaths
 from greybox_torch.mechanisms.start_positions import position_trials
 from greybox_torch.model import GreyBoxModel, Signals
-from greybox_torch.model.ports import Actuator, Port, Sensor, sensors, value_of
+from greybox_torch.model.ports import Actuator, Port, sensors, value_of
 
 
 class AugmentedModel(GreyBoxModel):
@@ -54,7 +55,7 @@ class AugmentedModel(GreyBoxModel):
         self.probed = frozenset(a.prefix for a in probed)
         self.shared = self.probed | {a.prefix for a in switched}
         self.local = LocalSignals(base, self.attachments, self.surroundings)
-        self.paths = SignalPaths(self.local, self.probed, self._share)
+        self.paths = SignalPaths(self.local, self.probed, self.share)
         for attachment in attachments:
             self.local.check(attachment)
         self.name = base.title  # type: ignore[misc]
@@ -87,7 +88,7 @@ class AugmentedModel(GreyBoxModel):
         extra: dict[str, Any] = {}
         shown = self._shown(seen, x, acting, p, forces)
         for a in (a for a in self.attachments if a.mechanism.states(self.surroundings[a.port])):
-            local, own, memory = self._given(a, seen, reaching.get(a.prefix, acting), p, forces)
+            local, own, memory = self.given(a, seen, reaching.get(a.prefix, acting), p, forces)
             local = local.replaced(output=shown[a.prefix]) if a.prefix in shown else local
             for name, rate in a.mechanism.rates(local, own, memory).items():
                 extra[f"{a.prefix}.{name}"] = rate
@@ -114,24 +115,8 @@ class AugmentedModel(GreyBoxModel):
         return self._forces(seen, reaching, acting, p, port) if self.base.shows_forces else None
 
     def _forces(self, seen: Any, reaching: Any, acting: Any, p: Any, port: Any) -> Signals:
-        """The forces at the ports: ``port``, and what the attached laws add to them.
-
-        Args:
-            seen: the states with the deflections changed by kinematic laws.
-            acting: the inputs as actuators pass them on; ``reaching`` as they reach each law at an actuator, by prefix.
-        """
-        forces = dict(port)
-        for a in self.attachments:
-            site = self.local.ports[a.port]
-            if isinstance(site, Sensor):
-                continue  # it shows forces, and adds none
-            local, own, memory = self._given(a, seen, reaching.get(a.prefix, acting), p)
-            if not a.mechanism.kinematic and not isinstance(site, Actuator):
-                forces[a.port] = forces[a.port] + self._share(a, p) * a.mechanism.force(local, own, memory)
-            local = self.local.with_load(a, local, seen, acting, p)
-            for place, force in (*_kinematic_forces(a, local, own), *a.mechanism.elsewhere(local, own, memory).items()):
-                forces[place] = forces[place] + self._share(a, p) * force
-        return Signals("port", forces)
+        """The forces at the ports: ``port``, and what the attached laws add to them (:class:`AddedForces`)."""
+        return AddedForces(self, seen, reaching, acting, p).to(port)
 
     def admissible(self, p: Any) -> dict[str, Any]:
         return self.base.admissible(p)
@@ -222,26 +207,17 @@ class AugmentedModel(GreyBoxModel):
         """States with the deflections changed by kinematic mechanisms."""
         for a in self.attachments:
             if a.mechanism.kinematic:
-                local, own, _ = self._given(a, x, u, p)
-                change = self._share(a, p) * (a.mechanism.deflection(local, own) - local.deflection)
+                local, own, _ = self.given(a, x, u, p)
+                change = self.share(a, p) * (a.mechanism.deflection(local, own) - local.deflection)
                 name, per_deflection = shift.read(a.shifted_state)
                 x = x.replaced(**{name: x[name] + per_deflection * change})
         return x
 
-    def _given(
+    def given(
         self, a: Attachment, x: Signals, u: Signals, p: Signals, forces: Signals | None = None
     ) -> tuple[Signals, Signals, Signals]:
         """What a law is a function of: local signals, own parameters, memory."""
         return self.local.at(a, x, u, p, forces), self.local.parameters(a, p), self.local.memory(a, x)
 
-    def _share(self, a: Attachment, p: Signals) -> Any:
+    def share(self, a: Attachment, p: Signals) -> Any:
         return p[f"{a.prefix}.{SHARE}"] if a.prefix in self.shared else 1.0
-
-
-def _kinematic_forces(a: Attachment, local: Signals, own: Signals) -> list[tuple[str, Any]]:
-    """What a kinematic law does beyond the change of deflection: forces by port."""
-    if not a.mechanism.kinematic:
-        return []
-    followed = [(a.position, a.mechanism.reaction(local, own))] if a.position else []
-    found = [*followed, (a.port, a.mechanism.damped(local, own))]
-    return [(place, force) for place, force in found if force is not None]

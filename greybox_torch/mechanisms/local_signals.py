@@ -11,9 +11,11 @@ from greybox_torch.mechanisms.delayed_input import channels
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.spring_force import moved_states, spring_force
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Signals
+from greybox_torch.model.own_rate import RATE, own_rate
 from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Port, Sensor, driving_body, value_of
 from greybox_torch.model.signals_elsewhere import DIFFERENCE, difference
+from greybox_torch.model.within_turn import TURN, within_turn
 
 
 class LocalSignals:
@@ -30,13 +32,17 @@ class LocalSignals:
         self._grouped: tuple[tuple[str, ...], dict[str, dict[str, str]]] = ((), {})
 
     def at(self, a: Attachment, x: Any, u: Any, p: Any, forces: Signals | None = None) -> Signals:
-        """The signals at the port of an attachment; ``forces`` at the ports, where others are attached (a sensor may show them)."""
+        """The signals at the port of an attachment; ``forces`` at the ports, where others are attached (a sensor may show them, and they
+        change the rate at a port).
+        """
         site = self.ports[a.port]
         values: dict[str, Any] = {
             name: value_of(signal, x, u, p) for name, signal in site.signals.items() if name != "position"
         }
         if "position" in a.mechanism.needs or getattr(a.mechanism, "signal", "") == "position":
             values["position"] = self._position(a.position, x, u, p)
+        if isinstance(site, Body) and getattr(a.mechanism, "signal", "") == TURN:
+            values[TURN] = within_turn(site, x, u, p)
         if isinstance(site, Coupling) and a.position and self._shows_load(a):
             values["load"] = value_of(self.body(a.position).signals["load"], x, u, p)
         if a.mechanism.kinematic and a.position:
@@ -57,7 +63,7 @@ class LocalSignals:
                 values[names[0]] = value + (p[f"{a.prefix}.T"] - at) * slope
         values |= {f"input@{name}": u[name] for name in a.mechanism.drives}
         values |= {f"position@{link}": self._position(link, x, u, p) for link in a.mechanism.links}
-        values |= {one: self._from_elsewhere(site, one, x, u, p) for one in a.mechanism.reads}
+        values |= {one: self._from_elsewhere(site, one, x, u, p, forces) for one in a.mechanism.reads}
         values |= self.clock(x)
         return Signals("signal", values)
 
@@ -141,12 +147,16 @@ class LocalSignals:
                 why = "" if kind == "port" else f", which the effect at '{a.port}' depends on"
                 raise UserError(f"model {self.base.title} has no {told} '{name}'{why} (it has: {', '.join(there)})")
 
-    def _from_elsewhere(self, site: Port, signal: str, x: Signals, u: Signals, p: Signals) -> Any:
-        """An input of the model, a signal of another port, or by how much the level of a balance is above another one's."""
+    def _from_elsewhere(
+        self, site: Port, signal: str, x: Signals, u: Signals, p: Signals, forces: Signals | None
+    ) -> Any:
+        """An input of the model, a signal of another port, by how much the level of a balance is above another one's, or a port's rate."""
         kind, _, name = signal.partition("@")
         if kind == "input":
             return u[name]
         other = self.ports[name]
+        if signal.startswith(RATE):
+            return own_rate(self.base, other, x, u, p, forces or self.no_forces())
         if signal.startswith(DIFFERENCE):
             assert isinstance(site, Balance) and isinstance(other, Balance)
             return value_of(difference(site, other), x, u, p)

@@ -50,6 +50,8 @@ class Mechanism:
     reads: tuple[str, ...] = ()
     """Signals from elsewhere that a law sees at whatever port: inputs of the model, ``input@NAME``, and what
     :func:`~greybox_torch.model.signals_elsewhere.signals_elsewhere` lists, ``position@BODY`` and ``level@BALANCE``."""
+    by_rate: bool = False
+    """Whether it reads ``rate@PORT``, which the forces of all other laws belong to."""
     kinematic: bool = False
     """Whether the law changes a coupling's deflection (:meth:`deflection`) instead of adding a force."""
     fades: ClassVar[bool] = False

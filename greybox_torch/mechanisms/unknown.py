@@ -10,7 +10,9 @@ import torch
 
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
-from greybox_torch.model.signals_elsewhere import DIFFERENCE
+from greybox_torch.model.own_rate import RATE
+from greybox_torch.model.signals_elsewhere import DIFFERENCE, POSITION, SPEED
+from greybox_torch.model.within_turn import TURN, WHOLE
 
 REACH = 4
 """To either side of how many neighbours a bump is computed with: an exponential costs as much as ten products."""
@@ -30,7 +32,11 @@ class Unknown(Mechanism):
     With a ``factor`` the curve is what that other signal is multiplied by: a gain that changes. The factor may be an input of the model,
     ``input@NAME``, also where it does not act; the signal may be that of another port, ``position@BODY`` or ``level@BALANCE``: what one
     axis does to the other, or a charge to how a battery warms. Of a ``difference@BALANCE`` of levels it is what two balances exchange: the
-    other one has it with the opposite sign. Bumps that are ``left_out`` are zero.
+    other one has it with the opposite sign.
+
+    The factor ``rate@PORT`` is how fast the port's own level or speed changes without this curve: a capacity or an inertia that varies. An
+    inertia m(θ) more than the model has needs −m a − ½ m' ω² of the torque; one over the position of another axis, m(θ_2), needs
+    −m a − m' ω_2 ω, and pushes that axis with ½ m' ω². Bumps that are ``left_out`` are zero.
     """
 
     name = "unknown"
@@ -43,8 +49,12 @@ class Unknown(Mechanism):
         self.signal = signal
         self.knots = knots
         self.factor = factor
-        self.reads = tuple(one for one in (signal, factor) if "@" in one)
         self.left_out = tuple(left_out)
+        self.by_rate = factor.startswith(RATE)
+        at_other = self.by_rate and signal.startswith(POSITION)
+        self.other_axis = signal.removeprefix(POSITION) if at_other else ""
+        speed = (f"{SPEED}{self.other_axis}",) if at_other else ()
+        self.reads = (*(one for one in (signal, factor) if "@" in one), *speed)
 
     @property
     def bumps(self) -> list[int]:
@@ -76,17 +86,35 @@ class Unknown(Mechanism):
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         curve = self.curve(s, p)
-        return curve * s[self.factor] if self.factor in s else curve
+        if self.factor not in s:
+            return curve
+        force = curve * s[self.factor]
+        if self.by_rate and self.signal in ("position", TURN):
+            return force + 0.5 * self.slope(s, p) * s.speed**2
+        return force + self.slope(s, p) * s[f"{SPEED}{self.other_axis}"] * s.speed if self.other_axis else force
 
     def elsewhere(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
+        if self.other_axis:
+            return {self.other_axis: -0.5 * self.slope(s, p) * s.speed**2}
         taken = next((n.removeprefix(DIFFERENCE) for n in self.reads if n.startswith(DIFFERENCE)), None)
         return {} if taken is None else {taken: -self.force(s, p, z)}
 
     def curve(self, s: Signals, p: Signals) -> Any:
         """The sum of the bumps at the signal."""
-        place = torch.clamp((s[self.signal] - p.first) / p.spacing, 1.0, self.knots - 2.0)
-        heights = {k: p[f"w_{k}"] for k in self.bumps}
-        return sum(_bumps_around(place, centre, heights) for centre in range(REACH, self.knots + REACH, 2 * REACH + 1))
+        return self._sum_of_bumps(s, p, self._heights(p))
+
+    def slope(self, s: Signals, p: Signals) -> Any:
+        """How steep the curve is at the signal: zero where it stays level."""
+        heights = self._heights(p)
+        moment = self._sum_of_bumps(s, p, {k: k * height for k, height in heights.items()})
+        steep = 2.0 / p.spacing * (moment - self._place(s, p) * self._sum_of_bumps(s, p, heights))
+        there = (s[self.signal] - p.first) / p.spacing
+        return steep if self.closed else torch.where((there > 1.0) & (there < self.knots - 2.0), steep, 0.0)
+
+    @property
+    def closed(self) -> bool:
+        """Whether the curve ends where it begins: over a turn."""
+        return self.signal == TURN
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(tuple(f"w_{k}" for k in self.bumps))]
@@ -103,10 +131,29 @@ class Unknown(Mechanism):
         return (self.signal, self.factor) if self.factor else (self.signal,)
 
     def centres(self, around: Surroundings) -> list[float]:
-        """Centres of the bumps, in the signal's unit; one lies beyond either end of the range, so that the ends are covered as well."""
+        """Centres of the bumps, in the signal's unit; one lies beyond either end of the range, so that the ends are covered as well, but
+        over a turn.
+        """
+        if self.closed:
+            return [WHOLE / self.knots * k for k in range(self.knots)]
         reached = around.ranges[self.signal]
         spacing = reached.span / (self.knots - 3)
         return [reached.low + spacing * (k - 1) for k in range(self.knots)]
+
+    def _heights(self, p: Signals) -> dict[int, Any]:
+        """The heights of the bumps by number; over a turn of those before and after it as well."""
+        numbers = range(-REACH, self.knots + REACH) if self.closed else range(self.knots)
+        return {k: p[f"w_{k % self.knots}"] for k in numbers if k % self.knots not in self.left_out}
+
+    def _place(self, s: Signals, p: Signals) -> Any:
+        """Where the signal is, in spacings from the first centre."""
+        place = (s[self.signal] - p.first) / p.spacing
+        return place if self.closed else torch.clamp(place, 1.0, self.knots - 2.0)
+
+    def _sum_of_bumps(self, s: Signals, p: Signals, heights: Mapping[int, Any]) -> Any:
+        place, beside = self._place(s, p), REACH if self.closed else 0
+        centres = range(REACH - beside, self.knots + REACH + beside, 2 * REACH + 1)
+        return sum(_bumps_around(place, centre, heights) for centre in centres)
 
 
 def _bumps_around(place: Any, centre: int, heights: Mapping[int, Any]) -> Any:

@@ -24,8 +24,10 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.model import Coupling, GreyBoxModel
+from greybox_torch.model.own_rate import RATE, balanced_state
 from greybox_torch.model.ports import Actuator, Port, driving_body
 from greybox_torch.model.signals_elsewhere import DIFFERENCE
+from greybox_torch.model.within_turn import TURN
 
 
 def describe(
@@ -166,6 +168,10 @@ def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:
     if signal.startswith(DIFFERENCE):
         other = next(q for q in model.all_ports if q.name == signal.removeprefix(DIFFERENCE))
         return f"{signal_name(model, site, 'level')} - {signal_name(model, other, 'level')}"
+    if signal == TURN:
+        return f"{signal_name(model, site, 'position')} within a turn"
+    if signal.startswith(RATE):
+        return f"d {balanced_state(model, site)}/dt"
     if "@" in signal:
         kind, _, elsewhere = signal.partition("@")
         return signal_name(model, next(q for q in model.all_ports if q.name == elsewhere), kind)

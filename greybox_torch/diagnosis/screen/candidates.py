@@ -18,8 +18,10 @@ from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port
 from greybox_torch.model.joined_bodies import joined_bodies
+from greybox_torch.model.own_rate import RATE, balanced_state
 from greybox_torch.model.ports import Actuator, driving_body
 from greybox_torch.model.signals_elsewhere import DIFFERENCE, LEVEL, SPEED, balances_alike, signals_elsewhere
+from greybox_torch.model.within_turn import TURN
 
 ANGLES = ("rad", "deg", "rev", "turn")
 """Beginnings of the units of angles: only on an angle does gravity repeat."""
@@ -49,8 +51,8 @@ temperature or a charge.
 """
 
 MOST_FROM_ELSEWHERE, MOST_EXCHANGED, MOST_KNOTS_FROM_ELSEWHERE = 24, 12, 20
-"""Curves of signals of other ports, and of what balances exchange, that are tried at all, and how fine they may be: each knot costs the
-screen as much as a law.
+"""Curves of signals of other ports, and of what balances exchange, that are tried at all, and how fine they, and those that multiply a
+rate, may be: each knot costs the screen as much as a law.
 """
 
 
@@ -78,8 +80,8 @@ def candidates(
     if not flexible:
         return [*found, *chain_candidates(model, surroundings), *common_delays(model)]
     coarse = knots <= MOST_KNOTS_FROM_ELSEWHERE
-    elsewhere = [*_from_elsewhere(model, knots), *_exchanged(model, knots)] if coarse else []
-    return [*found, *(attach(model, port.name, c) for port, c in elsewhere if c.available(surroundings[port.name]))]
+    further = [*_by_rate(model, knots), *_from_elsewhere(model, knots), *_exchanged(model, knots)] if coarse else []
+    return [*found, *(attach(model, port.name, c) for port, c in further if c.available(surroundings[port.name]))]
 
 
 def chain_candidates(model: GreyBoxModel, surroundings: Mapping[str, Surroundings]) -> list[Attachment]:
@@ -135,6 +137,13 @@ def _curves(model: GreyBoxModel, port: Port, knots: int) -> Iterable[Unknown]:
         yield from (Unknown("level", knots, f"{INPUT}{one.name}") for one in model.inputs)
 
 
+def _by_rate(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """An inertia over the position, a capacity over the level: a crank, a store that melts, a coil whose iron saturates."""
+    for port in (q for q in model.ports if balanced_state(model, q)):
+        own = ("level",) if isinstance(port, Balance) else () if _integrated(model, port) else ("position", TURN)
+        yield from ((port, Unknown(signal, knots, f"{RATE}{port.name}")) for signal in own)
+
+
 def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
     """What another part of the machine does to a port by where it stands: by itself, or to what an input, the body's speed or the level
     does there. What it does by how fast it is (the air that a turning rotor drags along) it does by itself. At an actuator a level changes
@@ -148,7 +157,8 @@ def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unk
         for signal in (n for n in signals_elsewhere(model, port) if not n.startswith(DIFFERENCE)):
             own = OWN.get(port.kind, ()) if signal.startswith(LEVEL) else ()
             factors = ("",) if signal.startswith(SPEED) else ("", *inputs, *own)
-            yield from ((port, Unknown(signal, knots, factor)) for factor in factors)
+            rate = (f"{RATE}{port.name}",) if not signal.startswith(SPEED) and balanced_state(model, port) else ()
+            yield from ((port, Unknown(signal, knots, factor)) for factor in (*factors, *rate))
 
     def at(actuator: Actuator) -> Iterator[tuple[Port, Unknown]]:
         yield from ((actuator, Unknown(level, knots, "input")) for level in signals_elsewhere(model, actuator))

@@ -70,9 +70,11 @@ def test_what_one_axis_does_to_the_other_is_offered(surroundings) -> None:
     found = candidates(Helicopter(), {}, surroundings, flexible=True)
     curves = {(a.port, a.mechanism.signal, a.mechanism.factor) for a in found if isinstance(a.mechanism, Unknown)}
     for body, other in (("pitch_axis", "yaw_axis"), ("yaw_axis", "pitch_axis")):
-        own = {(body, f"position@{other}", factor) for factor in ("", "input@main", "input@tail")}
-        warm = {(body, "level@motor_heat", factor) for factor in ("", "speed", "input@main", "input@tail")}
+        any_factor = ("", "input@main", "input@tail", f"rate@{body}")
+        own = {(body, f"position@{other}", factor) for factor in any_factor}
+        warm = {(body, "level@motor_heat", factor) for factor in (*any_factor, "speed")}
         assert {c for c in curves if c[0] == body and "@" in c[1]} == own | warm | {(body, f"speed@{other}", "")}
+        assert (body, "position", f"rate@{body}") in curves
     assert surroundings["yaw_axis"].ranges["position@pitch_axis"].high == pytest.approx(0.5)
     assert surroundings["yaw_axis"].units["position@pitch_axis"] == "rad"
 
@@ -85,7 +87,7 @@ def test_an_input_that_changes_a_loss_is_offered_at_a_balance(surroundings) -> N
         for a in found
         if a.port == "motor_heat" and isinstance(a.mechanism, Unknown)
     }
-    assert at_heat == {("level", ""), ("level", "input@main"), ("level", "input@tail")}
+    assert at_heat == {("level", factor) for factor in ("", "input@main", "input@tail", "rate@motor_heat")}
 
 
 class Cell(GreyBoxModel):

@@ -1,0 +1,32 @@
+"""How fast a level or a speed changes by the model's own equations: what a capacity or an inertia multiplies."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from greybox_torch.model.greybox_model import GreyBoxModel
+from greybox_torch.model.ports import Balance, Body, Port
+from greybox_torch.model.signals import Signals
+
+RATE = "rate@"
+"""Beginning of the name of such a signal; the name of its port follows."""
+
+
+def balanced_state(model: GreyBoxModel, port: Port) -> str | None:
+    """The state whose rate a port's force changes: a balance's level, a body's speed; None where that is no state of the model."""
+    signal = port.level if isinstance(port, Balance) else port.speed if isinstance(port, Body) else None
+    return signal if isinstance(signal, str) and signal in (s.name for s in model.states) else None
+
+
+def own_rate(model: GreyBoxModel, port: Port, x: Any, u: Any, p: Any, forces: Signals) -> Any:
+    """The rate of that state under ``forces`` at the ports, in its unit per second."""
+    state = balanced_state(model, port)
+    assert state is not None
+    return model.derivative(x, u, p, forces)[state]
+
+
+def unit_of_rate(unit: str) -> str:
+    """The unit of the rate of a state of this unit; empty where that is not known."""
+    if not unit:
+        return ""
+    return f"{unit.removesuffix('/s')}/s^2" if unit.endswith("/s") else f"{unit}/s"
