@@ -148,10 +148,10 @@ def ceiling_share(done: SelectionStep, memory: SelectionStep | None = None) -> f
 
 
 def as_named(curve: Curve | None, model: GreyBoxModel, site: Port) -> Curve | None:
-    """A curve over a signal of another port by the model's own name of it; its own signals go by the names that they have at a port."""
+    """A curve over a turn or a signal of another port by the model's own name of it; own signals keep their names at a port."""
     return (
         curve
-        if curve is None or "@" not in curve.signal
+        if curve is None or not (curve.signal == TURN or "@" in curve.signal)
         else replace(curve, signal=signal_name(model, site, curve.signal))
     )
 

@@ -60,7 +60,10 @@ def most_of(found: Profile, share: float = 0.8) -> tuple[float, float, float]:
 
 
 def law_curve(model: AugmentedModel, attachment: Attachment, around: Surroundings, problem: Problem) -> Curve | None:
-    """The effect's own law over its first signal, the others held at their root mean square; None for laws with memory."""
+    """The effect's own law over its first signal, the others held at their root mean square; None for laws with memory.
+
+    Of a curve that multiplies a rate what it takes of that rate: speeds are zero.
+    """
     signals = attachment.mechanism.signals()
     if attachment.mechanism.states(around) or not signals or signals[0] not in around.ranges:
         return None
@@ -68,7 +71,8 @@ def law_curve(model: AugmentedModel, attachment: Attachment, around: Surrounding
     grid = torch.linspace(around.ranges[name].low, around.ranges[name].high, POINTS, dtype=torch.float64)
     if "delayed" in attachment.mechanism.needs or attachment.mechanism.links:
         return None
-    held = {n: torch.full_like(grid, around.ranges[n].rms) for n in around.ranges if n != name}
+    still = [n for n in around.ranges if n.startswith("speed")] if attachment.mechanism.by_rate else ()
+    held = {n: torch.full_like(grid, around.ranges[n].rms * (n not in still)) for n in around.ranges if n != name}
     force = model.curve(attachment, {**held, name: grid}, problem.parameter_tensors)
     unit = around.units.get("deflection", "") if attachment.mechanism.kinematic else around.force_unit
     values = np.broadcast_to(np.asarray(force, dtype=float), (POINTS,))
