@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import ClassVar
 
 import numpy as np
@@ -9,7 +10,8 @@ import pytest
 import torch
 from scipy.integrate import solve_ivp
 
-from greybox_torch.diagnosis.describe.effects import signal_name
+from greybox_torch.diagnosis.describe.effects import as_named, signal_name
+from greybox_torch.diagnosis.describe.profiles import law_curve
 from greybox_torch.diagnosis.screen.candidates import candidates
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
@@ -208,3 +210,15 @@ def test_compiled_code_agrees(signal: str) -> None:
     found, expected = compiled.run(records, asked), eager.run(records, asked)
     np.testing.assert_allclose(found.y, expected.y, rtol=1e-10)
     np.testing.assert_allclose(found.dy, expected.dy, rtol=1e-8, atol=1e-10)
+
+
+def test_it_is_drawn_as_what_it_takes_of_the_rate() -> None:
+    """Not with the force of the turning shaft, which is that of the slope."""
+    _, model, values, _ = with_curve("shaft", Unknown("turn", 14, "rate@shaft"), lambda c: -0.1 * (1 + 0.3 * np.cos(c)))
+    told = {q.name: q.value for q in model.declared_parameters} | values
+    p = Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in told.items()})
+    drawn = law_curve(model, model.attachments[0], around(Machine())["shaft"], SimpleNamespace(parameter_tensors=p))
+    assert drawn is not None and drawn.force.shape == drawn.values.shape
+    np.testing.assert_allclose(drawn.force, -0.1 * (1 + 0.3 * np.cos(drawn.values)), atol=0.01)
+    named = as_named(drawn, Machine(), Machine.ports[0])
+    assert named is not None and named.signal == "angle within a turn"
