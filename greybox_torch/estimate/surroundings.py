@@ -14,6 +14,7 @@ from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.spring_force import moved_states, spring_force
 from greybox_torch.mechanisms.unknown import INPUT
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
+from greybox_torch.model.along_motion import ALONG, DIRECTION, direction, inputs_that_push
 from greybox_torch.model.joined_bodies import turns_with
 from greybox_torch.model.own_rate import RATE, balanced_state, own_rate, unit_of_rate
 from greybox_torch.model.port_forces import no_forces
@@ -63,6 +64,8 @@ def _around(
     if isinstance(port, Body | Balance):
         values |= {f"{INPUT}{one.name}": np.asarray(u[one.name], dtype=float) for one in model.inputs}
     values |= {name: _evaluated(signal, x, u, p, times) for name, signal in signals_elsewhere(model, port).items()}
+    if isinstance(port, Body):
+        values |= _along_motion(model, port, u, values["speed"])
     if balanced_state(model, port):
         values[f"{RATE}{port.name}"] = _evaluated(_rate(model, port), x, u, p, times)
     if isinstance(port, Sensor):
@@ -104,6 +107,13 @@ def _load(
     none = no_forces(model)
     force = spring_force(model, port.name, shifted, moved_states(model, port.name, none), x, u, p, none)
     return {"load": np.broadcast_to(np.asarray(force.detach(), dtype=float), times.shape)}
+
+
+def _along_motion(model: GreyBoxModel, body: Body, u: Signals, speed: np.ndarray) -> dict[str, np.ndarray]:
+    """The inputs that push a body, along its motion, and the direction of that."""
+    way = direction(torch.as_tensor(speed), _range(speed).rms).numpy()
+    along = {f"{ALONG}{name}": np.asarray(u[name], dtype=float) * way for name in inputs_that_push(model, body)}
+    return {**along, f"{DIRECTION}{body.name}": way}
 
 
 def _repeats(body: Body, travel: Range, unit: str) -> bool:
@@ -149,7 +159,7 @@ def _units(model: GreyBoxModel, port: Port) -> dict[str, str]:
         units["position"] = position_unit(model, port)
         units |= {name: position_unit(model, b) for name, b in positions_elsewhere(model, port).items()}
     if isinstance(port, Body | Balance):
-        units |= {f"{INPUT}{one.name}": one.unit for one in model.inputs}
+        units |= {f"{kind}{one.name}": one.unit for kind in (INPUT, ALONG) for one in model.inputs}
     if isinstance(port, Balance) and "level" in units:
         units |= {name: units["level"] for name in signals if name.startswith(DIFFERENCE)}
     if state := balanced_state(model, port):

@@ -11,6 +11,7 @@ from greybox_torch.mechanisms.delayed_input import channels
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.spring_force import moved_states, spring_force
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Signals
+from greybox_torch.model.along_motion import ALONG, DIRECTION, direction
 from greybox_torch.model.own_rate import RATE, own_rate
 from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Port, Sensor, driving_body, value_of
@@ -141,7 +142,9 @@ class LocalSignals:
         named = (("port", a.port), *(signal.split("@", 1) for signal in a.mechanism.reads))
         for kind, name in named:
             told, there = (
-                ("input", [i.name for i in self.base.inputs]) if kind == "input" else ("port", list(self.ports))
+                ("input", [i.name for i in self.base.inputs])
+                if kind in ("input", "along")
+                else ("port", list(self.ports))
             )
             if name not in there:
                 why = "" if kind == "port" else f", which the effect at '{a.port}' depends on"
@@ -150,10 +153,16 @@ class LocalSignals:
     def _from_elsewhere(
         self, site: Port, signal: str, x: Signals, u: Signals, p: Signals, forces: Signals | None
     ) -> Any:
-        """An input of the model, a signal of another port, by how much the level of a balance is above another one's, or a port's rate."""
+        """An input of the model, by itself or along a body's motion, a signal of another port, by how much the level of a balance is above
+        another one's, or a port's rate.
+        """
         kind, _, name = signal.partition("@")
         if kind == "input":
             return u[name]
+        if signal.startswith((ALONG, DIRECTION)):
+            assert isinstance(site, Body)
+            way = direction(value_of(site.speed, x, u, p), self.surroundings[site.name].ranges["speed"].rms)
+            return u[name] * way if signal.startswith(ALONG) else way
         other = self.ports[name]
         if signal.startswith(RATE):
             return own_rate(self.base, other, x, u, p, forces or self.no_forces())

@@ -24,6 +24,7 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.model import Coupling, GreyBoxModel
+from greybox_torch.model.along_motion import ALONG, DIRECTION
 from greybox_torch.model.own_rate import RATE, balanced_state
 from greybox_torch.model.ports import Actuator, Port, driving_body
 from greybox_torch.model.signals_elsewhere import DIFFERENCE
@@ -170,6 +171,10 @@ def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:
         return f"{signal_name(model, site, 'level')} - {signal_name(model, other, 'level')}"
     if signal == TURN:
         return f"{signal_name(model, site, 'position')} within a turn"
+    if signal.startswith(ALONG):
+        return f"{signal.removeprefix(ALONG)} along the motion"
+    if signal.startswith(DIRECTION):
+        return f"direction of {signal_name(model, site, 'speed')}"
     if signal.startswith(RATE):
         return f"d {balanced_state(model, site)}/dt"
     if "@" in signal:

@@ -17,6 +17,7 @@ from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port
+from greybox_torch.model.along_motion import ALONG, DIRECTION, inputs_that_push
 from greybox_torch.model.joined_bodies import joined_bodies
 from greybox_torch.model.own_rate import RATE, balanced_state
 from greybox_torch.model.ports import Actuator, driving_body
@@ -80,7 +81,8 @@ def candidates(
     if not flexible:
         return [*found, *chain_candidates(model, surroundings), *common_delays(model)]
     coarse = knots <= MOST_KNOTS_FROM_ELSEWHERE
-    further = [*_by_rate(model, knots), *_from_elsewhere(model, knots), *_exchanged(model, knots)] if coarse else []
+    ways = (_by_rate, _along_motion, _from_elsewhere, _exchanged) if coarse else ()
+    further = (one for way in ways for one in way(model, knots))
     return [*found, *(attach(model, port.name, c) for port, c in further if c.available(surroundings[port.name]))]
 
 
@@ -142,6 +144,13 @@ def _by_rate(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
     for port in (q for q in model.ports if balanced_state(model, q)):
         own = ("level",) if isinstance(port, Balance) else () if _integrated(model, port) else ("position", TURN)
         yield from ((port, Unknown(signal, knots, f"{RATE}{port.name}")) for signal in own)
+
+
+def _along_motion(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """What a drive loses of an input by whether it drives or brakes: a worm gear."""
+    for body in (q for q in model.ports if isinstance(q, Body)):
+        pushing = inputs_that_push(model, body)
+        yield from ((body, Unknown(f"{ALONG}{name}", knots, f"{DIRECTION}{body.name}")) for name in pushing)
 
 
 def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
