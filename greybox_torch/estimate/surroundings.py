@@ -111,7 +111,7 @@ def _load(
 
 def _along_motion(model: GreyBoxModel, body: Body, u: Signals, speed: np.ndarray) -> dict[str, np.ndarray]:
     """The inputs that push a body, along its motion, and the direction of that."""
-    way = direction(torch.as_tensor(speed), _range(speed).rms).numpy()
+    way = direction(torch.tensor(speed), _range(speed).rms).numpy()
     along = {f"{ALONG}{name}": np.asarray(u[name], dtype=float) * way for name in inputs_that_push(model, body)}
     return {**along, f"{DIRECTION}{body.name}": way}
 
