@@ -83,11 +83,8 @@ def test_what_one_axis_does_to_the_other_is_offered(surroundings) -> None:
 def test_an_input_that_changes_a_loss_is_offered_at_a_balance(surroundings) -> None:
     """Seen: a fan that cooled a wall, and that the model did not use: "something, without a name", after 91 s."""
     found = candidates(Helicopter(), {}, surroundings, flexible=True)
-    at_heat = {
-        (a.mechanism.signal, a.mechanism.factor)
-        for a in found
-        if a.port == "motor_heat" and isinstance(a.mechanism, Unknown)
-    }
+    curves = (a for a in found if a.port == "motor_heat" and isinstance(a.mechanism, Unknown))
+    at_heat = {(a.mechanism.signal, a.mechanism.factor) for a in curves}
     assert at_heat == {("level", factor) for factor in ("", "input@main", "input@tail", "rate@motor_heat")}
 
 
