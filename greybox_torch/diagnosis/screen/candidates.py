@@ -46,11 +46,6 @@ a voice coil that leaves its gap, a damper whose oil is torn along, a rope or a 
 brake that acts over a part of the way.
 """
 
-OWN = {"body": ("speed",), "balance": ("level",)}
-"""By kind of port, what a level elsewhere may change the effect of: friction with a temperature, a rate of reaction or a resistance with a
-temperature or a charge.
-"""
-
 MOST_FROM_ELSEWHERE, MOST_EXCHANGED, MOST_KNOTS_FROM_ELSEWHERE = 24, 12, 20
 """Curves of signals of other ports, and of what balances exchange, that are tried at all, and how fine they, and those that multiply a
 rate, may be: each knot costs the screen as much as a law.
@@ -81,7 +76,7 @@ def candidates(
     if not flexible:
         return [*found, *chain_candidates(model, surroundings), *common_delays(model)]
     coarse = knots <= MOST_KNOTS_FROM_ELSEWHERE
-    ways = (_by_rate, _along_motion, _from_elsewhere, _exchanged) if coarse else ()
+    ways = (_by_rate, _by_direction, _from_elsewhere, _exchanged) if coarse else ()
     further = (one for way in ways for one in way(model, knots))
     return [*found, *(attach(model, port.name, c) for port, c in further if c.available(surroundings[port.name]))]
 
@@ -146,11 +141,12 @@ def _by_rate(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
         yield from ((port, Unknown(signal, knots, f"{RATE}{port.name}")) for signal in own)
 
 
-def _along_motion(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
-    """What a drive loses of an input by whether it drives or brakes: a worm gear."""
+def _by_direction(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """Dry friction that varies with an input, by whether that drives or brakes (a worm gear), or with the position (a worn rail)."""
     for body in (q for q in model.ports if isinstance(q, Body)):
-        pushing = inputs_that_push(model, body)
-        yield from ((body, Unknown(f"{ALONG}{name}", knots, f"{DIRECTION}{body.name}")) for name in pushing)
+        signals = [f"{ALONG}{name}" for name in inputs_that_push(model, body)]
+        signals += [] if _integrated(model, body) else ["position"]
+        yield from ((body, Unknown(signal, knots, f"{DIRECTION}{body.name}")) for signal in signals)
 
 
 def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
@@ -164,7 +160,7 @@ def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unk
 
     def of(port: Port) -> Iterator[tuple[Port, Unknown]]:
         for signal in (n for n in signals_elsewhere(model, port) if not n.startswith(DIFFERENCE)):
-            own = OWN.get(port.kind, ()) if signal.startswith(LEVEL) else ()
+            own = _own(port) if signal.startswith(LEVEL) else ()
             factors = ("",) if signal.startswith(SPEED) else ("", *inputs, *own)
             rate = (f"{RATE}{port.name}",) if not signal.startswith(SPEED) and balanced_state(model, port) else ()
             yield from ((port, Unknown(signal, knots, factor)) for factor in (*factors, *rate))
@@ -176,6 +172,13 @@ def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unk
     ways = (*map(of, model.ports), *map(at, actuators))
     in_turn = (way for turn in zip_longest(*ways) for way in turn if way is not None)
     return islice(in_turn, MOST_FROM_ELSEWHERE)
+
+
+def _own(port: Port) -> tuple[str, ...]:
+    """What a level elsewhere may change the effect of: friction with a temperature, viscous or dry, a rate of reaction or a resistance with
+    a temperature or a charge.
+    """
+    return ("speed", f"{DIRECTION}{port.name}") if isinstance(port, Body) else ("level",)
 
 
 def _exchanged(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:

@@ -60,6 +60,7 @@ def test_curves(arm_search) -> None:
         *((b, "speed", "") for b in ("motor", "gearbox", "arm")),
         *((b, "position", b) for b in ("motor", "gearbox", "arm")),
         *((s, q, "") for s in ("gear_spring", "arm_spring") for q in ("deflection", "rate", "speed")),
+        ("motor", "along@torque", ""),
         ("actuator", "input", ""),
         ("actuator", "time", ""),
         ("actuator", "speed", ""),

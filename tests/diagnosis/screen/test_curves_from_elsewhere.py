@@ -72,10 +72,10 @@ def test_what_one_axis_does_to_the_other_is_offered(surroundings) -> None:
     for body, other in (("pitch_axis", "yaw_axis"), ("yaw_axis", "pitch_axis")):
         any_factor = ("", "input@main", "input@tail", f"rate@{body}")
         own = {(body, f"position@{other}", factor) for factor in any_factor}
-        warm = {(body, "level@motor_heat", factor) for factor in (*any_factor, "speed")}
+        warm = {(body, "level@motor_heat", factor) for factor in (*any_factor, "speed", f"direction@{body}")}
         there = {c for c in curves if c[0] == body and "@" in c[1] and not c[1].startswith("along@")}
         assert there == own | warm | {(body, f"speed@{other}", "")}
-        assert (body, "position", f"rate@{body}") in curves
+        assert {(body, "position", f"rate@{body}"), (body, "position", f"direction@{body}")} <= curves
     assert surroundings["yaw_axis"].ranges["position@pitch_axis"].high == pytest.approx(0.5)
     assert surroundings["yaw_axis"].units["position@pitch_axis"] == "rad"
 
