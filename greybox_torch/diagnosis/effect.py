@@ -118,7 +118,9 @@ class Effect:
         if self.mechanism != "unknown":
             return self.parameters
         if self.memory is None:
-            return {}
+            return {
+                n: v for n, v in self.parameters.items() if not n.startswith("w_") and n not in ("first", "spacing")
+            }
         return {n: v for n, v in self.parameters.items() if not self.memory.curved or n == "T"}
 
     @property

@@ -57,7 +57,11 @@ def in_words(mechanism: str) -> str:
 
 def spoken(mechanism: str) -> str:
     """A mechanism's name as a sentence has it."""
-    unknown = {"unknown": "an unknown effect", "unknown_with_memory": "an unknown effect with memory"}
+    unknown = {
+        "unknown": "an unknown effect",
+        "unknown_with_memory": "an unknown effect with memory",
+        "unknown_play": "an unknown effect with play",
+    }
     return unknown.get(mechanism) or in_words(mechanism)
 
 

@@ -33,6 +33,7 @@ def mechanisms(kind: str) -> list[Mechanism]:
     learned = {
         "unknown": {"signal": of},
         "unknown_with_memory": {"signal": of},
+        "unknown_play": {},
         "friction_net": {},
         "residual_net": {"inputs": (of,)},
         "memory_net": {"inputs": (of,)},

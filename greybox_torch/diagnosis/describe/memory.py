@@ -14,6 +14,7 @@ from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.matching import law_force
 from greybox_torch.mechanisms.surroundings import Surroundings
+from greybox_torch.mechanisms.unknown_play import UnknownPlay
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 
 FREQUENCIES = 81
@@ -68,8 +69,16 @@ def remembered(attachment: Attachment, around: Surroundings, final: Final, signa
 
 
 def settled_curve(attachment: Attachment, around: Surroundings, final: Final) -> Curve | None:
-    """The force over the signal once all has settled, as the entry `curve` of a free response; None for any other effect."""
+    """The force over the signal once all has settled, as the entry `curve` of a free response; of play, the loop that it draws.
+
+    None for any other effect.
+    """
     mechanism = attachment.mechanism
+    if isinstance(mechanism, UnknownPlay):
+        span, lost = around.ranges["input"], _own(attachment, final)[0]["h"]
+        there = np.linspace(span.low, span.high, POINTS)
+        both = np.concatenate([there, there[::-1]])
+        return Curve("input", around.units.get("input", ""), both, np.repeat([-lost, lost], POINTS), around.force_unit)
     if not isinstance(mechanism, UnknownWithMemory):
         return None
     values, _ = _own(attachment, final)

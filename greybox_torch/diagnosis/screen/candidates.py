@@ -14,6 +14,7 @@ from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
+from greybox_torch.mechanisms.unknown_play import UnknownPlay
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port
@@ -202,7 +203,7 @@ def _exchanged(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]
 def memory_candidates(
     model: GreyBoxModel, surroundings: Mapping[str, Surroundings], knots: int = 0
 ) -> list[Attachment]:
-    """Residuals with one and two hidden states at every port, of each signal that free curves are tried over.
+    """Residuals with one and two hidden states at every port, of each signal that free curves are tried over, and play at actuators.
 
     With ``knots``, those of one state with a curve in front.
 
@@ -217,6 +218,8 @@ def memory_candidates(
                     [UnknownWithMemory(signal, 1, knots)] if knots else [UnknownWithMemory(signal, m) for m in (1, 2)]
                 )
                 found += [attach(model, port.name, mechanism) for mechanism in kinds]
+        if isinstance(port, Actuator) and not knots:
+            found.append(attach(model, port.name, UnknownPlay()))
     return found
 
 
