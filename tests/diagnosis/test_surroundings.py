@@ -65,7 +65,11 @@ def test_ranges_of_states(arm_search, states, port, signal, column) -> None:
 
 def test_signals_by_port(arm_search) -> None:
     assert {port: set(around.ranges) for port, around in arm_search.surroundings.items()} == {
-        **{body: {"speed", "position", "load", "time", "input@torque"} for body in ("motor", "gearbox", "arm")},
+        **{
+            body: {"speed", "position", "load", "time", "input@torque", f"rate@{body}", f"direction@{body}"}
+            | ({"along@torque"} if body == "motor" else set())
+            for body in ("motor", "gearbox", "arm")
+        },
         "gear_spring": {"deflection", "rate", "speed", "position", "load", "time"},
         "arm_spring": {"deflection", "rate", "speed", "position", "time"},
         "actuator": {"input", "speed", "time"},
@@ -104,7 +108,10 @@ def test_units(arm_search) -> None:
         **dict.fromkeys(("motor", "gearbox", "arm", "gear_spring", "arm_spring", "actuator"), "N m"),
         "sensor": "rad/s",
     }
-    assert around["motor"].units == {"speed": "rad/s", "position": "rad", "time": "s", "input@torque": "N m"}
+    assert around["motor"].units == {
+        **{"speed": "rad/s", "position": "rad", "time": "s", "rate@motor": "rad/s^2"},
+        **dict.fromkeys(("input@torque", "along@torque"), "N m"),
+    }
     assert around["gear_spring"].units["rate"] == "rad/s"
     assert around["motor"].per("speed") == "N m/(rad/s)" and around["motor"].per("speed", 2) == "N m/(rad/s)^2"
     assert around["motor"].sample_time == pytest.approx(1e-3)
