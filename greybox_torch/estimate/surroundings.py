@@ -16,7 +16,7 @@ from greybox_torch.mechanisms.unknown import INPUT
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
 from greybox_torch.model.along_motion import ALONG, DIRECTION, direction, inputs_that_push
 from greybox_torch.model.joined_bodies import turns_with
-from greybox_torch.model.own_rate import RATE, balanced_state, own_rate, unit_of_rate
+from greybox_torch.model.own_rate import RATE, balanced_state, unit_of_rate, without_laws
 from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
 from greybox_torch.model.sensed_states import sensed_states
@@ -67,7 +67,7 @@ def _around(
     if isinstance(port, Body):
         values |= _along_motion(model, port, u, values["speed"])
     if balanced_state(model, port):
-        values[f"{RATE}{port.name}"] = _evaluated(_rate(model, port), x, u, p, times)
+        values[f"{RATE}{port.name}"] = _evaluated(without_laws(model, port), x, u, p, times)
     if isinstance(port, Sensor):
         row = [o.name for o in model.outputs].index(port.output)
         values["output"] = problem.records.y[row][~np.isnan(problem.records.y[row])]
@@ -112,17 +112,13 @@ def _load(
 def _along_motion(model: GreyBoxModel, body: Body, u: Signals, speed: np.ndarray) -> dict[str, np.ndarray]:
     """The inputs that push a body, along its motion, and the direction of that."""
     way = direction(torch.tensor(speed), _range(speed).rms).numpy()
-    along = {f"{ALONG}{name}": np.asarray(u[name], dtype=float) * way for name in inputs_that_push(model, body)}
+    along = {f"{ALONG}{name}": np.asarray(u[name], dtype=float) * way for name in inputs_that_push(model)[body.name]}
     return {**along, f"{DIRECTION}{body.name}": way}
 
 
 def _repeats(body: Body, travel: Range, unit: str) -> bool:
     """Whether the recordings show again what depends on where a shaft stands within its turn."""
     return body.position is not None and unit == "rad" and travel.span > SEEN_AGAIN * WHOLE
-
-
-def _rate(model: GreyBoxModel, port: Port) -> Signal:
-    return lambda x, u, p: own_rate(model, port, x, u, p, no_forces(model))
 
 
 def _is_measured(model: GreyBoxModel, signal: Signal) -> bool:

@@ -35,7 +35,8 @@ class AddedForces:
             return forces
         # Looks leave one another alone: none changes the rate that another one reads.
         laws = [a for a in first if a.prefix not in self._model.probed]
-        return self._of([a for a in everything if a.mechanism.by_rate], forces, self._of(laws, before, None))
+        under = forces if len(laws) == len(first) else self._of(laws, before, None)
+        return self._of([a for a in everything if a.mechanism.by_rate], forces, under)
 
     def _of(self, attachments: Sequence[Attachment], before: Signals, under: Signals | None) -> Signals:
         """The forces ``before`` and those of ``attachments``, where rates are those under forces ``under``."""

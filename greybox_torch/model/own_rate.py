@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from greybox_torch.model.greybox_model import GreyBoxModel
+from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Balance, Body, Port
 from greybox_torch.model.signals import Signals
 
@@ -23,6 +25,11 @@ def own_rate(model: GreyBoxModel, port: Port, x: Any, u: Any, p: Any, forces: Si
     state = balanced_state(model, port)
     assert state is not None
     return model.derivative(x, u, p, forces)[state]
+
+
+def without_laws(model: GreyBoxModel, port: Port) -> Callable[[Any, Any, Any], Any]:
+    """The rate without any force at the ports, as a signal."""
+    return lambda x, u, p: own_rate(model, port, x, u, p, no_forces(model))
 
 
 def unit_of_rate(unit: str) -> str:

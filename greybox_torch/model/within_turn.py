@@ -20,5 +20,4 @@ def within_turn(body: Body, x: Any, u: Any, p: Any) -> Any:
     """The angle of a body's position beyond its last whole turn, rad."""
     position: Signal | None = body.position
     assert position is not None
-    angle = value_of(position, x, u, p)
-    return angle - WHOLE * torch.floor(angle / WHOLE)
+    return torch.remainder(value_of(position, x, u, p), WHOLE)

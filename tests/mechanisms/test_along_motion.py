@@ -60,8 +60,7 @@ def around() -> dict[str, Surroundings]:
 
 
 def test_the_inputs_that_push_a_body_are_those_that_its_speed_answers_to() -> None:
-    hoist = Hoist()
-    assert [inputs_that_push(hoist, body) for body in hoist.ports] == [["torque"], ["wind"], []]
+    assert inputs_that_push(Hoist()) == {"winch": ["torque"], "hook": ["wind"], "both": []}
 
 
 def test_the_direction_changes_about_rest() -> None:

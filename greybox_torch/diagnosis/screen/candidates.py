@@ -145,7 +145,7 @@ def _by_rate(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
 def _by_direction(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
     """Dry friction that varies with an input, by whether that drives or brakes (a worm gear), or with the position (a worn rail)."""
     for body in (q for q in model.ports if isinstance(q, Body)):
-        signals = [f"{ALONG}{name}" for name in inputs_that_push(model, body)]
+        signals = [f"{ALONG}{name}" for name in inputs_that_push(model)[body.name]]
         signals += [] if _integrated(model, body) else ["position"]
         yield from ((body, Unknown(signal, knots, f"{DIRECTION}{body.name}")) for signal in signals)
 
