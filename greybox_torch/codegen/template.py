@@ -98,7 +98,7 @@ INLINE void propagate(const vec (*S)[NT], const vec (*M)[NT][NT], const vec (*B)
 
 struct Job {
   long groups, steps, substeps, foh, samples, directions, threads;
-  long first_probe, last_probe, band;  // products of probes farther apart than the band are left out
+  long first, close, band;  // rows of probes before the row close keep their columns before first, and those no farther left than the band
   long every, restarts;    // samples between restarts, and how many there are, the start included; none where null
   const real *u;           // [NU][samples]   recorded inputs, all experiments one after another
   const real *dt;          // [samples]       time to the next sample
@@ -115,7 +115,8 @@ struct Job {
   real *restart;           // [groups][restarts][NX][LANES] or null, in: where the other states begin anew, out: where those kept are then
   const real *measured;    // [NY][samples] or null: what the outputs are compared with, NaN = missing
   const real *weight;      // [NY]            factor on the errors
-  real *normal;            // [groups][R][R][LANES], R = directions + 1 rounded up to TILE: JᵀJ, Jᵀe and eᵀe, lower triangle of tiles
+  real *normal;            // [groups][…][LANES]: JᵀJ, Jᵀe and eᵀe, lower triangle of tiles: close rows of first + band + TILE, then whole
+                           // ones of directions + 1 rounded up to TILE
 };
 
 INLINE vec gather(const real *data, const long *index) {
@@ -126,18 +127,24 @@ INLINE vec gather(const real *data, const long *index) {
 
 #define TILE 4
 #define CHUNK 32
+INLINE long narrow(const Job &job) { return job.first + job.band + TILE; }
 INLINE void accumulate(const vec *rows, long count, long width, vec *normal, const Job &job) {
-  for (long i = 0; i < width; i += TILE)
+  for (long i = 0; i < width; i += TILE) {
+    const bool apart = i < job.close;
+    const long stride = apart ? narrow(job) : width;
+    vec *const row = normal + (apart ? i * stride : job.close * narrow(job) + (i - job.close) * width);
     for (long j = 0; j <= i; j += TILE) {
-      if (j >= job.first_probe && i + TILE <= job.last_probe && i - j > job.band) continue;
+      if (apart && j >= job.first && i - j > job.band) j = i - job.band;
+      vec *const tile = row + (apart && j >= job.first ? job.first + job.band - (i - j) : j);
       vec sum[TILE][TILE];
-      UNROLL for (int a = 0; a < TILE; a++) UNROLL for (int b = 0; b < TILE; b++) sum[a][b] = normal[(i + a) * width + j + b];
+      UNROLL for (int a = 0; a < TILE; a++) UNROLL for (int b = 0; b < TILE; b++) sum[a][b] = tile[a * stride + b];
       for (long t = 0; t < count; t++) {
         const vec *left = rows + t * width + i, *right = rows + t * width + j;
         UNROLL for (int a = 0; a < TILE; a++) UNROLL for (int b = 0; b < TILE; b++) sum[a][b] += left[a] * right[b];
       }
-      UNROLL for (int a = 0; a < TILE; a++) UNROLL for (int b = 0; b < TILE; b++) normal[(i + a) * width + j + b] = sum[a][b];
+      UNROLL for (int a = 0; a < TILE; a++) UNROLL for (int b = 0; b < TILE; b++) tile[a * stride + b] = sum[a][b];
     }
+  }
 }
 
 template <bool TANGENTS> static void run_group(const Job &job, long g) {
@@ -152,7 +159,7 @@ template <bool TANGENTS> static void run_group(const Job &job, long g) {
   vec *gdy = (vec *)job.dy + g * job.steps * NY * nd;
   vec *gtrace = job.trace ? (vec *)job.trace + g * job.steps * NX : 0;
   const long width = (nd + TILE) / TILE * TILE;
-  vec *gnormal = (vec *)job.normal + g * width * width;
+  vec *gnormal = (vec *)job.normal + g * (job.close * narrow(job) + (width - job.close) * width);
   vec *rows = job.normal ? (vec *)aligned_alloc(64, sizeof(vec) * width * CHUNK * NY) : 0;
   long filled = 0;
   if (rows) for (long k = 0; k < width * CHUNK * NY; k++) rows[k] = vec{};

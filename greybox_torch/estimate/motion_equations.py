@@ -5,7 +5,7 @@ Slopes are differences: a pass over all samples takes less than a millisecond, a
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -23,6 +23,9 @@ STEP = 1e-6
 INVERTIBLE = 1e-6
 """Ratio of the smallest to the largest effect that inputs have on the equations from which motion tells all that act."""
 
+UNMOVED = 1e-2
+"""Relative change of what inputs do, in units of a parameter's own, below which that parameter has no part in it."""
+
 
 @dataclass(frozen=True, eq=False)
 class MotionEquations:
@@ -31,6 +34,8 @@ class MotionEquations:
     problem: Problem
     motion: Motion
     rows: tuple[int, ...]
+    beside_inputs: dict[str, bool] = field(default_factory=dict)
+    """By free parameter, whether what inputs do is the same for all its values: found once, as most models' parameters are such."""
 
     @staticmethod
     def of(problem: Problem, motion: Motion) -> MotionEquations:
@@ -89,15 +94,19 @@ class MotionEquations:
             return self._linearised(free, inverse)
 
     def _linearised(self, free: np.ndarray, inverse: bool) -> tuple[np.ndarray, np.ndarray]:
-        here, slopes = self._errors(free, inverse), []
+        gains = self._input_slopes(self._with(free)) if inverse else None
+        here, slopes = self._errors(free, gains), []
         p = self.problem
         expected, lower = p.expected[p.free], p.lower[p.free]
         for k, value in enumerate(free):
             step = np.zeros(len(free))
             step[k] = STEP * (max(abs(value), abs(expected[k])) or 1.0)
-            below = here if value - step[k] < lower[k] else self._errors(free - step, inverse)
-            width = step[k] * (1 if below is here else 2)
-            slopes.append((self._errors(free + step, inverse) - below) / width)
+            above, under = self._gains(k, free + step, gains), here
+            if value - step[k] >= lower[k]:
+                under = self._errors(
+                    free - step, gains if above is gains else self._input_slopes(self._with(free - step))
+                )
+            slopes.append((self._errors(free + step, above) - under) / (step[k] * (1 if under is here else 2)))
         return here, np.array(slopes).reshape(len(free), *here.shape)
 
     def force_slopes(self, port: str) -> np.ndarray:
@@ -148,10 +157,20 @@ class MotionEquations:
         found = across @ solve(matrix @ across, wanted)
         return np.moveaxis(found.swapaxes(1, 2).reshape(len(matrix), *rates.shape[:-2], slopes.shape[1]), 0, -1)
 
-    def _errors(self, free: np.ndarray, inverse: bool) -> np.ndarray:
-        p = self._with(free)
-        left = self.motion.rates[list(self.rows)] - self.rates(p)
-        return self.in_inputs(left, self._input_slopes(p)) if inverse else left
+    def _gains(self, k: int, free: np.ndarray, gains: np.ndarray | None) -> np.ndarray | None:
+        """What inputs do (R, n_u, N) with the ``k``-th free parameter beside where it was: ``gains`` where it has no part in them."""
+        name = self.problem.free_names[k]
+        if gains is None or self.beside_inputs.get(name):
+            return gains
+        moved = self._input_slopes(self._with(free))
+        if name not in self.beside_inputs:
+            self.beside_inputs[name] = bool(np.abs(moved - gains).max() < UNMOVED * STEP * np.abs(gains).max())
+        return moved
+
+    def _errors(self, free: np.ndarray, gains: np.ndarray | None) -> np.ndarray:
+        """Errors of the rates (R, N), or the smallest inputs (n_u, N) that do as much where their ``gains`` (R, n_u, N) are given."""
+        left = self.motion.rates[list(self.rows)] - self.rates(self._with(free))
+        return left if gains is None else self.in_inputs(left, gains)
 
     def _input_slopes(self, p: Signals) -> np.ndarray:
         columns = []

@@ -91,7 +91,7 @@ class EagerStepper:
             normal=None if asked.probes is not None else normal,
             packed=None
             if asked.probes is None or normal is None
-            else PackedNormals.of(normal[..., None], len(normal), normal.shape[1]),
+            else PackedNormals.whole(normal[..., None], len(normal)),
         )
 
     def _restarted(self, x: Vector, restarts: Restarts, k: int) -> Vector:

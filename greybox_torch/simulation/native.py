@@ -12,8 +12,8 @@ import numpy as np
 from greybox_torch.codegen.build import library
 from greybox_torch.codegen.emit import emit
 from greybox_torch.codegen.lower import Equations
-from greybox_torch.simulation.packed_normals import PackedNormals
-from greybox_torch.simulation.passes import Pass, Run
+from greybox_torch.simulation.packed_normals import Layout, PackedNormals
+from greybox_torch.simulation.passes import Pass, Probes, Run
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.side_by_side import threads
 
@@ -32,7 +32,7 @@ class _Job(ctypes.Structure):
 
     _fields_ = [
         *[(n, _LONG) for n in ("groups", "steps", "substeps", "foh", "samples", "directions", "threads")],
-        *[(n, _LONG) for n in ("first_probe", "last_probe", "band", "every", "restarts")],
+        *[(n, _LONG) for n in ("first", "close", "band", "every", "restarts")],
         *[
             (n, _POINTER)
             for n in (
@@ -98,7 +98,7 @@ class NativeStepper:
             dx0[:, :n_p] = asked.tangents0[..., :n_t]
         if asked.start_directions is not None:
             dx0[:, n_p:] = asked.start_directions[..., :n_t]
-        width = (n_d + _TILE) // _TILE * _TILE
+        layout = _layout(asked.probes, n_p, n_d)
         signals = _signals(records, real)
         packed = {
             "u": signals["u"],
@@ -116,11 +116,11 @@ class NativeStepper:
             "restart": None if asked.restarts is None else _lanes(asked.restarts.starts, lanes, real),
             "measured": None if weights is None else signals["y"],
             "weight": None if weights is None else _aligned(weights, real),
-            "normal": None if weights is None else _zeros((groups, width, width, lanes), real),
+            "normal": None if weights is None else _zeros((groups, layout.size, lanes), real),
         }
         threads = _threads(groups, windows.steps * substeps * (1 + n_d))
         sizes = (groups, windows.steps, substeps, int(records.hold == "foh"), len(records.dt), n_d, threads)
-        sparse = (n_d, n_d, 0) if asked.probes is None else (n_p - asked.probes.count, n_p, asked.probes.band + _TILE)
+        sparse = (layout.first, layout.close, layout.band)
         restarts = (1, 0) if asked.restarts is None else (asked.restarts.every, asked.restarts.starts.shape[1])
         pointers = [None if a is None else a.ctypes.data for a in packed.values()]
         self.loaded.run(ctypes.byref(_Job(*sizes, *sparse, *restarts, *pointers)))
@@ -134,9 +134,18 @@ class NativeStepper:
             begun=None if packed["restart"] is None else _windows(packed["restart"], count),
             normal=None
             if normal is None or asked.probes is not None
-            else _mirrored(_windows(normal, count)[:, : n_d + 1, : n_d + 1]),
-            packed=None if normal is None or asked.probes is None else PackedNormals.of(normal, count, n_d + 1),
+            else _mirrored(_windows(normal.reshape(groups, layout.width, -1, lanes), count)[:, : n_d + 1, : n_d + 1]),
+            packed=None if normal is None or asked.probes is None else PackedNormals.of(normal, count, n_d + 1, layout),
         )
+
+
+def _layout(probes: Probes | None, n_p: int, n_d: int) -> Layout:
+    """How normal matrices of ``n_d`` directions stand, ``n_p`` of parameters, the probes the last of them: in whole squares."""
+    width = (n_d + _TILE) // _TILE * _TILE
+    if probes is None:
+        return Layout(width)
+    first, close, band = -(-(n_p - probes.count) // _TILE), n_p // _TILE, (probes.band + _TILE) // _TILE
+    return Layout(width, first * _TILE, close * _TILE, band * _TILE, _TILE)
 
 
 def _threads(groups: int, work: int) -> int:

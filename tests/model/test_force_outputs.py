@@ -91,5 +91,5 @@ def test_a_friction_is_estimated_from_the_torque_under_a_prescribed_motion() -> 
 
 
 def test_no_rows_of_packed_matrices_are_no_rows() -> None:
-    packed = PackedNormals(np.ones((3, 4, 4, 2)), 5, 4)
+    packed = PackedNormals.whole(np.ones((3, 4, 4, 2)), 5)
     assert packed.rows(np.arange(0)).shape == (5, 0, 4)

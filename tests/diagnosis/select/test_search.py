@@ -133,13 +133,13 @@ def test_windows_that_fail_are_passed_over_and_probes_that_fail_are_dropped() ->
     normal = np.ones((3, 4, 4))
     normal[1, 0, 0] = np.nan  # the model itself
     normal[2, 2, 2] = np.inf  # a probe
-    packed = PackedNormals.of(normal[..., None], 3, 4)
+    packed = PackedNormals.whole(normal[..., None], 3)
     sound = _sound(packed, np.array([0, 1, 3])).rows(np.arange(4))
     assert np.isfinite(sound).all()
     assert (sound[1] == 0).all()
     assert (sound[[0, 2], 2] == 0).all() and (sound[[0, 2], :, 2] == 0).all()
     assert (sound[0, :2, :2] == 1).all()
-    whole = PackedNormals.of(np.ones((2, 3, 3, 1)), 2, 3)
+    whole = PackedNormals.whole(np.ones((2, 3, 3, 1)), 2)
     assert _sound(whole, np.array([0])) is whole
 
 
