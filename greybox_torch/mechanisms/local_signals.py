@@ -40,7 +40,7 @@ class LocalSignals:
         values: dict[str, Any] = {
             name: value_of(signal, x, u, p) for name, signal in site.signals.items() if name != "position"
         }
-        if "position" in a.mechanism.needs or getattr(a.mechanism, "signal", "") == "position":
+        if "position" in (*a.mechanism.needs, getattr(a.mechanism, "signal", ""), getattr(a.mechanism, "factor", "")):
             values["position"] = self._position(a.position, x, u, p)
         if isinstance(site, Body) and getattr(a.mechanism, "signal", "") == TURN:
             values[TURN] = within_turn(site, x, u, p)

@@ -112,6 +112,12 @@ def driving_body(ports: Iterable[Port]) -> Body | None:
     return next((port for port in ports if isinstance(port, Body)), None)
 
 
+def integrates_position(ports: Iterable[Port], port: Port) -> bool:
+    """Whether the position at a port is none of the model's own, but has to be integrated from the speed of its body."""
+    body = port if isinstance(port, Body) else driving_body(ports)
+    return body is not None and body.position is None
+
+
 def actuators(inputs: tuple[str, ...]) -> tuple[Actuator, ...]:
     """The actuator ports of a model with these inputs: ``actuator``, or ``actuator.NAME`` where there are several."""
     return tuple(Actuator("actuator" if len(inputs) == 1 else f"actuator.{name}", name) for name in inputs)

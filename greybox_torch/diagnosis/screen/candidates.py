@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from itertools import islice, zip_longest
+from collections.abc import Iterable, Mapping
 
+from greybox_torch.diagnosis.screen.further_curves import further_curves
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.attachment import Attachment, attach
@@ -18,12 +18,8 @@ from greybox_torch.mechanisms.unknown_play import UnknownPlay
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port
-from greybox_torch.model.along_motion import ALONG, DIRECTION, inputs_that_push
 from greybox_torch.model.joined_bodies import joined_bodies
-from greybox_torch.model.own_rate import RATE, balanced_state
-from greybox_torch.model.ports import Actuator, driving_body
-from greybox_torch.model.signals_elsewhere import DIFFERENCE, LEVEL, SPEED, balances_alike, signals_elsewhere
-from greybox_torch.model.within_turn import TURN
+from greybox_torch.model.ports import Actuator, driving_body, integrates_position
 
 ANGLES = ("rad", "deg", "rev", "turn")
 """Beginnings of the units of angles: only on an angle does gravity repeat."""
@@ -47,10 +43,8 @@ a voice coil that leaves its gap, a damper whose oil is torn along, a rope or a 
 brake that acts over a part of the way.
 """
 
-MOST_FROM_ELSEWHERE, MOST_EXCHANGED, MOST_KNOTS_FROM_ELSEWHERE = 24, 12, 20
-"""Curves of signals of other ports, and of what balances exchange, that are tried at all, and how fine they, and those that multiply a
-rate, may be: each knot costs the screen as much as a law.
-"""
+MOST_KNOTS_FROM_ELSEWHERE = 20
+"""How fine curves over signals of other ports may be, and those that multiply a rate: each knot costs the screen as much as a law."""
 
 
 def candidates(
@@ -77,8 +71,7 @@ def candidates(
     if not flexible:
         return [*found, *chain_candidates(model, surroundings), *common_delays(model)]
     coarse = knots <= MOST_KNOTS_FROM_ELSEWHERE
-    ways = (_by_rate, _by_direction, _from_elsewhere, _exchanged) if coarse else ()
-    further = (one for way in ways for one in way(model, knots))
+    further = further_curves(model, knots) if coarse else ()
     return [*found, *(attach(model, port.name, c) for port, c in further if c.available(surroundings[port.name]))]
 
 
@@ -126,78 +119,13 @@ def periodic_candidates(
 def _curves(model: GreyBoxModel, port: Port, knots: int) -> Iterable[Unknown]:
     yield from (Unknown(signal, knots) for signal in FLEXIBLE.get(port.kind, ()))
     for signal, factor in GAINS.get(port.kind, ()):
-        if signal != "position" or not _integrated(model, port):
+        if signal != "position" or not integrates_position(model.ports, port):
             yield Unknown(signal, knots, factor)
     if isinstance(port, Body) and port.position is not None and len(model.inputs) > 1:
         # One input's gain over the position is a curve at its actuator. Of several, one may be no drive: a flow, a pressure, a load.
         yield from (Unknown("position", knots, f"{INPUT}{one.name}") for one in model.inputs)
     if isinstance(port, Balance) and len(model.inputs) > 1:
         yield from (Unknown("level", knots, f"{INPUT}{one.name}") for one in model.inputs)
-
-
-def _by_rate(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
-    """An inertia over the position, a capacity over the level: a crank, a store that melts, a coil whose iron saturates."""
-    for port in (q for q in model.ports if balanced_state(model, q)):
-        own = ("level",) if isinstance(port, Balance) else () if _integrated(model, port) else ("position", TURN)
-        yield from ((port, Unknown(signal, knots, f"{RATE}{port.name}")) for signal in own)
-
-
-def _by_direction(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
-    """Dry friction that varies with an input, by whether that drives or brakes (a worm gear), or with the position (a worn rail)."""
-    for body in (q for q in model.ports if isinstance(q, Body)):
-        signals = [f"{ALONG}{name}" for name in inputs_that_push(model)[body.name]]
-        signals += [] if _integrated(model, body) else ["position"]
-        yield from ((body, Unknown(signal, knots, f"{DIRECTION}{body.name}")) for signal in signals)
-
-
-def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
-    """What another part of the machine does to a port by where it stands: by itself, or to what an input, the body's speed or the level
-    does there. What it does by how fast it is (the air that a turning rotor drags along) it does by itself. At an actuator a level changes
-    the gain (a pump's, that works against a tank).
-
-    No more than ``MOST_FROM_ELSEWHERE``, which the ports take in turn.
-    """
-    inputs = [f"{INPUT}{one.name}" for one in model.inputs]
-
-    def of(port: Port) -> Iterator[tuple[Port, Unknown]]:
-        for signal in (n for n in signals_elsewhere(model, port) if not n.startswith(DIFFERENCE)):
-            own = _own(port) if signal.startswith(LEVEL) else ()
-            factors = ("",) if signal.startswith(SPEED) else ("", *inputs, *own)
-            rate = (f"{RATE}{port.name}",) if not signal.startswith(SPEED) and balanced_state(model, port) else ()
-            yield from ((port, Unknown(signal, knots, factor)) for factor in (*factors, *rate))
-
-    def at(actuator: Actuator) -> Iterator[tuple[Port, Unknown]]:
-        yield from ((actuator, Unknown(level, knots, "input")) for level in signals_elsewhere(model, actuator))
-
-    actuators = (q for q in model.all_ports if isinstance(q, Actuator))
-    ways = (*map(of, model.ports), *map(at, actuators))
-    in_turn = (way for turn in zip_longest(*ways) for way in turn if way is not None)
-    return islice(in_turn, MOST_FROM_ELSEWHERE)
-
-
-def _own(port: Port) -> tuple[str, ...]:
-    """What a level elsewhere may change the effect of: friction with a temperature, viscous or dry, a rate of reaction or a resistance with
-    a temperature or a charge.
-    """
-    return ("speed", f"{DIRECTION}{port.name}") if isinstance(port, Body) else ("level",)
-
-
-def _exchanged(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
-    """What two balances exchange: by how far their levels are apart, and in proportion to that, by what may change the coefficient: an
-    input (a heat exchanger's flow), or either level. No more than ``MOST_EXCHANGED``.
-    """
-    inputs = [f"{INPUT}{one.name}" for one in model.inputs]
-
-    def between(port: Balance, other: Balance) -> Iterator[tuple[Port, Unknown]]:
-        apart = f"{DIFFERENCE}{other.name}"
-        yield port, Unknown(apart, knots)
-        yield from ((port, Unknown(one, knots, apart)) for one in (*inputs, "level", f"{LEVEL}{other.name}"))
-
-    balances = [q for q in model.ports if isinstance(q, Balance)]
-    pairs = [(q, other) for q in balances for other in balances_alike(model, q)]
-    each_once = [between(q, other) for q, other in pairs if balances.index(q) < balances.index(other)]
-    in_turn = (way for turn in zip_longest(*each_once) for way in turn if way is not None)
-    return islice(in_turn, MOST_EXCHANGED)
 
 
 def memory_candidates(
@@ -213,7 +141,9 @@ def memory_candidates(
     found = []
     for port in (q for q in model.all_ports if q.kind in UnknownWithMemory.kinds):
         for signal in FLEXIBLE.get(port.kind, ()):
-            if signal in surroundings[port.name].ranges and not (signal == "position" and _integrated(model, port)):
+            if signal in surroundings[port.name].ranges and not (
+                signal == "position" and integrates_position(model.ports, port)
+            ):
                 kinds = (
                     [UnknownWithMemory(signal, 1, knots)] if knots else [UnknownWithMemory(signal, m) for m in (1, 2)]
                 )
@@ -221,12 +151,6 @@ def memory_candidates(
         if isinstance(port, Actuator) and not knots:
             found.append(attach(model, port.name, UnknownPlay()))
     return found
-
-
-def _integrated(model: GreyBoxModel, port: Port) -> bool:
-    """Whether the position at a port is none of the model's own, but has to be integrated from the speed of its body."""
-    body = port if isinstance(port, Body) else driving_body(model.ports)
-    return body is not None and body.position is None
 
 
 def _is_angle(around: Surroundings) -> bool:

@@ -11,7 +11,8 @@ import torch
 
 import greybox_torch as gt
 from greybox_torch.diagnosis.describe.effects import signal_name
-from greybox_torch.diagnosis.screen.candidates import _from_elsewhere, candidates
+from greybox_torch.diagnosis.screen.candidates import candidates
+from greybox_torch.diagnosis.screen.further_curves import _from_elsewhere
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.surroundings import surroundings_along
 from greybox_torch.mechanisms.attachment import attach
@@ -70,11 +71,12 @@ def test_what_one_axis_does_to_the_other_is_offered(surroundings) -> None:
     found = candidates(Helicopter(), {}, surroundings, flexible=True)
     curves = {(a.port, a.mechanism.signal, a.mechanism.factor) for a in found if isinstance(a.mechanism, Unknown)}
     for body, other in (("pitch_axis", "yaw_axis"), ("yaw_axis", "pitch_axis")):
-        any_factor = ("", "input@main", "input@tail", f"rate@{body}")
+        any_factor = ("", "input@main", "input@tail", "position", f"rate@{body}")
         own = {(body, f"position@{other}", factor) for factor in any_factor}
         warm = {(body, "level@motor_heat", factor) for factor in (*any_factor, "speed", f"direction@{body}")}
         there = {c for c in curves if c[0] == body and "@" in c[1] and not c[1].startswith("along@")}
-        assert there == own | warm | {(body, f"speed@{other}", "")}
+        fast = {(body, f"speed@{other}", ""), (body, f"speed@{other}", "position")}
+        assert there == own | warm | fast | {(body, "input@tail" if body == "pitch_axis" else "input@main", "")}
         assert {(body, "position", f"rate@{body}"), (body, "position", f"direction@{body}")} <= curves
     assert surroundings["yaw_axis"].ranges["position@pitch_axis"].high == pytest.approx(0.5)
     assert surroundings["yaw_axis"].units["position@pitch_axis"] == "rad"
@@ -84,8 +86,8 @@ def test_an_input_that_changes_a_loss_is_offered_at_a_balance(surroundings) -> N
     """Seen: a fan that cooled a wall, and that the model did not use: "something, without a name", after 91 s."""
     found = candidates(Helicopter(), {}, surroundings, flexible=True)
     curves = (a for a in found if a.port == "motor_heat" and isinstance(a.mechanism, Unknown))
-    at_heat = {(a.mechanism.signal, a.mechanism.factor) for a in curves}
-    assert at_heat == {("level", factor) for factor in ("", "input@main", "input@tail", "rate@motor_heat")}
+    factors = {a.mechanism.factor for a in curves if a.mechanism.signal == "level"}
+    assert factors == {"", "input@main", "input@tail", "rate@motor_heat"}
 
 
 class Cell(GreyBoxModel):
@@ -195,7 +197,7 @@ def test_what_one_balance_loses_the_other_has(exchanger) -> None:
 
 
 def test_ports_take_the_few_curves_of_signals_elsewhere_in_turn(monkeypatch) -> None:
-    monkeypatch.setattr(sys.modules[candidates.__module__], "MOST_FROM_ELSEWHERE", 4)
+    monkeypatch.setattr(sys.modules[_from_elsewhere.__module__], "MOST_FROM_ELSEWHERE", 4)
     ways = [(port.name, curve.signal, curve.factor) for port, curve in _from_elsewhere(Cell(), 6)]
     assert ways == [
         ("charge", "level@skin", ""),

@@ -1,0 +1,141 @@
+"""Curves over other signals than the few of their own port: its rate and direction, what is elsewhere, what an input does there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from itertools import chain, islice, zip_longest
+from typing import Any
+
+import torch
+
+from greybox_torch.mechanisms.unknown import INPUT, Unknown
+from greybox_torch.model import Balance, Body, GreyBoxModel, Port
+from greybox_torch.model.along_motion import ALONG, DIRECTION, inputs_that_push
+from greybox_torch.model.joined_bodies import bodies_apart
+from greybox_torch.model.own_rate import RATE, balanced_state, without_laws
+from greybox_torch.model.ports import Actuator, integrates_position
+from greybox_torch.model.random_points import random_points
+from greybox_torch.model.signals_elsewhere import DIFFERENCE, LEVEL, SPEED, balances_alike, signals_elsewhere
+from greybox_torch.model.states_of import inputs_of
+from greybox_torch.model.within_turn import TURN
+
+MOST_FROM_ELSEWHERE, MOST_FROM_INPUTS, MOST_EXCHANGED = 32, 12, 12
+"""Curves of signals of other ports, of inputs, and of what balances exchange, that are tried at all."""
+
+
+def further_curves(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """All of them, with the port of each."""
+    ways = (_by_rate, _by_direction, _from_elsewhere, _from_inputs, _exchanged)
+    return chain.from_iterable(way(model, knots) for way in ways)
+
+
+def _by_rate(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """An inertia over the position, a capacity over the level: a crank, a store that melts, a coil whose iron saturates."""
+    for port in (q for q in model.ports if balanced_state(model, q)):
+        own = (
+            ("level",)
+            if isinstance(port, Balance)
+            else ()
+            if integrates_position(model.ports, port)
+            else ("position", TURN)
+        )
+        yield from ((port, Unknown(signal, knots, f"{RATE}{port.name}")) for signal in own)
+
+
+def _by_direction(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """Dry friction that varies with an input, by whether that drives or brakes (a worm gear), or with the position (a worn rail)."""
+    for body in (q for q in model.ports if isinstance(q, Body)):
+        signals = [f"{ALONG}{name}" for name in inputs_that_push(model)[body.name]]
+        signals += [] if integrates_position(model.ports, body) else ["position"]
+        yield from ((body, Unknown(signal, knots, f"{DIRECTION}{body.name}")) for signal in signals)
+
+
+def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """What another part of the machine does to a port by where it stands: by itself, or to what an input, the body's speed or position or
+    the level does there. What it does by how fast it is (the air that a turning rotor drags along) it does by itself, or to a stiffness (of
+    what is thrown outwards). At an actuator a level changes the gain (a pump's, that works against a tank).
+
+    No more than ``MOST_FROM_ELSEWHERE``, which the ports take in turn.
+    """
+    inputs = [f"{INPUT}{one.name}" for one in model.inputs]
+
+    def of(port: Port) -> Iterator[tuple[Port, Unknown]]:
+        for signal in (n for n in signals_elsewhere(model, port) if not n.startswith(DIFFERENCE)):
+            own = (*(_own(port) if signal.startswith(LEVEL) else ()), *stiff(port))
+            factors = ("", *own) if signal.startswith(SPEED) else ("", *inputs, *own)
+            rate = (f"{RATE}{port.name}",) if not signal.startswith(SPEED) and balanced_state(model, port) else ()
+            yield from ((port, Unknown(signal, knots, factor)) for factor in (*factors, *rate))
+            if signal.startswith(LEVEL) and stiff(
+                port
+            ):  # a thrust near the ground, the current of a coil that leaves its gap
+                yield port, Unknown("position", knots, signal)
+
+    def stiff(port: Port) -> tuple[str, ...]:
+        return ("position",) if isinstance(port, Body) and not integrates_position(model.ports, port) else ()
+
+    def at(actuator: Actuator) -> Iterator[tuple[Port, Unknown]]:
+        yield from ((actuator, Unknown(level, knots, "input")) for level in signals_elsewhere(model, actuator))
+
+    actuators = (q for q in model.all_ports if isinstance(q, Actuator))
+    ways = (*map(of, model.ports), *map(at, actuators))
+    in_turn = (way for turn in zip_longest(*ways) for way in turn if way is not None)
+    return islice(in_turn, MOST_FROM_ELSEWHERE)
+
+
+def _own(port: Port) -> tuple[str, ...]:
+    """What a level elsewhere may change the effect of: friction with a temperature, viscous or dry, a rate of reaction or a resistance with
+    a temperature or a charge.
+    """
+    return ("speed", f"{DIRECTION}{port.name}") if isinstance(port, Body) else ("level",)
+
+
+def _from_inputs(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """What an input does to a level or a speed on which it does not act in the model (a rudder that heels the ship), or to a level on which
+    it acts in proportion to a state alone (the heat that a current makes beside what it pumps). No more than ``MOST_FROM_INPUTS``.
+
+    An input in proportion alone is told at its actuator. A body that a spring joins with one that is pushed has no part of that push.
+    """
+
+    def of(port: Port) -> Iterator[tuple[Port, Unknown]]:
+        rate = without_laws(model, port)
+        acting = _acting_near(model, port) if isinstance(port, Body) else inputs_of(model, rate)
+        for name in (one.name for one in model.inputs):
+            if name not in acting or (isinstance(port, Balance) and _by_a_state(model, name, rate)):
+                yield port, Unknown(f"{INPUT}{name}", knots)
+
+    ways = (of(port) for port in model.ports if balanced_state(model, port))
+    in_turn = (way for turn in zip_longest(*ways) for way in turn if way is not None)
+    return islice(in_turn, MOST_FROM_INPUTS)
+
+
+def _acting_near(model: GreyBoxModel, body: Body) -> set[str]:
+    """The inputs that push a body or one that springs join with it."""
+    pushing, apart = inputs_that_push(model), {other.name for other in bodies_apart(model, body)}
+    return {name for other, names in pushing.items() if other not in apart for name in names}
+
+
+def _by_a_state(model: GreyBoxModel, name: str, rate: Callable[[Any, Any, Any], Any]) -> bool:
+    """Whether what an input contributes to a rate depends on a state."""
+    *points, p = random_points(model)
+    x, u = model.named_signals(*points)
+    without = u.replaced(**{name: 0.0 * u[name]})
+    here, *moved = (rate(at, u, p) - rate(at, without, p) for at in (x, *(x.replaced(**{n: x[n] + 1.0}) for n in x)))
+    return any(not torch.allclose(torch.as_tensor(there), torch.as_tensor(here), rtol=1e-4) for there in moved)
+
+
+def _exchanged(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """What two balances exchange: by how far their levels are apart, and in proportion to that, by what may change the coefficient: an
+    input (a heat exchanger's flow), or either level. No more than ``MOST_EXCHANGED``.
+    """
+    inputs = [f"{INPUT}{one.name}" for one in model.inputs]
+
+    def between(port: Balance, other: Balance) -> Iterator[tuple[Port, Unknown]]:
+        apart = f"{DIFFERENCE}{other.name}"
+        yield port, Unknown(apart, knots)
+        yield from ((port, Unknown(one, knots, apart)) for one in (*inputs, "level", f"{LEVEL}{other.name}"))
+
+    balances = [q for q in model.ports if isinstance(q, Balance)]
+    pairs = [(q, other) for q in balances for other in balances_alike(model, q)]
+    each_once = [between(q, other) for q, other in pairs if balances.index(q) < balances.index(other)]
+    in_turn = (way for turn in zip_longest(*each_once) for way in turn if way is not None)
+    return islice(in_turn, MOST_EXCHANGED)
