@@ -101,12 +101,11 @@ class MotionEquations:
         for k, value in enumerate(free):
             step = np.zeros(len(free))
             step[k] = STEP * (max(abs(value), abs(expected[k])) or 1.0)
-            above, under = self._gains(k, free + step, gains), here
+            above = self._errors(free + step, self._gains(k, free + step, gains))
+            below = here
             if value - step[k] >= lower[k]:
-                under = self._errors(
-                    free - step, gains if above is gains else self._input_slopes(self._with(free - step))
-                )
-            slopes.append((self._errors(free + step, above) - under) / (step[k] * (1 if under is here else 2)))
+                below = self._errors(free - step, self._gains(k, free - step, gains))
+            slopes.append((above - below) / (step[k] * (1 if below is here else 2)))
         return here, np.array(slopes).reshape(len(free), *here.shape)
 
     def force_slopes(self, port: str) -> np.ndarray:

@@ -60,6 +60,19 @@ def test_slopes_are_those_of_the_equations(equations) -> None:
     assert slopes[1, 0] == pytest.approx(v / mass, rel=1e-5, abs=1e-6)
 
 
+def test_slopes_of_what_acts_are_those_of_the_equation_of_motion(equations) -> None:
+    """The mass changes what an input does, the damping has no part in that: found at the first look, and used at the next ones."""
+    afresh = replace(equations, beside_inputs={})
+    u, v, a = equations.inputs.numpy()[0], equations.states.numpy()[1], equations.motion.rates[1]
+    for mass, damping in ((2.5, 0.8), (1.5, 2.0)):
+        error, slopes = afresh.linearised(np.array([mass, damping]), inverse=True)
+        assert error[0] == pytest.approx(mass * a + damping * v - u)
+        assert slopes[0, 0] == pytest.approx(a, rel=1e-3, abs=1e-3)
+        assert slopes[1, 0] == pytest.approx(v, rel=1e-5, abs=1e-5)
+    mass_name, damping_name = equations.problem.free_names
+    assert afresh.beside_inputs == {mass_name: False, damping_name: True}
+
+
 def test_a_force_acts_by_one_over_the_mass_and_so_does_the_input(equations) -> None:
     at = equations.at(np.array([2.5, 0.8]))
     assert at.force_slopes("sled") == pytest.approx(0.4)
