@@ -144,8 +144,9 @@ def _searched(
 
     begun, complete = (study, state), True
     with until(deadline):
-        if len(study.problem.weights) > 1:
-            begun, complete = or_else(lambda: fit_plain_model(weighted_by_noise(study, state)), lambda: begun)
+        weighted = weighted_by_noise(study, state)
+        if len(study.problem.weights) > 1 or weighted.problem.most_noise is not None:
+            begun, complete = or_else(lambda: fit_plain_model(weighted), lambda: begun)
             begun = begun[0], replace(begun[1], found_before=state.found_before)
         if complete:
             best, complete = best_so_far(search(*begun, before), begun[1], told)

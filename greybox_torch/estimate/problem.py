@@ -24,7 +24,7 @@ class Problem:
     are estimated. ``initial`` (E, n_x) start states per experiment, ``initial_free`` (n_x,) which are estimated. ``weights`` (n_y,)
     multiply the errors of the outputs. ``expected`` (n_p,) are the values that parameters are weakly held at where data say nothing:
     those that the user began with. ``carried`` (n_x,) marks states (integrated positions, time, memories) that are never free in
-    a window but carried into it from the one before.
+    a window but carried into it from the one before. ``most_noise`` (n_y,) is the largest variance that noise can have, by a fit.
     """
 
     model: GreyBoxModel
@@ -39,6 +39,7 @@ class Problem:
     weights: np.ndarray
     carried: np.ndarray
     expected: np.ndarray
+    most_noise: np.ndarray | None = None
 
     @property
     def free_names(self) -> tuple[str, ...]:
@@ -168,9 +169,9 @@ def problem_for(problem: Problem, model: GreyBoxModel, values: Mapping[str, floa
     declared = list(model.declared_parameters)
     count = len(problem.model.states)
     extra = np.zeros((len(problem.initial), len(model.states) - count))
-    fresh = Problem(
+    fresh = replace(
+        problem,
         model=model,
-        records=problem.records,
         names=tuple(p.name for p in declared),
         values=np.array(
             [values.get(p.name, problem.values[own[p.name]] if p.name in own else p.value) for p in declared]
@@ -180,7 +181,6 @@ def problem_for(problem: Problem, model: GreyBoxModel, values: Mapping[str, floa
         free=np.array([problem.free[own[p.name]] if p.name in own else not p.fixed for p in declared], dtype=bool),
         initial=np.hstack([problem.initial, extra]),
         initial_free=np.concatenate([problem.initial_free, [not s.fixed for s in model.states[count:]]]).astype(bool),
-        weights=problem.weights,
         carried=np.isin([s.name for s in model.states], model.carried_states()),
         expected=np.zeros(len(declared)),
     )

@@ -61,7 +61,10 @@ class HeldOut:
 
     def __init__(self, dataset: DataSet, study: Study) -> None:
         others = all_starts_free(dataset, make_problem(dataset, study.problem.model, dataset.validation()))
-        self.problem, self.study = replace(others, weights=study.problem.weights), study
+        self.problem, self.study = (
+            replace(others, weights=study.problem.weights, most_noise=study.problem.most_noise),
+            study,
+        )
         self._known: dict[Hypothesis, tuple[WindowFit, ...]] = {}
 
     def fits(self, hypothesis: Hypothesis) -> tuple[WindowFit, ...]:

@@ -27,10 +27,12 @@ def at_floor(problem: Problem, fit: WindowFit, settings: DiagnosisSettings) -> b
 
 
 def floor_known(problem: Problem, settings: DiagnosisSettings) -> bool:
-    """Whether the recordings tell how much noise there is: differences of several orders agree on it.
+    """Whether the recordings tell how much noise there is: differences of several orders agree on it, and no fit leaves less.
 
     What is left of the motion in them would not be the same in each.
     """
+    if problem.most_noise is not None:
+        return False
     first = settings.noise_differences
     floors = [_floor(problem, order) for order in (first, first + 1, first + 2)]
     return max(floors) < settings.noise_floors_agree * min(floors)
@@ -40,11 +42,30 @@ def noise_floor(problem: Problem, settings: DiagnosisSettings) -> float:
     """Mean squared weighted error that white sensor noise alone would leave, as the outputs' high-frequency floor has it.
 
     The variance of the third differences of white noise is 20 times its own. Where the sampling is so slow that the motion itself is
-    rough, this is an upper bound.
+    rough, or inputs act on the outputs at once, this is an upper bound; so is what a fit leaves of an output (:func:`most_noise`).
 
     Source: J. von Neumann et al., "The mean square successive difference", Annals of Mathematical Statistics 12, 1941.
     """
-    return _floor(problem, settings.noise_differences)
+    if problem.most_noise is None:
+        return _floor(problem, settings.noise_differences)
+    known = (~np.isnan(problem.records.y)).sum(axis=1)
+    each = np.nan_to_num(_over_experiments(problem, settings)) * problem.weights**2
+    return float(known @ each / max(known.sum(), 1))
+
+
+def most_noise(fit: WindowFit, left: np.ndarray, settings: DiagnosisSettings) -> np.ndarray | None:
+    """The largest variance (n_y,) that the noise of each output can have where a fit leaves much less than the recordings' floor of it,
+    infinite elsewhere; None where it does so of no output.
+
+    A battery's voltage jumps with its current: what looks like noise in the recording is what the model says.
+
+    Args:
+        left: the mean squared errors (n_y,) of the fit, in output units.
+    """
+    problem, samples = fit.problem, fit.windows.steps * len(left)
+    left = left * samples / max(samples - len(problem.model.states), 1)
+    less = _over_experiments(problem, settings) > settings.noise_disproved * left
+    return np.where(less, left, np.inf) if less.any() else None
 
 
 def mean_squared_step(problem: Problem, settings: DiagnosisSettings) -> float:
@@ -72,7 +93,15 @@ def output_floors(problem: Problem, settings: DiagnosisSettings) -> np.ndarray:
             np.diff(records.y[:, records.span(e)], settings.noise_differences, axis=1)
             for e in range(len(records.first))
         ]
-        return np.array([np.nanmean(r**2, axis=1) for r in rough]) / factor
+        found = np.array([np.nanmean(r**2, axis=1) for r in rough]) / factor
+    return found if problem.most_noise is None else np.minimum(found, problem.most_noise)
+
+
+def _over_experiments(problem: Problem, settings: DiagnosisSettings) -> np.ndarray:
+    """The mean (n_y,) of :func:`output_floors` over the experiments; NaN where no experiment shows an output."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        return np.nanmean(output_floors(problem, settings), axis=0)
 
 
 def _binomial(order: int) -> np.ndarray:

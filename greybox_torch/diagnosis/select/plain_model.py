@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.noise import most_noise
 from greybox_torch.diagnosis.hypothesis.window_errors import window_errors
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.screen.views import views_of
@@ -81,11 +82,13 @@ def weighted_by_noise(study: Study, state: SearchState) -> Study:
     """The study with the inverse size of the errors of every output over the shortest windows as its weight.
 
     A noisy sensor must not drown an exact one. This is the maximum-likelihood weighting where the outputs' noises are independent, their
-    sizes estimated from a first fit.
+    sizes estimated from a first fit. That tells as well where the noise is less than the recordings show (:func:`most_noise`).
     """
     spread = np.nanstd(study.problem.records.y, axis=1)
-    weights = 1.0 / np.sqrt(squared_errors(state.plain) + (1e-4 * spread) ** 2 + 1e-300)
-    return replace(study, problem=replace(study.problem, weights=weights))
+    left = squared_errors(state.plain)
+    weights = 1.0 / np.sqrt(left + (1e-4 * spread) ** 2 + 1e-300) if len(left) > 1 else study.problem.weights
+    most = most_noise(state.plain.fits[0], left, study.settings)
+    return replace(study, problem=replace(study.problem, weights=weights, most_noise=most))
 
 
 def squared_errors(fitted: Hypothesis) -> np.ndarray:

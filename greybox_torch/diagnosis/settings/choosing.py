@@ -26,6 +26,12 @@ class NoiseSettings:
         "Ratio of the noises that differences of several orders show up to which they agree.",
         unit="ratio of mean squares",
     )
+    noise_disproved: float = ratio(
+        4.0,
+        "Ratio of what the recordings of an output show as noise to what a fit leaves of it, from which it is no noise: an input acts on "
+        "the output at once, as a current does on a battery's voltage.",
+        unit="ratio of mean squares",
+    )
     only_noise: float = number(
         1.0,
         "Error below which nothing is looked for. (Under feedback the floor is a few per cent high.)",
