@@ -144,14 +144,20 @@ def _searched(
 
     begun, complete = (study, state), True
     with until(deadline):
-        weighted = weighted_by_noise(study, state)
-        if len(study.problem.weights) > 1 or weighted.problem.most_noise is not None:
-            begun, complete = or_else(lambda: fit_plain_model(weighted), lambda: begun)
-            begun = begun[0], replace(begun[1], found_before=state.found_before)
+        begun, complete = or_else(partial(_weighted, study, state), lambda: begun)
         if complete:
             best, complete = best_so_far(search(*begun, before), begun[1], told)
             return begun[0], best, complete
     return *begun, complete
+
+
+def _weighted(study: Study, state: SearchState) -> tuple[Study, SearchState]:
+    """The study and the model as it stands with outputs weighted by their noise; as they are where nothing new is known of that."""
+    weighted = weighted_by_noise(study, state)
+    if len(study.problem.weights) == 1 and weighted.problem.most_noise is None:
+        return study, state
+    study, fitted = fit_plain_model(weighted)
+    return study, replace(fitted, found_before=state.found_before)
 
 
 def _confirmed(
