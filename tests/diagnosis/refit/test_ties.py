@@ -35,7 +35,7 @@ def ranked(stub) -> Callable[..., RankedCandidate]:
         records = stub(y=y, u=y, first=np.array([0]), span=lambda e: slice(0, SAMPLES))
         free = tuple(f"{attachment.prefix}.size_{k}" for k in range(size))
         fit = stub(energies=np.full(64, error), mean_square=error)
-        problem = stub(free_names=free, records=records, weights=np.ones(1))
+        problem = stub(free_names=free, records=records, weights=np.ones(1), most_noise=None)
         return RankedCandidate(
             Candidate(attachment, (), 0.5), stub(fits=(fit,), problem=problem, score=float(np.log(error))), 1.0, 9.0
         )
