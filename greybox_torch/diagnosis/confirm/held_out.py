@@ -61,10 +61,8 @@ class HeldOut:
 
     def __init__(self, dataset: DataSet, study: Study) -> None:
         others = all_starts_free(dataset, make_problem(dataset, study.problem.model, dataset.validation()))
-        self.problem, self.study = (
-            replace(others, weights=study.problem.weights, most_noise=study.problem.most_noise),
-            study,
-        )
+        self.problem = replace(others, weights=study.problem.weights, most_noise=study.problem.most_noise)
+        self.study = study
         self._known: dict[Hypothesis, tuple[WindowFit, ...]] = {}
 
     def fits(self, hypothesis: Hypothesis) -> tuple[WindowFit, ...]:

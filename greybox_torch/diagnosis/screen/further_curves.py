@@ -12,6 +12,7 @@ from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.model import Balance, Body, GreyBoxModel, Port
 from greybox_torch.model.along_motion import ALONG, DIRECTION, inputs_that_push
 from greybox_torch.model.joined_bodies import bodies_apart
+from greybox_torch.model.once_per_model import once_per_model
 from greybox_torch.model.own_rate import RATE, balanced_state, without_laws
 from greybox_torch.model.ports import Actuator, integrates_position
 from greybox_torch.model.random_points import random_points
@@ -77,9 +78,7 @@ def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unk
         yield from ((actuator, Unknown(level, knots, "input")) for level in signals_elsewhere(model, actuator))
 
     actuators = (q for q in model.all_ports if isinstance(q, Actuator))
-    ways = (*map(of, model.ports), *map(at, actuators))
-    in_turn = (way for turn in zip_longest(*ways) for way in turn if way is not None)
-    return islice(in_turn, MOST_FROM_ELSEWHERE)
+    return _in_turn((*map(of, model.ports), *map(at, actuators)), MOST_FROM_ELSEWHERE)
 
 
 def _own(port: Port) -> tuple[str, ...]:
@@ -96,16 +95,23 @@ def _from_inputs(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknow
     An input in proportion alone is told at its actuator. A body that a spring joins with one that is pushed has no part of that push.
     """
 
-    def of(port: Port) -> Iterator[tuple[Port, Unknown]]:
+    inputs = _acting_otherwise(model)
+    ports = (port for port in model.ports if port.name in inputs)
+    ways = ([(port, Unknown(f"{INPUT}{name}", knots)) for name in inputs[port.name]] for port in ports)
+    return _in_turn(ways, MOST_FROM_INPUTS)
+
+
+@once_per_model
+def _acting_otherwise(model: GreyBoxModel) -> dict[str, list[str]]:
+    """By body and balance the inputs that :func:`_from_inputs` tells of."""
+    found = {}
+    for port in (q for q in model.ports if balanced_state(model, q)):
         rate = without_laws(model, port)
         acting = _acting_near(model, port) if isinstance(port, Body) else inputs_of(model, rate)
-        for name in (one.name for one in model.inputs):
-            if name not in acting or (isinstance(port, Balance) and _by_a_state(model, name, rate)):
-                yield port, Unknown(f"{INPUT}{name}", knots)
-
-    ways = (of(port) for port in model.ports if balanced_state(model, port))
-    in_turn = (way for turn in zip_longest(*ways) for way in turn if way is not None)
-    return islice(in_turn, MOST_FROM_INPUTS)
+        by_a_state = (n for n in acting if isinstance(port, Balance) and _by_a_state(model, n, rate))
+        offered = {one.name for one in model.inputs}.difference(acting).union(by_a_state)
+        found[port.name] = [one.name for one in model.inputs if one.name in offered]
+    return found
 
 
 def _acting_near(model: GreyBoxModel, body: Body) -> set[str]:
@@ -136,6 +142,10 @@ def _exchanged(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]
 
     balances = [q for q in model.ports if isinstance(q, Balance)]
     pairs = [(q, other) for q in balances for other in balances_alike(model, q)]
-    each_once = [between(q, other) for q, other in pairs if balances.index(q) < balances.index(other)]
-    in_turn = (way for turn in zip_longest(*each_once) for way in turn if way is not None)
-    return islice(in_turn, MOST_EXCHANGED)
+    each_once = (between(q, other) for q, other in pairs if balances.index(q) < balances.index(other))
+    return _in_turn(each_once, MOST_EXCHANGED)
+
+
+def _in_turn(ways: Iterable[Iterable[tuple[Port, Unknown]]], most: int) -> Iterator[tuple[Port, Unknown]]:
+    """The first few curves, which ports (or pairs of them) take in turn."""
+    return islice((way for turn in zip_longest(*ways) for way in turn if way is not None), most)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import ClassVar
 
 import numpy as np
@@ -11,8 +10,8 @@ import torch
 
 import greybox_torch as gt
 from greybox_torch.diagnosis.describe.effects import signal_name
+from greybox_torch.diagnosis.screen import further_curves
 from greybox_torch.diagnosis.screen.candidates import candidates
-from greybox_torch.diagnosis.screen.further_curves import _from_elsewhere
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.surroundings import surroundings_along
 from greybox_torch.mechanisms.attachment import attach
@@ -86,8 +85,9 @@ def test_an_input_that_changes_a_loss_is_offered_at_a_balance(surroundings) -> N
     """Seen: a fan that cooled a wall, and that the model did not use: "something, without a name", after 91 s."""
     found = candidates(Helicopter(), {}, surroundings, flexible=True)
     curves = (a for a in found if a.port == "motor_heat" and isinstance(a.mechanism, Unknown))
-    factors = {a.mechanism.factor for a in curves if a.mechanism.signal == "level"}
-    assert factors == {"", "input@main", "input@tail", "rate@motor_heat"}
+    at_heat = {(a.mechanism.signal, a.mechanism.factor) for a in curves}
+    changed = {("level", factor) for factor in ("", "input@main", "input@tail", "rate@motor_heat")}
+    assert at_heat == {*changed, ("input@main", ""), ("input@tail", "")}
 
 
 class Cell(GreyBoxModel):
@@ -197,8 +197,8 @@ def test_what_one_balance_loses_the_other_has(exchanger) -> None:
 
 
 def test_ports_take_the_few_curves_of_signals_elsewhere_in_turn(monkeypatch) -> None:
-    monkeypatch.setattr(sys.modules[_from_elsewhere.__module__], "MOST_FROM_ELSEWHERE", 4)
-    ways = [(port.name, curve.signal, curve.factor) for port, curve in _from_elsewhere(Cell(), 6)]
+    monkeypatch.setattr(further_curves, "MOST_FROM_ELSEWHERE", 4)
+    ways = [(port.name, curve.signal, curve.factor) for port, curve in further_curves._from_elsewhere(Cell(), 6)]
     assert ways == [
         ("charge", "level@skin", ""),
         ("skin", "level@charge", ""),

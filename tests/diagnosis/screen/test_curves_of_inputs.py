@@ -128,3 +128,8 @@ def test_every_curve_that_is_offered_acts_in_proportion_to_its_factor(model: Gre
         known = type(p)("parameter", {**values, **{n: p[n] for n in p}})
         local = augmented.local.at(attached, x, u, known)
         assert {n for n in curve.signals() if not n.startswith("rate@")} <= set(local), curve.signals()
+        if curve.factor and not curve.by_rate:
+            declared = curve.parameters(around[port.name])
+            own = type(p)("parameter", {q.name: torch.tensor(0.3 if q.shrunk else q.value) for q in declared})
+            force, height = curve.force(local, own, type(p)("memory", {})), curve.curve(local, own)
+            torch.testing.assert_close(force, height * local[curve.factor])
