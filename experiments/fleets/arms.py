@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+import torch
 
 import greybox_torch as gt
 from experiments.speed.settings import header
@@ -75,14 +76,16 @@ def _recording(role: Role, torque: np.ndarray, speed: np.ndarray) -> gt.Recordin
     return gt.Recording.from_arrays(role.title(), signals, sample_time=SAMPLE_TIME, role=role, units=UNITS)
 
 
-def measured(data: list[gt.DataSet]) -> dict[str, Any]:
-    """Both ways on the same data, and how far their estimates are apart; compiling comes before."""
-    gt.fit_many(Arm(), data[:2])
+def measured(data: list[gt.DataSet], device: str = "cpu") -> dict[str, Any]:
+    """Both ways on the same data, and how far their estimates are apart; compiling comes before. The batch is on the device."""
+    gt.fit(Arm(), data[0])
+    gt.fit_many(Arm(), data[:2], device=device)
     alone, one_by_one = _timed(lambda: [gt.fit(Arm(), each) for each in data])
-    together, batch = _timed(lambda: gt.fit_many(Arm(), data))
+    together, batch = _timed(lambda: gt.fit_many(Arm(), data, device=device))
     pairs = [(a.parameters[n], b.parameters[n]) for a, b in zip(alone, together, strict=True) for n in ESTIMATED]
     return {
         "arms": len(data),
+        "device": torch.cuda.get_device_name(device) if device.startswith("cuda") else "processor",
         "threads": os.environ.get("OMP_NUM_THREADS", "one for each core"),
         "one_by_one": one_by_one,
         "batch": batch,
@@ -105,10 +108,11 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--arms", type=int, default=64)
     parser.add_argument("--samples", type=int, default=4000, help="of each of the two recordings of an arm")
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--device", default="cpu", help='of the batch: "cpu" or "cuda"')
     parser.add_argument("--out", type=Path, default=Path("results/arms"))
     chosen = parser.parse_args(arguments)
     found = {"about": header(), "samples": chosen.samples, "seed": chosen.seed}
-    found |= measured(draw_arms(chosen.arms, chosen.samples, chosen.seed))
+    found |= measured(draw_arms(chosen.arms, chosen.samples, chosen.seed), chosen.device)
     chosen.out.mkdir(parents=True, exist_ok=True)
     text = json.dumps(found, indent=1)
     (chosen.out / "arms.json").write_text(text)
