@@ -15,16 +15,27 @@ Trial = tuple[float, Candidate, Hypothesis, Simulator]
 
 
 def finalists(first: list[Trial], study: Study) -> list[Trial]:
-    """The best few, the best few named ones and what ties with the best of those, what they generalise, and the best curve."""
+    """The best few, the best few named ones and what ties with the best of those, what they generalise, and the best curve.
+
+    What is akin to one of them and ties with it is refitted too: a trial ends long before what tells a lag of the input from one of the
+    output. Seen: a sensor's lag, told as the input's (0.97, 290 times the noise left), whose trials were 0.02 apart; in full they were 6.
+    """
     named = [e for e in first if not e[1].unknown]
     chosen = first[: study.budget.finalists]
     tied = [e for e in named[: study.budget.most_tied] if e[0] < named[0][0] + study.settings.score_tie]
     chosen += [e for e in named[: max(study.budget.finalists, len(tied))] if e not in chosen]
+    chosen += [e for e in named if e not in chosen and any(_close_kin(e, c, study.settings.score_tie) for c in chosen)]
     contained = {(e[1].attachment.port, name) for e in chosen for name in e[1].attachment.mechanism.generalises}
     chosen += [e for e in first if e[1].attachment.named in contained and e not in chosen]
     if not any(e[1].unknown for e in chosen):
         chosen += [e for e in first if e[1].unknown][:1]
     return chosen
+
+
+def _close_kin(one: Trial, other: Trial, tie: float) -> bool:
+    """Whether two trials of laws that do nearly the same tie."""
+    law, own = other[1].attachment.mechanism, one[1].attachment.mechanism.name
+    return own in {*law.twins, *law.akin} and one[0] < other[0] + tie
 
 
 def leading_and_rest(study: Study, entries: Sequence[Trial]) -> list[list[Trial]]:

@@ -11,6 +11,7 @@ from greybox_torch.diagnosis.hypothesis.mismatch import negligible
 from greybox_torch.diagnosis.hypothesis.significance import window_significance
 from greybox_torch.diagnosis.screen.shortlist import identity_of
 from greybox_torch.diagnosis.select.choice import alone_at_noise, chosen, least_gain
+from greybox_torch.diagnosis.select.finer_steps import in_finer_steps
 from greybox_torch.diagnosis.select.flexed import flexed
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
 from greybox_torch.diagnosis.select.memory import completed_by_memory
@@ -54,6 +55,7 @@ def take_effects(
                 break
             state = richer
             continue
+        state = in_finer_steps(study, state)
         wider = flexed(study, before, state) or richer_instead(study, before, state)
         if wider is not None:
             state = wider
