@@ -20,7 +20,7 @@ from greybox_torch.model.own_rate import RATE, balanced_state, unit_of_rate, wit
 from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
 from greybox_torch.model.sensed_states import sensed_states
-from greybox_torch.model.signals_elsewhere import DIFFERENCE, positions_elsewhere, signals_elsewhere
+from greybox_torch.model.signals_elsewhere import ABOVE, DIFFERENCE, positions_elsewhere, signals_elsewhere
 from greybox_torch.model.states_of import states_of
 from greybox_torch.model.within_turn import TURN, WHOLE
 from greybox_torch.simulation.simulator import Simulator
@@ -157,7 +157,7 @@ def _units(model: GreyBoxModel, port: Port) -> dict[str, str]:
     if isinstance(port, Body | Balance):
         units |= {f"{kind}{one.name}": one.unit for kind in (INPUT, ALONG) for one in model.inputs}
     if isinstance(port, Balance) and "level" in units:
-        units |= {name: units["level"] for name in signals if name.startswith(DIFFERENCE)}
+        units |= {name: units["level"] for name in signals if name.startswith((DIFFERENCE, ABOVE))}
     if state := balanced_state(model, port):
         units[f"{RATE}{port.name}"] = unit_of_rate(of[state])
     if isinstance(port, Actuator):

@@ -15,7 +15,7 @@ from greybox_torch.model.along_motion import ALONG, DIRECTION, direction
 from greybox_torch.model.own_rate import RATE, own_rate
 from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Port, Sensor, driving_body, value_of
-from greybox_torch.model.signals_elsewhere import DIFFERENCE, difference
+from greybox_torch.model.signals_elsewhere import ABOVE, DIFFERENCE, above, difference
 from greybox_torch.model.within_turn import TURN, within_turn
 
 
@@ -143,7 +143,7 @@ class LocalSignals:
         for kind, name in named:
             told, there = (
                 ("input", [i.name for i in self.base.inputs])
-                if kind in ("input", "along")
+                if kind in ("input", "along", "above")
                 else ("port", list(self.ports))
             )
             if name not in there:
@@ -154,11 +154,14 @@ class LocalSignals:
         self, site: Port, signal: str, x: Signals, u: Signals, p: Signals, forces: Signals | None
     ) -> Any:
         """An input of the model, by itself or along a body's motion, a signal of another port, by how much the level of a balance is above
-        another one's, or a port's rate.
+        another one's or an input, or a port's rate.
         """
         kind, _, name = signal.partition("@")
         if kind == "input":
             return u[name]
+        if signal.startswith(ABOVE):
+            assert isinstance(site, Balance)
+            return value_of(above(site, name), x, u, p)
         if signal.startswith((ALONG, DIRECTION)):
             assert isinstance(site, Body)
             way = direction(value_of(site.speed, x, u, p), self.surroundings[site.name].ranges["speed"].rms)

@@ -13,9 +13,13 @@ DIFFERENCE = "difference@"
 """That of a balance's level less another one's, which drives what the two exchange."""
 
 
+ABOVE = "above@"
+"""That of a balance's level less an input of the same unit, which drives what it loses to the surroundings."""
+
+
 def signals_elsewhere(model: GreyBoxModel, port: Port) -> dict[str, Signal]:
     """By name, at a body the positions and speeds of other axes and the levels of balances, at an actuator those levels, at a balance the
-    levels of others, and by how much its own is above those of them that have its unit.
+    levels of others, and by how much its own is above those of them, and above those inputs, that have its unit.
 
     A force by the speed of what a spring joins with a body is friction there, or the spring's damping.
     """
@@ -30,6 +34,7 @@ def signals_elsewhere(model: GreyBoxModel, port: Port) -> dict[str, Signal]:
         found |= {f"{SPEED}{b.name}": b.speed for b in bodies_apart(model, port)}
     if isinstance(port, Balance):
         found |= {f"{DIFFERENCE}{other.name}": difference(port, other) for other in balances_alike(model, port)}
+        found |= {f"{ABOVE}{name}": above(port, name) for name in inputs_alike(model, port)}
     return found
 
 
@@ -38,15 +43,27 @@ def difference(balance: Balance, other: Balance) -> Signal:
     return lambda x, u, p: value_of(balance.level, x, u, p) - value_of(other.level, x, u, p)
 
 
+def above(balance: Balance, name: str) -> Signal:
+    """The level of a balance less an input."""
+    return lambda x, u, p: value_of(balance.level, x, u, p) - u[name]
+
+
 def balances_alike(model: GreyBoxModel, balance: Balance) -> list[Balance]:
     """The other balances whose levels are states of the same unit."""
-    units = {s.name: s.unit for s in model.states}
-
-    def unit(one: Balance) -> str | None:
-        return units.get(one.level) if isinstance(one.level, str) else None
-
     others = (q for q in model.ports if isinstance(q, Balance) and q.name != balance.name)
-    return [q for q in others if unit(q) is not None and unit(q) == unit(balance)]
+    own = _unit_of_level(model, balance)
+    return [q for q in others if own is not None and _unit_of_level(model, q) == own]
+
+
+def inputs_alike(model: GreyBoxModel, balance: Balance) -> list[str]:
+    """The inputs of the unit of a balance's level, where that is a state that has one: temperatures around what is warm."""
+    own = _unit_of_level(model, balance)
+    return [one.name for one in model.inputs if own and one.unit == own]
+
+
+def _unit_of_level(model: GreyBoxModel, balance: Balance) -> str | None:
+    """The unit of a level; None where it is no state."""
+    return next((s.unit for s in model.states if s.name == balance.level), None)
 
 
 def positions_elsewhere(model: GreyBoxModel, body: Body) -> dict[str, Body]:

@@ -27,7 +27,7 @@ from greybox_torch.model import Coupling, GreyBoxModel
 from greybox_torch.model.along_motion import ALONG, DIRECTION
 from greybox_torch.model.own_rate import RATE, balanced_state
 from greybox_torch.model.ports import Actuator, Port, driving_body
-from greybox_torch.model.signals_elsewhere import DIFFERENCE
+from greybox_torch.model.signals_elsewhere import ABOVE, DIFFERENCE
 from greybox_torch.model.within_turn import TURN
 
 
@@ -169,6 +169,8 @@ def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:
     if signal.startswith(DIFFERENCE):
         other = next(q for q in model.all_ports if q.name == signal.removeprefix(DIFFERENCE))
         return f"{signal_name(model, site, 'level')} - {signal_name(model, other, 'level')}"
+    if signal.startswith(ABOVE):
+        return f"{signal_name(model, site, 'level')} - {signal.removeprefix(ABOVE)}"
     if signal == TURN:
         return f"{signal_name(model, site, 'position')} within a turn"
     if signal.startswith(ALONG):

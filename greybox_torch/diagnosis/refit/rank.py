@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -50,7 +51,7 @@ def rank(
     middle = at[min(1, len(at) - 1)]
     steps = {length: cut(study.problem.records, length).steps for length in at}
     allowance = study.settings.trial_allowance
-    refit = partial(fit, study, shorter=current.fits[0], frozen=frozen, rough=True)
+    refit = partial(fit, study, frozen=frozen, rough=True)
 
     def tried(
         candidate: Candidate, simulator: Simulator, starts: Sequence[Mapping[str, float]] = (), length: int = middle
@@ -59,7 +60,8 @@ def rank(
         study.journal.begin(candidate.attachment.named)
         effects = joined(current.effects, candidate)
         starts = starts or candidate.first_starts(budget.trial_starts)
-        return refit(effects, starts, at=[length], limits=budget.trial_iterations, simulator=simulator)
+        begun = candidate.begun or current.fits[0]
+        return refit(effects, starts, begun, at=[length], limits=budget.trial_iterations, simulator=simulator)
 
     def compared(trial: Hypothesis | None, length: int) -> list[Shown]:
         """How far a trial is from the hypothesis before it (negative: better), where it is not hopeless."""
@@ -91,6 +93,7 @@ def rank(
         fitted = refit(
             before.effects,
             [before.values()],
+            candidate.begun or current.fits[0],
             early=[*candidate.first_starts(budget.trial_starts), *_elsewhere(study, candidate, before)],
             before=before,
             limits=budget.window_iterations,
@@ -128,7 +131,17 @@ def rank(
         farther = again is not None and again.score < before - budget.part_of_missing_promise * missing
         return (finer, there, again) if farther else (candidate, simulator, own)
 
-    all_tried = side_by_side(partial(in_finer_steps, *pair, own) for pair, own in zip(pairs, reached, strict=True))
+    def at_card(candidate: Candidate, simulator: Simulator, own: Hypothesis | None) -> Tried:
+        """Its trial from where the user began, start states too, if it comes farther so: from a bent fit's no refit leads back."""
+        if not candidate.at_card:
+            return candidate, simulator, own
+        there = replace(candidate, starts=candidate.at_card, from_motion=(), at_card=(), begun=study.at_card[0])
+        again = tried(there, simulator)
+        farther = again is not None and (own is None or again.score < own.score)
+        return (there, simulator, again) if farther else (candidate, simulator, own)
+
+    all_tried = side_by_side(partial(at_card, *pair, own) for pair, own in zip(pairs, reached, strict=True))
+    all_tried = side_by_side(partial(in_finer_steps, *one) for one in all_tried)
     pairs, reached = [(one, simulator) for one, simulator, _ in all_tried], [own for *_, own in all_tried]
     over_middle = [next(iter(compared(own, middle)), None) for own in reached]
     shown = side_by_side(partial(where_it_shows, *pair, own) for pair, own in zip(pairs, over_middle, strict=True))

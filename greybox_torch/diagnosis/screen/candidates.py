@@ -18,6 +18,7 @@ from greybox_torch.mechanisms.unknown_play import UnknownPlay
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port
+from greybox_torch.model.idle_inputs import ports_in_use
 from greybox_torch.model.joined_bodies import joined_bodies
 from greybox_torch.model.ports import Actuator, driving_body, integrates_position
 
@@ -62,7 +63,7 @@ def candidates(
         knots: of the unknown curves.
     """
     found = []
-    for port in model.all_ports:
+    for port in ports_in_use(model):
         shifted = shifts.get(port.name, "")
         for mechanism in _curves(model, port, knots) if flexible else (m() for m in LIBRARY.values()):
             if port.kind in mechanism.kinds and _available(mechanism, surroundings[port.name]):
@@ -87,11 +88,11 @@ def chain_candidates(model: GreyBoxModel, surroundings: Mapping[str, Surrounding
 
 def common_delays(model: GreyBoxModel) -> list[Attachment]:
     """A dead time of all inputs together, where there are several: one computer or one bus drives them."""
-    first, *rest = (port for port in model.all_ports if isinstance(port, Actuator))
-    if not rest:
+    drives = [port for port in ports_in_use(model) if isinstance(port, Actuator)]
+    if len(drives) < 2:
         return []
-    late = InputDelay([port.input for port in rest])
-    return [attach(model, first.name, late, label="_of_all")]
+    late = InputDelay([port.input for port in drives[1:]])
+    return [attach(model, drives[0].name, late, label="_of_all")]
 
 
 def periodic_candidates(
@@ -139,7 +140,7 @@ def memory_candidates(
     has names: lags and delays.
     """
     found = []
-    for port in (q for q in model.all_ports if q.kind in UnknownWithMemory.kinds):
+    for port in (q for q in ports_in_use(model) if q.kind in UnknownWithMemory.kinds):
         for signal in FLEXIBLE.get(port.kind, ()):
             if signal in surroundings[port.name].ranges and not (
                 signal == "position" and integrates_position(model.ports, port)

@@ -11,22 +11,31 @@ import torch
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.model import Balance, Body, GreyBoxModel, Port
 from greybox_torch.model.along_motion import ALONG, DIRECTION, inputs_that_push
+from greybox_torch.model.idle_inputs import idle_inputs, ports_in_use
 from greybox_torch.model.joined_bodies import bodies_apart
 from greybox_torch.model.once_per_model import once_per_model
 from greybox_torch.model.own_rate import RATE, balanced_state, without_laws
 from greybox_torch.model.ports import Actuator, integrates_position
 from greybox_torch.model.random_points import random_points
-from greybox_torch.model.signals_elsewhere import DIFFERENCE, LEVEL, SPEED, balances_alike, signals_elsewhere
+from greybox_torch.model.signals_elsewhere import (
+    ABOVE,
+    DIFFERENCE,
+    LEVEL,
+    SPEED,
+    balances_alike,
+    inputs_alike,
+    signals_elsewhere,
+)
 from greybox_torch.model.states_of import inputs_of
 from greybox_torch.model.within_turn import TURN
 
-MOST_FROM_ELSEWHERE, MOST_FROM_INPUTS, MOST_EXCHANGED = 32, 12, 12
-"""Curves of signals of other ports, of inputs, and of what balances exchange, that are tried at all."""
+MOST_FROM_ELSEWHERE, MOST_FROM_INPUTS, MOST_EXCHANGED, MOST_LOST = 32, 12, 12, 12
+"""Curves of signals of other ports, of inputs, of what balances exchange, and of what they lose, that are tried at all."""
 
 
 def further_curves(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
     """All of them, with the port of each."""
-    ways = (_by_rate, _by_direction, _from_elsewhere, _from_inputs, _exchanged)
+    ways = (_by_rate, _by_direction, _from_elsewhere, _from_inputs, _exchanged, _lost)
     return chain.from_iterable(way(model, knots) for way in ways)
 
 
@@ -61,7 +70,7 @@ def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unk
     inputs = [f"{INPUT}{one.name}" for one in model.inputs]
 
     def of(port: Port) -> Iterator[tuple[Port, Unknown]]:
-        for signal in (n for n in signals_elsewhere(model, port) if not n.startswith(DIFFERENCE)):
+        for signal in (n for n in signals_elsewhere(model, port) if not n.startswith((DIFFERENCE, ABOVE))):
             own = (*(_own(port) if signal.startswith(LEVEL) else ()), *stiff(port))
             factors = ("", *own) if signal.startswith(SPEED) else ("", *inputs, *own)
             rate = (f"{RATE}{port.name}",) if not signal.startswith(SPEED) and balanced_state(model, port) else ()
@@ -77,7 +86,7 @@ def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unk
     def at(actuator: Actuator) -> Iterator[tuple[Port, Unknown]]:
         yield from ((actuator, Unknown(level, knots, "input")) for level in signals_elsewhere(model, actuator))
 
-    actuators = (q for q in model.all_ports if isinstance(q, Actuator))
+    actuators = (q for q in ports_in_use(model) if isinstance(q, Actuator))
     return _in_turn((*map(of, model.ports), *map(at, actuators)), MOST_FROM_ELSEWHERE)
 
 
@@ -144,6 +153,22 @@ def _exchanged(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]
     pairs = [(q, other) for q in balances for other in balances_alike(model, q)]
     each_once = (between(q, other) for q, other in pairs if balances.index(q) < balances.index(other))
     return _in_turn(each_once, MOST_EXCHANGED)
+
+
+def _lost(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """What a balance loses to its surroundings: by how far its level is above an input of its unit, and in proportion to that, by another
+    input (the wind, a fan), those first that the model does not use. No more than ``MOST_LOST``.
+    """
+    inputs = sorted((one.name for one in model.inputs), key=lambda name: name not in idle_inputs(model))
+
+    def to(port: Balance, name: str) -> Iterator[tuple[Port, Unknown]]:
+        apart = f"{ABOVE}{name}"
+        yield port, Unknown(apart, knots)
+        others = (one for one in inputs if one not in inputs_alike(model, port))
+        yield from ((port, Unknown(f"{INPUT}{one}", knots, apart)) for one in others)
+
+    balances = [q for q in model.ports if isinstance(q, Balance)]
+    return _in_turn([to(q, name) for q in balances for name in inputs_alike(model, q)], MOST_LOST)
 
 
 def _in_turn(ways: Iterable[Iterable[tuple[Port, Unknown]]], most: int) -> Iterator[tuple[Port, Unknown]]:

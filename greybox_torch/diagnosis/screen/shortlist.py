@@ -34,6 +34,10 @@ class Candidate:
     """Values that a search with fewer experiments came to, which come before all others."""
     absent: Mapping[str, float] = field(default_factory=dict)
     """Its parameters with no size: the model without it. Empty for a law that has no amplitude."""
+    at_card: tuple[dict[str, float], ...] = ()
+    """Start values that the screen around the card's values suggests, where the model as it stands is bent."""
+    begun: WindowFit | None = None
+    """What its windows take their first start states from: by default the hypothesis before it."""
     ahead: bool = False
     """Whether it is to stand before the other laws at its actuator rather than behind them."""
 
@@ -181,6 +185,13 @@ def with_motion(found: Sequence[Candidate], from_motion: Sequence[Candidate]) ->
         starts = () if further is None else further.starts
         both.append(replace(candidate, from_motion=(*candidate.from_motion, *starts)))
     return [*both, *added.values()]
+
+
+def with_card(found: Sequence[Candidate], at_card: Sequence[Candidate]) -> list[Candidate]:
+    """Candidates of the screen, with start values that it suggests around the card's values, and what it shows there beside them."""
+    there = {identity_of(c.attachment): replace(c, at_card=c.starts) for c in at_card}
+    both = [replace(c, at_card=there.pop(identity_of(c.attachment), c).at_card) for c in found]
+    return [*both, *there.values()]
 
 
 def identity_of(attachment: Attachment) -> tuple:

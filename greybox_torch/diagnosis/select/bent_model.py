@@ -1,8 +1,9 @@
-"""A fit of the model as it stands that moves some signal much farther than the model with the card's values: bent, not the machine.
+"""A fit of the model as it stands that moves some signal, or a parameter, far from the card's values: bent, not the machine.
 
 What is missing may be made up for by parameters that no machine has: a drill string's spring a fortieth as stiff, behind which a bit
 that nobody measures rings at fifteen times the speed of the drive. Around such a fit the screen sees nothing of the bit's friction, and the
-ranges that bound its law are wrong. So both are taken from where the user began, too.
+ranges that bound its law are wrong. So both are taken from where the user began, too. So they are where a parameter is a small part, or
+many times, of what the user began with: a lift's car that has a hundredth of its mass, for its rope is stiffer the higher it is.
 """
 
 from __future__ import annotations
@@ -10,8 +11,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, window_lengths
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.surroundings import surroundings_along
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows, states_along
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
@@ -46,3 +50,12 @@ def narrowed(found: Ranges, at_card: Ranges, farther: float) -> dict[str, Surrou
         port: replace(around, ranges={n: of(n, r, at_card[port]) for n, r in around.ranges.items()})
         for port, around in found.items()
     }
+
+
+def moved_far(problem: Problem, times: float) -> bool:
+    """Whether some free parameter is more than so many ``times`` what it began as, or less than such a part; zero is no such part: what a
+    machine does not have may go.
+    """
+    began, here = np.abs(problem.expected[problem.free]), np.abs(problem.values[problem.free])
+    known = (began > 0.0) & (here > 0.0)
+    return bool((np.abs(np.log(here[known] / began[known])) > np.log(times)).any())

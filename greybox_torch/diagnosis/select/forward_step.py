@@ -14,7 +14,7 @@ from greybox_torch.diagnosis.refit.likelihood import cost_of, likelier
 from greybox_torch.diagnosis.refit.rank import rank
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, sound
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
-from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist, with_motion
+from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist, with_card, with_motion
 from greybox_torch.diagnosis.select.choice import as_unsure_as_a_name, chosen, least_gain, part_of_a_curve
 from greybox_torch.diagnosis.select.compare import Comparison, compare
 from greybox_torch.diagnosis.select.finer_curve import with_finer_curve, with_tied_curves_finer
@@ -49,7 +49,7 @@ def forward_step(
     screened = screen_scores(study, state, curves=curves and not state.has_curve, fine=fine)
     found = _worth_a_refit(study, state, screened, fine)
     if not fine:
-        found = with_motion(found, from_card(study, state))
+        found = with_card(found, from_card(study, state, curves=curves))
         found = with_motion(found, from_motion(study, state))
         found = with_found_before(study, state, found, curves=curves)
     if little_is_left(study, state):

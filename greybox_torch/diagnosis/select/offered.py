@@ -65,12 +65,17 @@ def _less_left(coarse: Sequence[ScreenScore], fine: Sequence[ScreenScore], most:
     return [s for s in fine if 1.0 - s.explained < most * left.get(identity_of(s.attachment), 1.0)]
 
 
-def from_card(study: Study, state: SearchState) -> list[Candidate]:
-    """What the screen around the card's values suggests to join the model as it stands, where the fit of that is bent."""
+def from_card(study: Study, state: SearchState, *, curves: bool = True) -> list[Candidate]:
+    """What the screen around the card's values suggests to join the model as it stands, where the fit of that is bent.
+
+    Args:
+        curves: whether free curves are offered.
+    """
     if state.effects or not study.at_card:
         return []
     study.working_on("screening around the card's values")
     every = candidates(study.problem.model, study.shifts, study.surroundings, flexible=False)
+    every += candidates(study.problem.model, study.shifts, study.surroundings, flexible=True) if curves else []
     return shortlist(study, _scored(study, state, every, study.at_card), study.at_card)
 
 

@@ -11,7 +11,7 @@ from greybox_torch.diagnosis.hypothesis.noise import most_noise
 from greybox_torch.diagnosis.hypothesis.window_errors import window_errors
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.screen.views import views_of
-from greybox_torch.diagnosis.select.bent_model import from_the_card, narrowed
+from greybox_torch.diagnosis.select.bent_model import from_the_card, moved_far, narrowed
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.errors import NumericalError
@@ -46,11 +46,12 @@ def fit_plain_model(study: Study) -> tuple[Study, SearchState]:
     around = surroundings_along(model, over.problem, states_along(over, plain.simulator))
     at_card, ranges = from_the_card(study, plain)
     narrower = around if ranges is None else narrowed(around, ranges, study.settings.bent_travel)
+    bent = narrower != around or moved_far(plain.problem, study.settings.bent_parameter)
     study = replace(
         study,
         shifts=shifted_states(model, plain.problem),
         surroundings=narrower,
-        at_card=at_card if narrower != around else (),
+        at_card=at_card if bent else (),
     )
     return study, SearchState(plain, plain)
 

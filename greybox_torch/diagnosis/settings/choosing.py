@@ -111,6 +111,12 @@ class ScreenSettings:
         unit="ratio of the largest magnitudes",
         chosen_by="start values of a card are right within tens of per cent",
     )
+    bent_parameter: float = ratio(
+        30.0,
+        "How many times what it began as (or what part of it) a fitted parameter has to be for the fit to be taken as bent.",
+        unit="ratio to the card's value",
+        chosen_by="start values of a card are right within a factor of ten",
+    )
     least_periods: float = number(
         5.0, "Periods within the travel from which an effect is seen to repeat.", unit="periods"
     )

@@ -29,6 +29,12 @@ class SamplingSettings:
         unit="share of the outputs' spread (root mean square)",
         chosen_by="a fit of 99.9 %",
     )
+    left_by_shift: float = share(
+        0.5,
+        "Part of what is beyond the noise that the best shift in time of every output may leave for the error to be told as one.",
+        unit="share of the squared error beyond the noise",
+        chosen_by="a simulator of first order is late and damps a little otherwise; play of a nut is no shift at all (0.97 left)",
+    )
     shortest_shift: float = share(
         0.25,
         "Shift in time from which a lag or a delay is a finding near the noise: a sensor's filter and an input's edge may be as late.",

@@ -75,3 +75,24 @@ def test_what_drifts_over_whole_records_is_not_negligible(dead_zone_search, monk
         monkeypatch.setattr(module, "simulate", lambda problem, simulator, of=1.0 - left: [of * problem.records.y.T])
         assert negligible(shifted, plain) == nothing
     module._share_of_whole_records.cache_clear()
+
+
+@pytest.mark.parametrize(("error", "nothing"), [("late", True), ("rough", False)])
+def test_more_than_noise_has_to_be_a_shift_in_time(dead_zone_search, monkeypatch, error: str, nothing: bool) -> None:
+    """Seen: a screw drive whose nut has 12 µm of play on a stroke of 55 mm, told as complete at 34 times the noise of its scale."""
+    found = dead_zone_search
+    shifted = replace(found.study, settings=replace(found.study.settings, least_shift=1.0, most_of_shift=0.05))
+    noise, least = noise_floor(found.problem, shifted.settings), least_mismatch(shifted)
+    beyond = (0.9 * least * np.std(found.problem.records.y)) ** 2
+    assert beyond > 4 * noise, "the case is above the noise"
+    plain = replace(found.plain, fits=tuple(replace(fit, mean_square=noise + beyond) for fit in found.plain.fits))
+    measured = plain.fits[0].problem.window_records.y
+
+    def left(fit: object, simulator: object) -> np.ndarray:
+        rate = np.gradient(measured, axis=1)
+        shape = rate if error == "late" else np.random.default_rng(0).normal(size=measured.shape)
+        return np.sqrt(beyond / np.mean(shape**2)) * shape
+
+    monkeypatch.setattr(module, "window_errors", left)
+    monkeypatch.setattr(module, "_share_of_whole_records", lambda *given: 0.0)
+    assert negligible(shifted, plain) == nothing

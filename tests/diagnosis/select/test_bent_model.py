@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.select.bent_model import from_the_card, narrowed
+from greybox_torch.diagnosis.refit.rank import rank
+from greybox_torch.diagnosis.screen.shortlist import Candidate, with_card
+from greybox_torch.diagnosis.select.bent_model import from_the_card, moved_far, narrowed
 from greybox_torch.diagnosis.select.offered import from_card
+from greybox_torch.mechanisms.actuator import ActuatorDeadzone
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
 
 
@@ -49,3 +55,52 @@ def test_what_the_card_shows_is_offered_with_the_cards_values_to_the_first_step_
     assert all(start[n] == v for start in dead_zone.starts for n, v in study.card.items())
     assert 0.2 < dead_zone.starts[0]["actuator.actuator_deadzone.half_width"] < 1.0, "0.5 V"
     assert from_card(bent, replace(state, current=replace(state.current, effects=(dead_zone.attachment,)))) == []
+
+
+@pytest.mark.parametrize(("factor", "far"), [(1 / 85, True), (100.0, True), (0.1, False), (12.0, False), (0.0, False)])
+def test_a_parameter_far_from_what_it_began_as_is_bent(dead_zone_search, factor: float, far: bool) -> None:
+    """Seen: a lift's car with a hundredth of its mass. What is zero may be what the machine does not have."""
+    problem = dead_zone_search.state.plain.problem
+    values = problem.expected * np.where(np.arange(len(problem.values)) == np.flatnonzero(problem.free)[0], factor, 1.0)
+    assert moved_far(problem.with_values(values), dead_zone_search.study.settings.bent_parameter) == far
+
+
+def test_curves_are_offered_around_the_card_where_curves_are(dead_zone_search) -> None:
+    study, state = dead_zone_search.study, dead_zone_search.state
+    bent = replace(study, at_card=from_the_card(study, state.plain)[0])
+    assert any(c.unknown for c in from_card(bent, state))
+    assert not any(c.unknown for c in from_card(bent, state, curves=False))
+
+
+def test_what_the_card_suggests_stands_beside_what_the_fit_does(motor) -> None:
+    dry, zone = attach(motor, "rotor", CoulombFriction()), attach(motor, "actuator", ActuatorDeadzone())
+    found = with_card(
+        [Candidate(dry, ({"F_c": 1.0},), 0.5)],
+        [Candidate(dry, ({"F_c": 2.0},), 0.9), Candidate(zone, ({"half_width": 0.1},), 0.4)],
+    )
+    assert [(c.attachment, c.starts, c.at_card) for c in found] == [
+        (dry, ({"F_c": 1.0},), ({"F_c": 2.0},)),
+        (zone, ({"half_width": 0.1},), ({"half_width": 0.1},)),
+    ]
+
+
+def test_a_trial_from_the_card_begins_with_its_start_states_and_goes_on_so_if_it_comes_farther(
+    dead_zone_search, monkeypatch
+) -> None:
+    study, current, begun = dead_zone_search.study, dead_zone_search.state.current, []
+    bent = replace(study, at_card=from_the_card(study, dead_zone_search.plain)[0])
+    dry = attach(study.problem.model, "rotor", CoulombFriction())
+    start = {f"{dry.prefix}.{name}": value for name, value in (("F_c", 0.1), ("v_0", 0.05))}
+
+    def fit(study: Any, effects: Any, starts: Any, shorter: Any, *, at: Any = None, **how: Any) -> Any:
+        begun.append((shorter is bent.at_card[0], bool(at), starts[0].get("from", "fit")))
+        better = 0.2 if shorter is bent.at_card[0] else 0.6
+        fits = current.fits[1:2] if at else current.fits
+        return replace(current, fits=tuple(replace(f, mean_square=better * f.mean_square) for f in fits))
+
+    monkeypatch.setattr("greybox_torch.diagnosis.refit.rank.fit", fit)
+    monkeypatch.setattr("greybox_torch.diagnosis.refit.rank._pays", lambda study, ranked: True)
+    steps = current.fits[1].windows.steps
+    (ranked,) = rank(bent, current, [Candidate(dry, (start,), 0.3, steps=steps, at_card=({**start, "from": "card"},))])
+    assert begun == [(False, True, "fit"), (True, True, "card"), (True, False, "fit")]
+    assert ranked.fitted.fits[0].mean_square == pytest.approx(0.2 * current.fits[0].mean_square)
