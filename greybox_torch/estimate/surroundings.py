@@ -16,7 +16,7 @@ from greybox_torch.mechanisms.unknown import INPUT
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
 from greybox_torch.model.along_motion import ALONG, DIRECTION, direction, inputs_that_push
 from greybox_torch.model.joined_bodies import turns_with
-from greybox_torch.model.own_rate import RATE, balanced_state, unit_of_rate, without_laws
+from greybox_torch.model.own_rate import RATE, adds_to_rate, balanced_state, unit_of_rate, without_laws
 from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
 from greybox_torch.model.sensed_states import sensed_states
@@ -85,7 +85,7 @@ def _around(
         ranges["position"] = no_farther(ranges["position"], as_measured(model, port.position, x, u, problem))
     if isinstance(port, Body) and _repeats(port, ranges["position"], units["position"]):
         ranges[TURN], units[TURN] = Range(0.0, WHOLE, WHOLE / 3**0.5), "rad"
-    return Surroundings(ranges, units, _force_unit(port, units), float(np.median(problem.records.dt)), hidden)
+    return Surroundings(ranges, units, _force_unit(model, port, units), float(np.median(problem.records.dt)), hidden)
 
 
 def _load(
@@ -183,34 +183,36 @@ def _complete(port: Port, units: dict[str, str]) -> None:
 
 
 def _of_sums(model: GreyBoxModel, port: Port, x: Signals, u: Signals, p: Signals) -> dict[str, str]:
-    """Units of signals that are sums or differences of states and inputs of one unit, as a twist is of two angles.
+    """Units of signals that are sums or differences with a state or an input, as a twist is of two angles, and the play of a nut a travel less
+    a lead times an angle.
 
-    Each state and input is moved by one at a sample: what moves the signal by one, up or down, has the signal's unit.
+    Each state and input is moved by one at two samples: what moves the signal by one, up or down, has the signal's unit.
     """
     found = {}
-    x, u = (Signals(kind, {name: each[name][..., :1] for name in each}) for kind, each in (("state", x), ("input", u)))
+    few = [0, -1]
+    x, u = (Signals(kind, {name: each[name][..., few] for name in each}) for kind, each in (("state", x), ("input", u)))
     declared = [(x, s.name, s.unit) for s in model.states] + [(u, i.name, i.unit) for i in model.inputs]
     for name, signal in port.signals.items():
         if isinstance(signal, str):
             continue
-        here, units = float(torch.as_tensor(signal(x, u, p)).reshape(-1)[0]), set()
+        here, units = torch.as_tensor(signal(x, u, p)), set()
         for among, moved, unit in declared:
             other = among.replaced(**{moved: among[moved] + 1.0})
             there = signal(other, u, p) if among is x else signal(x, other, p)
-            change = abs(float(torch.as_tensor(there).reshape(-1)[0]) - here)
-            if change > 1e-9:
-                units.add(unit if abs(change - 1.0) < 1e-9 else "")
+            if bool(((torch.as_tensor(there) - here).abs() - 1.0).abs().max() < 1e-9):
+                units.add(unit)
         if len(units) == 1 and "" not in units:
             found[name] = units.pop()
     return found
 
 
-def _force_unit(port: Port, units: dict[str, str]) -> str:
+def _force_unit(model: GreyBoxModel, port: Port, units: dict[str, str]) -> str:
+    """The unit of the force at a port; empty where it is not known, as where a balance's is divided by a capacity."""
     if isinstance(port, Actuator):
         return units["input"]
     if isinstance(port, Sensor):
         return units["output"]
     if isinstance(port, Balance):
-        return f"{units['level']}/s" if units.get("level") else ""
+        return f"{units['level']}/s" if units.get("level") and adds_to_rate(model, port) else ""
     place = units.get("position" if isinstance(port, Body) else "deflection", "")
     return {"rad": "N m", "m": "N"}.get(place, "")

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import torch
+
 from greybox_torch.model.greybox_model import GreyBoxModel
-from greybox_torch.model.port_forces import no_forces
+from greybox_torch.model.port_forces import no_forces, with_one
 from greybox_torch.model.ports import Balance, Body, Port
+from greybox_torch.model.random_points import random_points
 from greybox_torch.model.signals import Signals
 
 RATE = "rate@"
@@ -30,6 +33,17 @@ def own_rate(model: GreyBoxModel, port: Port, x: Any, u: Any, p: Any, forces: Si
 def without_laws(model: GreyBoxModel, port: Port) -> Callable[[Any, Any, Any], Any]:
     """The rate without any force at the ports, as a signal."""
     return lambda x, u, p: own_rate(model, port, x, u, p, no_forces(model))
+
+
+def adds_to_rate(model: GreyBoxModel, port: Port) -> bool:
+    """Whether a force of one at a port raises that rate by one: then it has the rate's unit."""
+    if balanced_state(model, port) is None:
+        return False
+    *points, p = random_points(model)
+    x, u = model.named_signals(*points)
+    none = no_forces(model)
+    without, there = (torch.as_tensor(own_rate(model, port, x, u, p, f)) for f in (none, with_one(none, port.name)))
+    return bool(torch.allclose(there - without, torch.ones((), dtype=torch.float64), rtol=1e-9))
 
 
 def unit_of_rate(unit: str) -> str:

@@ -151,10 +151,11 @@ class Sledge(gt.GreyBoxModel):
     ports = [
         gt.Coupling("spring", deflection=lambda x, u, p: u.base - x.x, rate=lambda x, u, p: -x.v),
         gt.Coupling("lever", deflection=lambda x, u, p: p.r * x.x, rate=lambda x, u, p: p.r * x.v),
+        gt.Coupling("screw", deflection=lambda x, u, p: p.r * u.base - x.x, rate=lambda x, u, p: -x.v),
     ]
 
     def derivative(self, x, u, p, port):
-        return {"x": x.v, "v": p.k * (u.base - x.x) + port.spring - port.lever}
+        return {"x": x.v, "v": p.k * (u.base - x.x) + port.spring - port.lever + port.screw}
 
     def output(self, x, u, p):
         return {"x": x.x}
@@ -168,6 +169,7 @@ def test_a_difference_of_lengths_is_a_length() -> None:
     spring, lever = found["spring"], found["lever"]
     assert (spring.units["deflection"], spring.units["rate"], spring.force_unit) == ("m", "m/s", "N")
     assert "deflection" not in lever.units and lever.force_unit == ""
+    assert found["screw"].units["deflection"] == "m", "a lead times an angle less a travel is a travel"
 
 
 def test_a_measured_position_ranges_as_far_as_the_sensor_shows(data_set) -> None:

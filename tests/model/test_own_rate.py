@@ -1,0 +1,45 @@
+"""How fast a level changes by the model's own equations, and what a force at its port has for a unit."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+import greybox_torch as gt
+from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate.surroundings import surroundings_along
+from greybox_torch.model import Balance, GreyBoxModel, Input, Output, Parameter, State
+from greybox_torch.model.own_rate import adds_to_rate
+
+
+class Room(GreyBoxModel):
+    """A room whose port takes watts, and a tank whose port takes metres per second."""
+
+    states: ClassVar = [State("air", "K"), State("water", "m")]
+    inputs: ClassVar = [Input("heat", "W")]
+    outputs: ClassVar = [Output("air", "K")]
+    parameters: ClassVar = [Parameter("C", 500.0, unit="J/K")]
+    ports: ClassVar = [
+        Balance("room", level="air"),
+        Balance("tank", level="water"),
+        Balance("mean", level=lambda x, u, p: 0.5 * x.air),
+    ]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return {"air": (u.heat + port.room) / p.C, "water": port.tank - 0.1 * x.water}
+
+    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+        return {"air": x.air}
+
+
+@pytest.mark.parametrize(("port", "adds", "unit"), [("room", False, ""), ("tank", True, "m/s"), ("mean", False, "")])
+def test_a_force_at_a_balance_has_the_unit_of_the_rate_where_it_adds_to_it(port: str, adds: bool, unit: str) -> None:
+    """Seen: heights of a curve of watts, told in K/s."""
+    model = Room()
+    assert adds_to_rate(model, next(q for q in model.ports if q.name == port)) == adds
+    recording = gt.Recording.from_arrays("run", {"heat": np.ones(20), "air": np.ones(20)}, sample_time=1.0)
+    problem = make_problem(gt.DataSet([recording]), model, (recording,))
+    around = surroundings_along(model, problem, np.ones((problem.records.u.shape[1], 2)))
+    assert around[port].force_unit == unit
