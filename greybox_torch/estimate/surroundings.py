@@ -183,8 +183,8 @@ def _complete(port: Port, units: dict[str, str]) -> None:
 
 
 def _of_sums(model: GreyBoxModel, port: Port, x: Signals, u: Signals, p: Signals) -> dict[str, str]:
-    """Units of signals that are sums or differences with a state or an input, as a twist is of two angles, and the play of a nut a travel less
-    a lead times an angle.
+    """Units of signals that are sums or differences with a state or an input: a twist of two angles, the play of a nut (a travel less a
+    lead times an angle).
 
     Each state and input is moved by one at two samples: what moves the signal by one, up or down, has the signal's unit.
     """
