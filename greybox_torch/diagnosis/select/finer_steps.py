@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.whole_records import from_windows
 from greybox_torch.diagnosis.refit.refitted import fit
@@ -18,7 +20,7 @@ def in_finer_steps(study: Study, state: SearchState) -> SearchState:
     Steps that do for the model as it stands may be too coarse for what is found: the fit then ends where the next better value would be
     unstable, and what is left is error of the integration. Seen: a hydraulic slide whose dry friction changes its sign within 1 mm/s, told
     as 1.6 mm/s with 17 times the noise left; four steps instead of one left noise alone. Nothing is asked where hardly more than noise is
-    left, for every later pass takes as many times as long.
+    left, and they have to bring much, for every later pass takes as many times as long.
     """
     fitted, settings = state.current, study.settings
     if not state.effects or times_noise(study.problem, fitted, settings) <= settings.above_noise:
@@ -30,5 +32,5 @@ def in_finer_steps(study: Study, state: SearchState) -> SearchState:
     effects = state.with_law(newest, replace(newest, substeps=asked))
     study.working_on("simulating in finer steps")
     again = fit(study, effects, [fitted.values()], fitted.fits[0], limits=study.budget.window_iterations)
-    better = again is not None and again.score < fitted.score - settings.least_gain
+    better = again is not None and again.score < fitted.score + np.log(study.budget.left_in_finer_steps)
     return state.at(again) if better and again is not None else state

@@ -40,7 +40,7 @@ def test_the_width_that_one_step_a_sample_cannot_follow_is_found(stiff, left) ->
     (effect,) = finer.effects
     assert effect.substeps > 1 and replace(effect, substeps=1) == dry
     assert finer.current.simulator.substeps == effect.substeps
-    assert finer.current.score < state.current.score - study.settings.least_gain
+    assert finer.current.score < state.current.score + np.log(study.budget.left_in_finer_steps)
     assert finer.current.values()[f"{dry.prefix}.v_0"] == pytest.approx(WIDTH, rel=0.1)
     assert in_finer_steps(study, finer) is finer, "fine enough now"
 
@@ -50,7 +50,7 @@ def test_nothing_is_asked_near_the_noise_or_where_nothing_is_gained(stiff, left)
     left(1.0)
     assert in_finer_steps(study, state) is state
     left(5.0)
-    dear = replace(study, settings=replace(study.settings, least_gain=1.0))
+    dear = replace(study, budget=replace(study.budget, left_in_finer_steps=0.1))
     assert in_finer_steps(dear, state) is state
     plain = state.at(state.plain)
     assert in_finer_steps(study, plain) is plain
