@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
-from greybox_torch.diagnosis.confirm.within_tolerance import within_tolerance
+from greybox_torch.diagnosis.confirm.within_tolerance import is_timing, within_tolerance
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.size import size
@@ -64,7 +64,8 @@ def _completed(study: Study, state: SearchState, others: HeldOut | None) -> bool
 def refinements(
     study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], sizes: Mapping[str, float]
 ) -> set[str]:
-    """The effects that are too small to be findings, or that small and not confirmed by held-out experiments beyond chance.
+    """The effects that are too small to be findings, or that small and not confirmed by held-out experiments beyond chance, and shifts in
+    time by next to nothing of a sampling interval.
 
     Where the model leaves little more than noise: those that do not account for most of what is beyond it on the held-out experiments, and
     those that no model is exact to. No machine is exactly its model. A sensor's filter, a converter's steps and a wear of a few thousandths
@@ -82,6 +83,7 @@ def refinements(
     """
     told = others is not None and not all(g.unexercised(study.settings) for g in gains.values())
     small = _too_small(study, state, others, gains, sizes)
+    small |= {e.prefix for e in state.effects if is_timing(study, state, e)}
     parts = {p for p in state.prefixes if told and sizes[p] < study.settings.least_of_little}
     rest = [e for e in state.effects if e.prefix not in small | parts]
     little = parts | {e.prefix for e in rest if within_tolerance(study, state, e, sizes[e.prefix])}

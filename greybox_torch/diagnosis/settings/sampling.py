@@ -35,6 +35,12 @@ class SamplingSettings:
         unit="share of the squared error beyond the noise",
         chosen_by="a simulator of first order is late and damps a little otherwise; play of a nut is no shift at all (0.97 left)",
     )
+    no_shift: float = share(
+        0.1,
+        "Shift in time below which a lag or a delay is never a finding, however far above the noise: no drive is timed so well.",
+        unit="sampling intervals",
+        chosen_by="an axis whose torque rises over a tenth of an interval: 0.026; concealed lags and delays begin at 0.16",
+    )
     shortest_shift: float = share(
         0.25,
         "Shift in time from which a lag or a delay is a finding near the noise: a sensor's filter and an input's edge may be as late.",

@@ -10,7 +10,7 @@ import pytest
 
 from greybox_torch.diagnosis.confirm import within_tolerance as module
 from greybox_torch.diagnosis.confirm.standing import refinements
-from greybox_torch.diagnosis.confirm.within_tolerance import within_tolerance
+from greybox_torch.diagnosis.confirm.within_tolerance import is_timing, within_tolerance
 from greybox_torch.mechanisms.actuator import InputDelay, InputGain, InputLag
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias
@@ -83,3 +83,15 @@ def test_a_shift_within_a_sampling_interval_is_no_finding_near_the_noise(
         others = stub(times_noise=lambda hypothesis: np.array([1.0]))
         asked = replace(study, recorded=recorded)
         assert (not refinements(asked, state, others, {}, {effect.prefix: size})) is told
+
+
+@pytest.mark.parametrize(("samples", "timing"), [(0.026, True), (0.16, False)])
+def test_a_shift_by_next_to_nothing_of_a_sampling_interval_is_never_a_finding(
+    dead_zone_search, state, samples: float, timing: bool
+) -> None:
+    """Seen: an axis of a milling machine whose torque rises over a tenth of a millisecond, told with a lag beside the play of its nut."""
+    study = dead_zone_search.study
+    effect, interval = Attachment("actuator", InputLag()), float(np.median(study.problem.records.dt))
+    found = state(**{f"{effect.prefix}.T": samples * interval})
+    assert is_timing(study, found, effect) is timing
+    assert not is_timing(study, found, Attachment("rotor", ConstantBias())), "no shift in time"
