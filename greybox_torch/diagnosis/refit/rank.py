@@ -60,8 +60,8 @@ def rank(
         study.journal.begin(candidate.attachment.named)
         effects = joined(current.effects, candidate)
         starts = starts or candidate.first_starts(budget.trial_starts)
-        begun = candidate.begun or current.fits[0]
-        return refit(effects, starts, begun, at=[length], limits=budget.trial_iterations, simulator=simulator)
+        how = {"shorter": candidate.begun or current.fits[0], "limits": budget.trial_iterations}
+        return refit(effects, starts, at=[length], simulator=simulator, **how)
 
     def compared(trial: Hypothesis | None, length: int) -> list[Shown]:
         """How far a trial is from the hypothesis before it (negative: better), where it is not hopeless."""
@@ -93,7 +93,7 @@ def rank(
         fitted = refit(
             before.effects,
             [before.values()],
-            candidate.begun or current.fits[0],
+            shorter=candidate.begun or current.fits[0],
             early=[*candidate.first_starts(budget.trial_starts), *_elsewhere(study, candidate, before)],
             before=before,
             limits=budget.window_iterations,

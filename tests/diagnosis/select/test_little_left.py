@@ -47,7 +47,7 @@ def test_only_what_promises_half_of_it_is_refitted_there(dead_zone_search, monke
     monkeypatch.setattr(module, "_worth_a_refit", lambda *_: offered)
     monkeypatch.setattr(module, "with_found_before", lambda study, state, found, curves: [*found, known])
     for name in ("from_card", "from_motion"):
-        monkeypatch.setattr(module, name, lambda study, state: [])
+        monkeypatch.setattr(module, name, lambda study, state, **_: [])
     monkeypatch.setattr(module, "rank", lambda study, current, found: asked.extend(found) or [])
     assert not result_of(forward_step(study, state)).took_one
     assert [k.attachment for k in asked] == ([dry, bias] if little else [drag, dry, bias])
