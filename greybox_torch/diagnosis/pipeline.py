@@ -199,7 +199,9 @@ def _as_found(
         refinements=refinements,
         left=None
         if effects and judged.by_windows_alone
-        else what_is_left(judged, detected, bool(effects), found.by_parameters is None),
+        else what_is_left(
+            judged, detected, bool(effects), study.settings.above_noise, shown=found.by_parameters is None
+        ),
         unstable=unstable,
         settings=study.settings,
         budget=study.budget,

@@ -10,11 +10,17 @@ from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.describe.residual_tests import Detection
 from greybox_torch.diagnosis.verdict import Left
 
+AS_LITTLE_AS = "steps of a sensor, the timing of samples and start states leave as much"
+"""Where hardly more than noise is left, whatever its kind: else it reads as if something were missing after all."""
 
-def what_is_left(judged: Judgement, detected: Sequence[Detection], effects: bool, shown: bool = True) -> Left:
+
+def what_is_left(
+    judged: Judgement, detected: Sequence[Detection], effects: bool, noise: float, *, shown: bool = True
+) -> Left:
     """What remains on the validation experiments, and whether it is repeatable.
 
     Args:
+        noise: the error up to which it is noise, in units of that.
         shown: whether the recordings show the effects; where parameters made up for them, the re-estimated model leaves as much.
     """
     share, times, worst = judged.left(effects)
@@ -27,6 +33,8 @@ def what_is_left(judged: Judgement, detected: Sequence[Detection], effects: bool
         if coloured
         else "the error is white, as noise is"
     )
+    if times < noise and (beyond or coloured):
+        how = f"the error is not white: {AS_LITTLE_AS}"
     size = (
         f"in {worst} the error is {times:.2g} times the noise"
         if np.isfinite(times)

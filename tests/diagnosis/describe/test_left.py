@@ -20,7 +20,7 @@ def test_size_and_kind_of_error_are_each_told_of_their_experiments(stub, past, c
     """Seen: "its error is 105 times the noise, and it is white": the one on a validation experiment, the other on the estimation ones."""
     judged = stub(left=lambda effects: (0.634, 105.3, "Validation 1"))
     found = [stub(final=stub(past=stub(beyond=past), colour=stub(beyond=colour)))]
-    left = what_is_left(judged, found, True)
+    left = what_is_left(judged, found, True, 1.3)
     assert (left.share, left.times_noise) == (0.634, 105.3)
     assert left.sentence == (
         "63 % of the mismatch remains: in Validation 1 the error is 1.1e+02 times the noise. "
@@ -29,7 +29,22 @@ def test_size_and_kind_of_error_are_each_told_of_their_experiments(stub, past, c
 
 
 def test_where_noise_is_not_known(stub) -> None:
-    left = what_is_left(stub(left=lambda effects: (1.0, np.nan, "")), [], False)
+    left = what_is_left(stub(left=lambda effects: (1.0, np.nan, "")), [], False, 1.3)
     assert left.sentence.startswith(
         "The model as it stands is recommended: how much of its error is noise does not show."
     )
+
+
+@pytest.mark.parametrize(
+    ("times", "coloured", "words"),
+    [
+        (1.03, True, "not white: steps of a sensor, the timing of samples and start states leave as much."),
+        (1.03, False, "white, as noise is."),
+        (1.4, True, "correlated with past inputs, so that part of it is repeatable."),
+    ],
+)
+def test_hardly_more_than_noise_is_not_told_as_something_repeatable(stub, times: float, coloured: bool, words) -> None:
+    """Seen: "nothing is missing (0.95)", and "correlated with past inputs, so that part of it is repeatable" at 0.65 times the noise."""
+    kind = stub(final=stub(past=stub(beyond=coloured), colour=stub(beyond=coloured)))
+    left = what_is_left(stub(left=lambda effects: (1.0, times, "Validation 1")), [kind], False, 1.3)
+    assert left.sentence.endswith(f"the error is {words}")
