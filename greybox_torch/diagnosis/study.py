@@ -28,8 +28,9 @@ class Study:
 
     ``options`` are those of every simulation. ``surroundings`` and ``shifts`` are what mechanisms need to know of the ports: where signals
     moved, and which state carries the deflection of a coupling; both are known once the model as it stands is fitted. ``at_card``: windows
-    with the card's parameter values, where that fit is bent. ``motion``: what the outputs show of the states, or why they do not.
-    ``recorded``: all samples of the estimation experiments, where ``problem`` has some of them. ``places``: where positions begin that no
+    with the card's parameter values, where that fit is bent (``bent``: by a parameter far from the card's). ``motion``: what the outputs
+    show of the states, or why they do not. ``recorded``: all samples of the estimation experiments, where ``problem`` has some of them.
+    ``places``: where positions begin that no
     sensor shows, as a search with fewer experiments left them. ``beliefs``: what is known beforehand. ``more_is_missing``: whether free
     runs show that what is left matters, however little of the mismatch it is over windows.
     ``report`` is told what is being done, ``journal`` which candidates are tried.
@@ -41,6 +42,7 @@ class Study:
     shifts: Mapping[str, str] = field(default_factory=dict)
     motion: Motion | str | None = None
     at_card: tuple[WindowFit, ...] = ()
+    bent: bool = False
     recorded: Records | None = None
     places: Places = field(default_factory=dict)
     settings: DiagnosisSettings = field(default_factory=DiagnosisSettings)

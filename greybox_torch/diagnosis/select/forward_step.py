@@ -49,7 +49,8 @@ def forward_step(
     screened = screen_scores(study, state, curves=curves and not state.has_curve, fine=fine)
     found = _worth_a_refit(study, state, screened, fine)
     if not fine:
-        found = with_card(found, from_card(study, state, curves=curves))
+        at_card = from_card(study, state, curves=curves and study.bent)
+        found = with_card(found, at_card) if study.bent else with_motion(found, at_card)
         found = with_motion(found, from_motion(study, state))
         found = with_found_before(study, state, found, curves=curves)
     if little_is_left(study, state):

@@ -46,12 +46,13 @@ def fit_plain_model(study: Study) -> tuple[Study, SearchState]:
     around = surroundings_along(model, over.problem, states_along(over, plain.simulator))
     at_card, ranges = from_the_card(study, plain)
     narrower = around if ranges is None else narrowed(around, ranges, study.settings.bent_travel)
-    bent = narrower != around or moved_far(plain.problem, study.settings.bent_parameter)
+    bent = moved_far(plain.problem, study.settings.bent_parameter)
     study = replace(
         study,
         shifts=shifted_states(model, plain.problem),
         surroundings=narrower,
-        at_card=at_card if bent else (),
+        at_card=at_card if bent or narrower != around else (),
+        bent=bent,
     )
     return study, SearchState(plain, plain)
 
