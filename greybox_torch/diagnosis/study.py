@@ -30,9 +30,8 @@ class Study:
     moved, and which state carries the deflection of a coupling; both are known once the model as it stands is fitted. ``at_card``: windows
     with the card's parameter values, where that fit is bent (``bent``: by a parameter far from the card's). ``motion``: what the outputs
     show of the states, or why they do not. ``recorded``: all samples of the estimation experiments, where ``problem`` has some of them.
-    ``places``: where positions begin that no
-    sensor shows, as a search with fewer experiments left them. ``beliefs``: what is known beforehand. ``more_is_missing``: whether free
-    runs show that what is left matters, however little of the mismatch it is over windows.
+    ``places``: where positions begin that no sensor shows, as a search with fewer experiments left them. ``beliefs``: what is known
+    beforehand. ``more_is_missing``: whether free runs show that what is left matters, however little of the mismatch it is over windows.
     ``report`` is told what is being done, ``journal`` which candidates are tried.
     """
 

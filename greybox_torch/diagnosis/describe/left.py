@@ -10,9 +10,6 @@ from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.describe.residual_tests import Detection
 from greybox_torch.diagnosis.verdict import Left
 
-AS_LITTLE_AS = "steps of a sensor, the timing of samples and start states leave as much"
-"""Where hardly more than noise is left, whatever its kind: else it reads as if something were missing after all."""
-
 
 def what_is_left(
     judged: Judgement, detected: Sequence[Detection], effects: bool, noise: float, *, shown: bool = True
@@ -20,21 +17,21 @@ def what_is_left(
     """What remains on the validation experiments, and whether it is repeatable.
 
     Args:
-        noise: the error up to which it is noise, in units of that.
+        noise: the error, in units of the noise, up to which its kind is not told: it would read as if something were missing after all.
         shown: whether the recordings show the effects; where parameters made up for them, the re-estimated model leaves as much.
     """
     share, times, worst = judged.left(effects)
     beyond = any(d.final.past.beyond for d in detected)
     coloured = any(d.final.colour.beyond for d in detected)
     how = (
-        "the error is correlated with past inputs, so that part of it is repeatable"
+        "the error is not white: steps of a sensor, the timing of samples and start states leave as much"
+        if times < noise and (beyond or coloured)
+        else "the error is correlated with past inputs, so that part of it is repeatable"
         if beyond
         else "the error is not white, and no linear function of past inputs"
         if coloured
         else "the error is white, as noise is"
     )
-    if times < noise and (beyond or coloured):
-        how = f"the error is not white: {AS_LITTLE_AS}"
     size = (
         f"in {worst} the error is {times:.2g} times the noise"
         if np.isfinite(times)

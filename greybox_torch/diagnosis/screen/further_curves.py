@@ -162,10 +162,9 @@ def _lost(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
     inputs = sorted((one.name for one in model.inputs), key=lambda name: name not in idle_inputs(model))
 
     def to(port: Balance, name: str) -> Iterator[tuple[Port, Unknown]]:
-        apart = f"{ABOVE}{name}"
+        apart, alike = f"{ABOVE}{name}", inputs_alike(model, port)
         yield port, Unknown(apart, knots)
-        others = (one for one in inputs if one not in inputs_alike(model, port))
-        yield from ((port, Unknown(f"{INPUT}{one}", knots, apart)) for one in others)
+        yield from ((port, Unknown(f"{INPUT}{one}", knots, apart)) for one in inputs if one not in alike)
 
     balances = [q for q in model.ports if isinstance(q, Balance)]
     return _in_turn([to(q, name) for q in balances for name in inputs_alike(model, q)], MOST_LOST)

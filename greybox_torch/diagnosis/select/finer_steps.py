@@ -22,8 +22,8 @@ def in_finer_steps(study: Study, state: SearchState) -> SearchState:
     as 1.6 mm/s with 17 times the noise left; four steps instead of one left noise alone. Nothing is asked where hardly more than noise is
     left, and they have to bring much, for every later pass takes as many times as long.
     """
-    fitted, settings = state.current, study.settings
-    if not state.effects or times_noise(study.problem, fitted, settings) <= settings.above_noise:
+    fitted = state.current
+    if not state.effects or times_noise(study.problem, fitted, study.settings) <= study.settings.above_noise:
         return state
     asked = fine_enough(fitted.simulator, from_windows(fitted.fits[-1])).substeps
     if asked <= fitted.simulator.substeps:
@@ -32,5 +32,6 @@ def in_finer_steps(study: Study, state: SearchState) -> SearchState:
     effects = state.with_law(newest, replace(newest, substeps=asked))
     study.working_on("simulating in finer steps")
     again = fit(study, effects, [fitted.values()], fitted.fits[0], limits=study.budget.window_iterations)
-    better = again is not None and again.score < fitted.score + np.log(study.budget.left_in_finer_steps)
-    return state.at(again) if better and again is not None else state
+    if again is None or again.score >= fitted.score + np.log(study.budget.left_in_finer_steps):
+        return state
+    return state.at(again)
