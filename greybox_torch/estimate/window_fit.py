@@ -130,17 +130,16 @@ def _starts_of(shorter: WindowFit, problem: Problem, simulator: Simulator, windo
     States that it does not have and that are carried are brought along its windows: their trajectories stay near the measured one, so that
     a position does not drift.
     """
-    known = [s.name for s in shorter.problem.model.states]
-    between = rough_starts(problem, shorter.windows)
-    for i, state in enumerate(problem.model.states):
+    model, before, begin = problem.model, shorter.problem.model, shorter.windows.start
+    known, between = [s.name for s in before.states], rough_starts(problem, shorter.windows)
+    for i, state in enumerate(model.states):
         if state.name in known:
             between[:, i] = shorter.starts[:, known.index(state.name)]
+    between = model.taken_over(between, before, problem.driving_records, begin, problem.values)
     between = carried_starts(problem, simulator, shorter.windows, between)
     states = rough_starts(problem, windows)
-    index = np.minimum(np.searchsorted(shorter.windows.start, windows.start), len(shorter.windows.start) - 1)
-    same = shorter.windows.start[index] == windows.start
-    states[same] = between[index[same]]
-    return states
+    index = np.minimum(np.searchsorted(begin, windows.start), len(begin) - 1)
+    return np.where((begin[index] == windows.start)[:, None], between[index], states)
 
 
 def states_along(fit: WindowFit, simulator: Simulator) -> np.ndarray:

@@ -15,6 +15,7 @@ from greybox_torch.mechanisms.added_forces import AddedForces
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.delayed_input import after, delayed
 from greybox_torch.mechanisms.late_outputs import without_what_was_before
+from greybox_torch.mechanisms.loaded_starts import loaded_starts
 from greybox_torch.mechanisms.local_signals import LocalSignals
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
 from greybox_torch.mechanisms.memories_begun import memories_begun
@@ -152,6 +153,11 @@ class AugmentedModel(GreyBoxModel):
     def begun(self, states: np.ndarray, records: Any, samples: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Start states (W, n_x) with the memories that begin as their surroundings say."""
         return memories_begun(self, states, records, samples, values)
+
+    def taken_over(
+        self, states: np.ndarray, known: GreyBoxModel, records: Any, samples: np.ndarray, values: np.ndarray
+    ) -> np.ndarray:
+        return loaded_starts(self, states, known, records, samples, values)
 
     def _shown(self, seen: Signals, x: Signals, acting: Signals, p: Signals, forces: Any) -> dict[str, Any]:
         """What reaches every law at a sensor, by prefix; nothing where no law stands before another."""

@@ -29,6 +29,12 @@ rubber buffer's; of stops that were told where none is, 0.35."""
 MARGIN = 0.1
 """Share of the travel, as a model without a stop has it, by which the machine may have gone farther before it met one."""
 
+HIGHEST = 0.3
+"""Highest frequency of a mode in shares of the Nyquist frequency."""
+
+RIGID = 0.95
+"""Share of the highest frequency from which a mode is none: its mass moves with the body, as a gain of what drives it would say as well."""
+
 LIKE_WEIGHT = 0.02
 """By how much an order may differ from once per turn for a ripple to be no other law than weight: what a model lacks shifts it so far."""
 
@@ -190,7 +196,7 @@ class AdditionalMode(Mechanism):
         return [
             Parameter("mass", 0.0, unit, lower=0.0, description="mass or inertia"),
             Parameter(
-                "omega", 0.02 * nyquist, "rad/s", lower=2e-4 * nyquist, upper=0.3 * nyquist, description="frequency"
+                "omega", 0.02 * nyquist, "rad/s", lower=2e-4 * nyquist, upper=HIGHEST * nyquist, description="frequency"
             ),
             Parameter("zeta", 0.05, "", lower=1e-3, upper=2.0, description="damping ratio"),
         ]
@@ -219,9 +225,14 @@ class AdditionalMode(Mechanism):
         """Half a decade below and above: between a mass that moves along and a resonance the error has a valley of its own."""
         nyquist = torch.pi / around.sample_time
         there = (values["omega"] * factor for factor in (1 / 3, 3.0))
-        return [{"omega": w, "zeta": 0.05} for w in there if 2e-4 * nyquist < w < 0.3 * nyquist]
+        return [{"omega": w, "zeta": 0.05} for w in there if 2e-4 * nyquist < w < HIGHEST * nyquist]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         if values["zeta"] >= 1.0:
             return f"its damping ratio of {values['zeta']:.3g} lets nothing resonate"
+        highest = HIGHEST * np.pi / around.sample_time
+        if values["omega"] > RIGID * highest:
+            return (
+                f"omega = {values['omega']:.3g} rad/s is at its most, {highest:.3g} rad/s: its mass moves with the body"
+            )
         return not_a_frequency_of_the_record("omega", values["omega"], around)

@@ -121,6 +121,10 @@ class Mechanism:
         """For a kinematic law, the deflection that the spring sees."""
         raise NotImplementedError
 
+    def loaded(self, deflection: np.ndarray, p: Mapping[str, float]) -> np.ndarray:
+        """For a kinematic law, the deflections (W,) with which the spring sees ``deflection`` (W,), where that differs much."""
+        return deflection
+
     def reaction(self, s: Signals, p: Signals) -> Any | None:
         """For a kinematic law that follows a body's position, the force on that body, if there is one."""
         return None

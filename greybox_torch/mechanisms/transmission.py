@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import torch
 
 from greybox_torch.mechanisms.degenerate import longer_than_the_travel
@@ -53,8 +54,7 @@ class Backlash(Mechanism):
     def parameters(self, around: Surroundings) -> list[Parameter]:
         reach, unit = around.ranges["deflection"].reach, around.units.get("deflection", "")
         wide = 0.1 * reach if self.as_force else 0.0
-        most = HIDDEN_GAP * reach if "deflection" in around.unmeasured else reach
-        found = [Parameter("half_gap", wide, unit, lower=0.0, upper=most, description="half the gap")]
+        found = [Parameter("half_gap", wide, unit, lower=0.0, upper=self.widest(around), description="half the gap")]
         if self.as_force:
             stiffness = "stiffness of the coupling's spring"
             found.append(Parameter("stiffness", 0.0, around.per("deflection"), lower=0.0, description=stiffness))
@@ -65,6 +65,11 @@ class Backlash(Mechanism):
             found.append(Parameter("damping", 0.0, around.per("rate"), lower=0.0, description=lost))
         return found
 
+    def widest(self, around: Surroundings) -> float:
+        """The most that half the gap may be."""
+        reach = around.ranges["deflection"].reach
+        return HIDDEN_GAP * reach if "deflection" in around.unmeasured else reach
+
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         lost, damped = -p.stiffness * torch.clamp(s.deflection, *self.gap(p)), self.damped(s, p)
         return lost if damped is None else lost + damped
@@ -72,6 +77,15 @@ class Backlash(Mechanism):
     def deflection(self, s: Signals, p: Signals) -> Any:
         low, high = self.gap(p)
         return dead_zone(s.deflection, -low, high)
+
+    def loaded(self, deflection: np.ndarray, p: Mapping[str, float]) -> np.ndarray:
+        """Beyond the gap on the side of the load."""
+        return deflection + p["half_gap"] * np.sign(deflection) + p.get("centre", 0.0)
+
+    def begun_elsewhere(self, around: Surroundings, values: Mapping[str, float]) -> Sequence[Mapping[str, float]]:
+        """With a narrower and with a wider gap: windows that begin within it or beyond give the error a valley each."""
+        gaps = (0.8 * values["half_gap"], 1.25 * values["half_gap"])
+        return [{"half_gap": gap} for gap in gaps if 0.0 < gap < self.widest(around)]
 
     def gap(self, p: Signals) -> tuple[Any, Any]:
         """Where the gap begins and ends."""

@@ -98,6 +98,10 @@ class GreyBoxModel(torch.nn.Module):
         """Start states (W, n_x) at ``samples`` (W,) of records, with those that follow from the others filled in."""
         return states
 
+    def taken_over(self, states: Any, known: GreyBoxModel, records: Any, samples: Any, values: Any) -> Any:
+        """Start states (W, n_x) at ``samples`` (W,) of records, found with the model ``known``, as they are in this one."""
+        return states
+
     def carried_states(self) -> tuple[str, ...]:
         """States that a window of a record does not begin with freely but takes over from the window before: those that nothing shows."""
         return unseen_states(self)

@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.hypothesis.common_positions import with_common_posi
 from greybox_torch.diagnosis.hypothesis.continued import continued
 from greybox_torch.diagnosis.hypothesis.local_minima import no_worse_than_longer
 from greybox_torch.diagnosis.hypothesis.noise import at_floor, floor_known, reaches_noise
+from greybox_torch.diagnosis.hypothesis.states_first import states_first
 from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.levenberg_marquardt import Settings
@@ -128,10 +129,9 @@ def hypothesis(
         fit = _best_fit(trials, known, simulator, length, shorter, as_far, at_end, budget, also)
         if fit is None:
             return None
-        if fits and reaches_noise(base, fits[-1], settings) and not reaches_noise(base, fit, settings):
-            fit = _states_first(fit, fits, simulator, length, limits, budget)
-        fits.append(fit)
-        shorter = fit
+        lost = fits and reaches_noise(base, fits[-1], settings) and not reaches_noise(base, fit, settings)
+        fits.append(states_first(base, fit, fits, simulator, length, limits, settings, budget) if lost else fit)
+        shorter = fits[-1]
     fits = no_worse_than_longer(fits, at, simulator, limits)
     return Hypothesis(tuple(effects), model, simulator, tuple(fits), _floor(base, settings), frozen)
 
@@ -203,27 +203,6 @@ def _as_far_as_counts(
         return limits
     tolerance = budget.rough_mismatch_tolerance if rough else budget.mismatch_tolerance
     return replace(limits, tolerance=max(limits.tolerance, tolerance))
-
-
-def _states_first(
-    fit: WindowFit,
-    fits: Sequence[WindowFit],
-    simulator: Simulator,
-    length: int,
-    limits: Settings,
-    budget: SearchBudget,
-) -> WindowFit:
-    """``fit``, or a better one from the parameters that reached the noise on shorter windows, start states along those found first.
-
-    Where the motion is nearly chaotic, parameters and start states together lose over long windows what was found over shorter ones.
-    """
-    problem = fits[-1].problem
-    for shorter in fits:
-        begun = fit_windows(problem.fixed, simulator, length, shorter=shorter, settings=limits)
-        again = begun and fit_windows(problem, simulator, length, starts=begun.starts, settings=limits)
-        if again is not None:
-            fit = min(fit, continued(again, simulator, length, limits, budget), key=lambda f: f.mean_square)
-    return fit
 
 
 def _apart(found: Sequence[WindowFit], budget: SearchBudget) -> list[WindowFit]:

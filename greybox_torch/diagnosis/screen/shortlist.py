@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
+from greybox_torch.diagnosis.screen.first_few import first_few
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
-from greybox_torch.mechanisms.unknown import INPUT
-from greybox_torch.model.ports import Actuator, driving_body
-
-TINY = 1e-12
-"""Keeps a share of nothing finite in a quotient."""
 
 
 @dataclass(frozen=True)
@@ -61,13 +58,7 @@ def shortlist(study: Study, screened: Sequence[Sequence[ScreenScore]], fits: Seq
         screened: per window length, the scores of the screen.
         fits: per window length, the fit that was screened.
     """
-
-    def first_few(best: list[ScreenScore]) -> list[ScreenScore]:
-        named = _with_ties(study, [b for b in best if not b.attachment.mechanism.free])
-        curves = _plainest_first([b for b in best if b.attachment.mechanism.free], study.settings.curve_margin)
-        return named + _with_body(study, curves, study.budget.curves_per_length)
-
-    return _followed(study, screened, fits, first_few)
+    return _followed(study, screened, fits, partial(first_few, study))
 
 
 def at_other_ports(
@@ -125,50 +116,6 @@ def _followed(
             else:
                 found[identity] = replace(before, starts=(*before.starts, *starts))
     return sorted(found.values(), key=lambda candidate: -candidate.explained)
-
-
-def _plainest_first(curves: Sequence[ScreenScore], margin: float) -> list[ScreenScore]:
-    """Free curves, best first; before one that another input multiplies the same curve without, unless that leaves more by the margin.
-
-    An input that hardly changes on these experiments (the room's temperature) multiplies as well as a constant does, and not on others.
-    """
-    first = next(iter(curves), None)
-    if first is None or not _of(first)[-1].startswith(INPUT):
-        return list(curves)
-    alone = next((c for c in curves if _of(c) == (*_of(first)[:-1], "")), None)
-    if alone is None or np.log(max(1.0 - alone.explained, TINY) / max(1.0 - first.explained, TINY)) >= margin:
-        return list(curves)
-    return [alone, *(c for c in curves if c is not alone)]
-
-
-def _of(curve: ScreenScore) -> tuple[str, str, str, str]:
-    """The port of a free curve, its kind, the signal that it is drawn over, and what it is multiplied by ("" for nothing)."""
-    law = curve.attachment.mechanism
-    return curve.attachment.port, law.name, getattr(law, "signal", ""), getattr(law, "factor", "")
-
-
-def _with_body(study: Study, curves: Sequence[ScreenScore], count: int) -> list[ScreenScore]:
-    """The first few free curves; with that of a drive's gain over the speed of the body that it drives also that body's friction.
-
-    Both are forces on that body which change with its speed. Where the body's own curve explains about as much, refits have to decide.
-    """
-    first, driven = list(curves[:count]), driving_body(study.problem.model.all_ports)
-    drives = {p.name for p in study.problem.model.all_ports if isinstance(p, Actuator)}
-    gains = [c.explained for c in first if c.attachment.port in drives and _over_speed(c)]
-    if driven is None or not gains:
-        return first
-    own = (c for c in curves[count:] if c.attachment.port == driven.name and _over_speed(c))
-    return [*first, *(c for c in own if c.explained > study.settings.screen_tie * min(gains))]
-
-
-def _over_speed(score: ScreenScore) -> bool:
-    return getattr(score.attachment.mechanism, "signal", "") == "speed"
-
-
-def _with_ties(study: Study, ranked: Sequence[ScreenScore]) -> list[ScreenScore]:
-    """The first few, and what explains as much as the best: what the data cannot tell apart has to share the probability."""
-    tied = sum(score.explained > study.settings.screen_tie * ranked[0].explained for score in ranked)
-    return list(ranked[: min(max(study.budget.named_per_length, tied), study.budget.most_screen_ties)])
 
 
 def with_substeps(candidate: Candidate, count: int) -> Candidate:

@@ -141,6 +141,12 @@ class SearchBudget:
         "Residuals with memory that are screened with a curve in front, by window length: those that explain most without.",
         chosen_by=TIME,
     )
+    part_elsewhere: float = share(
+        0.5,
+        "Share of what the best named candidate explains from which the first at another kind of place is passed on beside those.",
+        unit="share of what the best explains",
+        chosen_by=TIME,
+    )
     most_screen_ties: int = count(8, "Named candidates that it passes on where they tie.", chosen_by=TIME)
     order_peaks: int = count(
         2, "Orders of a periodic effect that the scan follows, by window length and family.", chosen_by=TIME

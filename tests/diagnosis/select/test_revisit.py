@@ -11,8 +11,9 @@ from greybox_torch.diagnosis.hypothesis.fit import hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import white_samples
 from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.refit.refitted import polished
+from greybox_torch.diagnosis.screen.first_few import _with_ties
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
-from greybox_torch.diagnosis.screen.shortlist import Candidate, _with_ties, at_other_ports
+from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports
 from greybox_torch.diagnosis.select import choice
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.choice import alone_at_noise
