@@ -16,12 +16,13 @@ from greybox_torch.mechanisms.unknown import INPUT
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
 from greybox_torch.model.along_motion import ALONG, DIRECTION, direction, inputs_that_push
 from greybox_torch.model.joined_bodies import turns_with
-from greybox_torch.model.own_rate import RATE, adds_to_rate, balanced_state, unit_of_rate, without_laws
+from greybox_torch.model.own_rate import RATE, adds_to_rate, balanced_state, without_laws
 from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
 from greybox_torch.model.sensed_states import sensed_states
 from greybox_torch.model.signals_elsewhere import ABOVE, DIFFERENCE, positions_elsewhere, signals_elsewhere
 from greybox_torch.model.states_of import states_of
+from greybox_torch.model.unit_of_rate import unit_of_rate
 from greybox_torch.model.within_turn import TURN, WHOLE
 from greybox_torch.simulation.simulator import Simulator
 

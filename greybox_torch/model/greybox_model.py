@@ -12,6 +12,7 @@ from greybox_torch.model.constraints import parameter_scale, project
 from greybox_torch.model.declarations import Input, Output, Parameter, State
 from greybox_torch.model.force_outputs import output_asks_for_forces
 from greybox_torch.model.ports import Port, actuators, sensors
+from greybox_torch.model.shown_rates import shown_rates, with_shown_rates
 from greybox_torch.model.signals import Signals
 from greybox_torch.model.unseen_states import unseen_states
 
@@ -37,7 +38,7 @@ class GreyBoxModel(torch.nn.Module):
     name: ClassVar[str] = ""
     starts_free: bool = False
     """Whether every start state is estimated, also those that the states declare as fixed; a card that speaks of one still wins."""
-    shows_forces: ClassVar[bool] = False
+    asks_for_forces: ClassVar[bool] = False
     """Whether the outputs are handed the forces at the ports: defined as ``output(self, x, u, p, port)``."""
     least_substeps: int = 1
     """Runge-Kutta steps per sample that a simulation makes at the least."""
@@ -46,7 +47,7 @@ class GreyBoxModel(torch.nn.Module):
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        cls.shows_forces = output_asks_for_forces(cls)
+        cls.asks_for_forces = output_asks_for_forces(cls)
         declared = cls.__dict__.get("parameters")
         if isinstance(declared, list | tuple):
             cls.declared_parameters = tuple(declared)
@@ -75,8 +76,17 @@ class GreyBoxModel(torch.nn.Module):
         raise NotImplementedError(f"{type(self).__name__} does not define output(x, u, p)")
 
     def outputs_with(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
-        """Outputs by name, with forces at the ports where :meth:`output` asks for them."""
-        return self.output(x, u, p, port) if self.shows_forces else self.output(x, u, p)
+        """Outputs by name, with forces at the ports where :meth:`output` asks for them or shows accelerations."""
+        return (
+            self.output(x, u, p, port)
+            if self.asks_for_forces
+            else with_shown_rates(self, self.output(x, u, p), x, u, p, port)
+        )
+
+    @property
+    def shows_forces(self) -> bool:
+        """Whether forces at the ports reach an output with no state in between."""
+        return self.asks_for_forces or bool(shown_rates(self))
 
     def admissible(self, p: Any) -> dict[str, Any]:
         """Quantities that must stay positive, by a name for messages (for constraints that join several parameters)."""
@@ -180,7 +190,8 @@ class GreyBoxModel(torch.nn.Module):
     def measured(self, x: torch.Tensor, u: torch.Tensor, p: Any) -> torch.Tensor:
         """The outputs on stacked tensors: x (n_x, *batch), u (n_u, *batch) -> (n_y, *batch)."""
         xs, us = self.named_signals(x, u)
-        outputs = self.outputs_with(xs, us, _spread(p, x), self._no_forces(x))
+        values = _spread(p, x)
+        outputs = self.output(xs, us, values, *([self._no_forces(x)] if self.asks_for_forces else []))
         return _stacked(outputs, [o.name for o in self.outputs], x, f"{self.title}.output()")
 
     def _no_forces(self, x: torch.Tensor) -> Signals:

@@ -44,10 +44,3 @@ def adds_to_rate(model: GreyBoxModel, port: Port) -> bool:
     none = no_forces(model)
     without, there = (torch.as_tensor(own_rate(model, port, x, u, p, f)) for f in (none, with_one(none, port.name)))
     return bool(torch.allclose(there - without, torch.ones((), dtype=torch.float64), rtol=1e-9))
-
-
-def unit_of_rate(unit: str) -> str:
-    """The unit of the rate of a state of this unit; empty where that is not known."""
-    if not unit:
-        return ""
-    return f"{unit.removesuffix('/s')}/s^2" if unit.endswith("/s") else f"{unit}/s"

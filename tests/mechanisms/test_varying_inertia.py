@@ -19,7 +19,7 @@ from greybox_torch.mechanisms.friction import ViscousFriction
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Balance, Body, GreyBoxModel, Input, Output, Parameter, Signals, State
-from greybox_torch.model.own_rate import unit_of_rate
+from greybox_torch.model.unit_of_rate import unit_of_rate
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.native import NativeStepper
 from greybox_torch.simulation.passes import Pass

@@ -54,8 +54,8 @@ def measured(model: GreyBoxModel, speed: list[float]) -> np.ndarray:
 
 
 def test_which_models_ask_for_the_forces() -> None:
-    assert Turned.shows_forces
-    assert not Plain.shows_forces
+    assert Turned.asks_for_forces
+    assert not Plain.asks_for_forces
 
 
 def test_friction_shows_in_the_torque_at_once_with_the_sign_of_the_motion() -> None:
