@@ -31,7 +31,11 @@ class TwoMasses(GreyBoxModel):
         Output("v", "m/s"),
     ]
     parameters = [Parameter("m", 3.0, unit="kg"), Parameter("k", 50.0, unit="N/m"), Parameter("d", 0.4, unit="N s/m")]
-    ports = [Body("cart", speed="v"), Body("load", speed="w"), Coupling("spring", deflection="stretch", rate=lambda x, u, p: x.v - x.w)]
+    ports = [
+        Body("cart", speed="v"),
+        Body("load", speed="w"),
+        Coupling("spring", deflection="stretch", rate=lambda x, u, p: x.v - x.w),
+    ]
 
     def pull(self, x, p, port=0.0):
         return p.k * x.stretch + p.d * (x.v - x.w) + port

@@ -42,6 +42,12 @@ class ProbabilitySettings:
         unit="share of the plain model's mismatch",
         chosen_by="two thirds: what is named is then the smaller part",
     )
+    little_in_free_runs: float = share(
+        0.33,
+        "Share of it left in free runs of the validation experiments up to which windows alone do not say that most is left.",
+        unit="share of the plain model's mismatch",
+        chosen_by="a third; of seven names so far below it whose windows left two thirds, seven were right",
+    )
     most_of_measured: float = share(
         0.16,
         "Mean squared error of free validation runs from which they follow too little of what was measured for a sure finding.",
