@@ -96,3 +96,20 @@ def test_more_than_noise_has_to_be_a_shift_in_time(dead_zone_search, monkeypatch
     monkeypatch.setattr(module, "window_errors", left)
     monkeypatch.setattr(module, "_share_of_whole_records", lambda *given: 0.0)
     assert negligible(shifted, plain) == nothing
+
+
+@pytest.mark.parametrize(
+    ("times", "whole", "nothing"), [(1.0, 1e-2, True), (5.0, 1e-6, True), (5.0, 1e-2, False)], ids=str
+)
+def test_more_than_noise_is_looked_into_where_free_runs_drift_however_little_windows_show(
+    dead_zone_search, monkeypatch, times: float, whole: float, nothing: bool
+) -> None:
+    """Seen: a drive whose torque saturates now and then, told as complete (0.95) at 5 times the noise, 500 in free runs."""
+    found = dead_zone_search
+    settings = replace(found.study.settings, least_mismatch=0.5)
+    study = replace(found.study, settings=settings)
+    monkeypatch.setattr(module, "mismatch_share", lambda *given: 0.1)
+    monkeypatch.setattr(module, "least_mismatch", lambda study: 1e-3)
+    monkeypatch.setattr(module, "times_noise", lambda *given: times)
+    monkeypatch.setattr(module, "_share_of_whole_records", lambda *given: whole)
+    assert negligible(study, found.plain) == nothing
