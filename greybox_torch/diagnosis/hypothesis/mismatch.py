@@ -48,9 +48,9 @@ def least_mismatch(study: Study) -> float:
 def negligible(study: Study, fitted: Hypothesis) -> bool:
     """Whether a mismatch is below that: over windows and, as what drifts shows there alone, over whole records.
 
-    What is more than noise, and more than simulations differ by, has to be a shift in time. Less than that may be what a few windows show of
-    what drifts far. Seen: a drive whose torque saturates in two of sixteen windows, told as complete (0.95) with 5 times the noise left over
-    windows and 500 in free runs.
+    What is more than noise, and more than simulations differ by, has to be a shift in time. Less than that may be what a few windows show
+    of what drifts far. Seen: a drive whose torque saturates in two of sixteen windows, told as complete (0.95) with 5 times the noise left
+    over windows and 500 in free runs.
     """
     settings = study.settings
     share, least = mismatch_share(fitted, settings), least_mismatch(study)
