@@ -15,7 +15,7 @@ from greybox_torch.mechanisms.mechanism import Probe
 SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
 
 
-@pytest.mark.parametrize(("share", "passed_on"), [(0.8, True), (0.55, True), (0.45, False)])
+@pytest.mark.parametrize(("share", "passed_on"), [(0.9, True), (0.82, True), (0.78, False)])
 def test_the_first_law_at_another_kind_of_place_is_passed_on_where_it_explains_about_as_much(
     motor, stub, share, passed_on
 ) -> None:
