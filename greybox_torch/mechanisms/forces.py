@@ -230,9 +230,12 @@ class AdditionalMode(Mechanism):
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         if values["zeta"] >= 1.0:
             return f"its damping ratio of {values['zeta']:.3g} lets nothing resonate"
-        highest = HIGHEST * np.pi / around.sample_time
-        if values["omega"] > RIGID * highest:
-            return (
-                f"omega = {values['omega']:.3g} rad/s is at its most, {highest:.3g} rad/s: its mass moves with the body"
-            )
-        return not_a_frequency_of_the_record("omega", values["omega"], around)
+        return not_a_frequency_of_the_record("omega", values["omega"], around) or _rigid(values["omega"], around)
+
+
+def _rigid(omega: float, around: Surroundings) -> str | None:
+    """A mode has the highest frequency that it may have, in rad/s."""
+    highest = HIGHEST * np.pi / around.sample_time
+    if omega <= RIGID * highest:
+        return None
+    return f"omega = {omega:.3g} rad/s is at its most, {highest:.3g} rad/s: its mass moves with the body"

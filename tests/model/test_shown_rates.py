@@ -12,6 +12,10 @@ from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
 from greybox_torch.model.shown_rates import shown_rates
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
+from greybox_torch.simulation.windows import whole_records
 
 AROUND = {"cart": Surroundings({"speed": Range(-1.0, 1.0, 0.5)}, {"speed": "m/s"}, "N", 0.01)}
 
@@ -108,11 +112,6 @@ def test_a_missing_force_is_in_the_accelerations_and_nowhere_else(biased) -> Non
 
 def test_the_compiled_stepper_shows_it_too(biased) -> None:
     """Against the derivative of a simulated speed."""
-    from greybox_torch.simulation.passes import Pass
-    from greybox_torch.simulation.records import Records
-    from greybox_torch.simulation.simulator import SimulationOptions, Simulator
-    from greybox_torch.simulation.windows import whole_records
-
     count, step = 400, 1e-3
     u = np.stack([np.full(count, 2.0), np.zeros(count)])
     ends = np.array([0]), np.array([count - 1])
