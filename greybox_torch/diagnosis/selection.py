@@ -23,6 +23,7 @@ from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.schedule import Schedule
 from greybox_torch.diagnosis.select.backward import drop_superfluous
+from greybox_torch.diagnosis.select.other_values import other_values
 from greybox_torch.diagnosis.select.plain_model import fit_plain_model, squared_errors, weighted_by_noise
 from greybox_torch.diagnosis.select.search import search
 from greybox_torch.diagnosis.select.state import SearchState
@@ -101,6 +102,8 @@ def find(
     schedule = Schedule.within(end, free_runs.seconds, study.budget)
     state = replace(state, found_before=found_before)
     study, state, complete = _searched(study, state, before, schedule.searching)
+    if complete and (other := _from_other_values(study, state, schedule.searching)):
+        study, state, complete = _searched(*other, before, schedule.searching)
     clock.lap(SEARCH)
     searched = state.current
     others = HeldOut(some.dataset, study) if dataset.validation() else None
@@ -149,6 +152,13 @@ def _searched(
             best, complete = best_so_far(search(*begun, before), begun[1], told)
             return begun[0], best, complete
     return *begun, complete
+
+
+def _from_other_values(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState] | None:
+    """Where a search begins anew, as the model as it stands leaves less with other values than with what was found; None where not."""
+    with until(deadline):
+        found, _ = or_else(partial(other_values, study, state), lambda: None)
+    return None if found is None else (found[0], replace(found[1], found_before=state.found_before))
 
 
 def _weighted(study: Study, state: SearchState) -> tuple[Study, SearchState]:

@@ -62,18 +62,20 @@ def look_around(
     seed: int = 0,
     progress: Callable[[str, int, float], None] | None = None,
     to_beat: float = float("inf"),
+    turns: int = TURNS,
 ) -> Elsewhere | None:
     """The best of what ``starts`` descents from start values around those of ``problem`` found; None where none simulates.
 
     None as well where the best of a turn is clearly behind ``to_beat``, a mean squared error.
 
-    What does not matter at the best place found is then drawn anew, see :mod:`greybox_torch.estimate.plateau`, where that pays.
+    What does not matter at the best place found is then drawn anew, see :mod:`greybox_torch.estimate.plateau`, where that pays and there
+    is another of the ``turns``.
     Results are rough: they are where a local estimation should begin.
     """
     generator = np.random.default_rng(seed)
     population = _followed(problem, simulator, _drawn(problem, starts, SPREAD, generator))
     members = _whole(problem, simulator)
-    for turn in range(1, TURNS + 1):
+    for turn in range(1, turns + 1):
         if not len(population):
             return None
         reached = 2.0 * float(population.cost[0]) / members.problem.samples
@@ -81,7 +83,7 @@ def look_around(
             progress(f"search from {starts} starts", turn, reached)
         if reached > BEHIND * to_beat:
             return None
-        if turn == TURNS:
+        if turn == turns:
             break
         draw = partial(_drawn, problem, spread=WIDE_SPREAD, generator=generator)
         found = off_the_plateau(members, population.selected(slice(1)), draw, starts, generator)

@@ -20,11 +20,14 @@ from greybox_torch.estimate.reconstruction import Motion, reconstructed
 from greybox_torch.estimate.shifted_states import shifted_states
 from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.estimate.surroundings import surroundings_along
-from greybox_torch.estimate.window_fit import states_along
+from greybox_torch.estimate.window_fit import WindowFit, states_along
 
 
-def fit_plain_model(study: Study) -> tuple[Study, SearchState]:
+def fit_plain_model(study: Study, begun: WindowFit | None = None) -> tuple[Study, SearchState]:
     """The study with what the fit of the model as it stands shows of its ports, and the state that a search begins from.
+
+    Args:
+        begun: the values and start states that it begins from; by default the card's, and what the outputs show.
 
     Raises:
         NumericalError: it overflows even over short windows, and with any one parameter halved or doubled too.
@@ -33,7 +36,8 @@ def fit_plain_model(study: Study) -> tuple[Study, SearchState]:
     model = study.problem.model
     study = replace(study, motion=_motion(study) if study.motion is None else study.motion)
     views = views_of(study.problem, study.motion)
-    plain = fit(study, (), [study.card, *([] if isinstance(views, str) else views.starts())], None)
+    starts = [study.card, *([] if isinstance(views, str) else views.starts())]
+    plain = fit(study, (), starts if begun is None else [begun.problem.values_by_name], begun)
     if plain is None and (others := _around(study)):
         plain = fit(study, (), others, None)
     if plain is None:

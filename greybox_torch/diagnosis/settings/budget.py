@@ -132,6 +132,12 @@ class SearchBudget:
         chosen_by=TIME,
     )
 
+    other_values: int = count(
+        64,
+        "Start values of the model as it stands that are followed where what was found leaves more than noise.",
+        chosen_by="a wrist and a rail switch that lack nothing: with 32 one of them was not found",
+    )
+
     named_per_length: int = count(4, "Named candidates that the screen passes on, by window length.", chosen_by=TIME)
     curves_per_length: int = count(
         1, "Free curves that the screen passes on, by window length.", chosen_by=TIME, least=0

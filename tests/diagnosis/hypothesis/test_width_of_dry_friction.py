@@ -23,7 +23,8 @@ FRICTION = Attachment("roller", CoulombFriction())
 def fitted(stub, monkeypatch) -> Any:
     """A hypothesis whose width is known with a deviation; the level trades with it a little."""
 
-    def make(width: float, deviation: float | None, effect: Attachment = FRICTION, times: float = 3.0) -> Any:
+    def make(width: float, deviation: float | None, effect: Attachment = FRICTION, times: float = 3.0, known: bool = True) -> Any:
+        monkeypatch.setattr(degenerate, "floor_known", lambda problem, settings: known)
         monkeypatch.setattr(degenerate, "times_noise", lambda problem, fitted, settings: times)
         information = np.linalg.inv(np.array([[1.0, 0.1], [0.1, 1.0]]) * ((deviation or 1.0) / 0.2) ** 2)
         monkeypatch.setattr(
@@ -47,6 +48,11 @@ def test_a_width_beyond_that_of_dry_friction_counts_where_it_is_determined(fitte
 
 def test_nor_does_a_width_with_which_noise_alone_is_left(fitted) -> None:
     assert not grows_with_speed(fitted(4.6, 0.3, times=1.02), FRICTION, AROUND, DiagnosisSettings())
+
+
+def test_where_the_noise_is_only_bounded_it_may_not_be_alone(fitted) -> None:
+    """Seen: a flywheel's brake, told as dry friction (0.97) at 0.9 times a bound of the noise; a curve left half of that."""
+    assert grows_with_speed(fitted(4.6, 0.3, times=0.9, known=False), FRICTION, AROUND, DiagnosisSettings())
 
 
 def test_what_does_not_rub_has_no_width(fitted) -> None:
