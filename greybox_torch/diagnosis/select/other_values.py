@@ -1,4 +1,4 @@
-"""Other parameter values of the model as it stands, looked for where what was found leaves more than noise: they may be all that is wrong."""
+"""Other values of the model as it stands, where what was found leaves more than noise: they may be all that is wrong."""
 
 from __future__ import annotations
 
