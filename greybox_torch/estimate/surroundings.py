@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import torch
 
+from greybox_torch.estimate.excitation import excited_up_to
 from greybox_torch.estimate.free_run import visited_states
 from greybox_torch.estimate.measured_range import as_measured, farther, no_farther
 from greybox_torch.estimate.problem import Problem
@@ -86,7 +87,8 @@ def _around(
         ranges["position"] = no_farther(ranges["position"], as_measured(model, port.position, x, u, problem))
     if isinstance(port, Body) and _repeats(port, ranges["position"], units["position"]):
         ranges[TURN], units[TURN] = Range(0.0, WHOLE, WHOLE / 3**0.5), "rad"
-    return Surroundings(ranges, units, _force_unit(model, port, units), float(np.median(problem.records.dt)), hidden)
+    step, force = float(np.median(problem.records.dt)), _force_unit(model, port, units)
+    return Surroundings(ranges, units, force, step, hidden, excited_up_to(problem.records))
 
 
 def _load(

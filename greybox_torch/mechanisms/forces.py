@@ -35,6 +35,9 @@ HIGHEST = 0.3
 RIGID = 0.95
 """Share of the highest frequency from which a mode is none: its mass moves with the body, as a gain of what drives it would say as well."""
 
+FAR_ABOVE = 2.0
+"""Times the highest frequency of the inputs, where nothing rings: modes were told at 3 and more for gains, real ones are below 0.8."""
+
 LIKE_WEIGHT = 0.02
 """By how much an order may differ from once per turn for a ripple to be no other law than weight: what a model lacks shifts it so far."""
 
@@ -234,8 +237,10 @@ class AdditionalMode(Mechanism):
 
 
 def _rigid(omega: float, around: Surroundings) -> str | None:
-    """A mode has the highest frequency that it may have, in rad/s."""
-    highest = HIGHEST * np.pi / around.sample_time
-    if omega <= RIGID * highest:
-        return None
-    return f"omega = {omega:.3g} rad/s is at its most, {highest:.3g} rad/s: its mass moves with the body"
+    """A mode has the highest frequency that it may have, in rad/s, or one far above what the inputs excite: nothing makes it ring."""
+    highest, with_body = HIGHEST * np.pi / around.sample_time, "its mass moves with the body"
+    if omega > RIGID * highest:
+        return f"omega = {omega:.3g} rad/s is at its most, {highest:.3g} rad/s: {with_body}"
+    if omega > FAR_ABOVE * around.excited:
+        return f"omega = {omega:.3g} rad/s is far above what the inputs excite, up to {around.excited:.3g} rad/s: {with_body}"
+    return None

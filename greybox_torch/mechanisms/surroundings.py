@@ -31,7 +31,7 @@ class Surroundings:
 
     ``ranges`` and ``units`` by signal name (``speed``, ``position``, ``load``, ``time``, ``deflection``, ``rate``, ``level``, ``input``,
     ``output``); ``force_unit`` of the port; ``sample_time`` in s. ``unmeasured``: signals whose range is that of a model which lacks what
-    is looked for, as no sensor shows them.
+    is looked for, as no sensor shows them. ``excited``: the angular frequency in rad/s up to which the inputs have most of their power.
     """
 
     ranges: Mapping[str, Range]
@@ -39,6 +39,7 @@ class Surroundings:
     force_unit: str
     sample_time: float
     unmeasured: frozenset[str] = frozenset()
+    excited: float = float("inf")
 
     def per(self, signal: str, power: int = 1) -> str:
         """The unit of force per signal to a power."""

@@ -18,6 +18,7 @@ from scipy.special import ndtri
 
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.verdict import Trace
+from greybox_torch.estimate.excitation import excited_band
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.residuals import NORMAL_99, Correlation, feedback_correlation, input_correlation, whiteness
 
@@ -86,13 +87,6 @@ def input_answers(errors: np.ndarray, signal: np.ndarray, chance: float) -> bool
     """Whether an input (N,) answers to errors (N,) before it, as one under feedback does, with so much ``chance`` of a false alarm."""
     found = feedback_correlation(errors, signal)
     return _largest(found, found.lags > 0, 1, chance).beyond
-
-
-def excited_band(signal: np.ndarray, sample_time: float, share: float) -> float:
-    """The frequency (Hz) below which an input (N,) has a ``share`` of its power, its mean left out."""
-    power = np.cumsum(np.abs(np.fft.rfft(signal - signal.mean())) ** 2)
-    index = int(np.searchsorted(power, share * power[-1]))
-    return float(np.fft.rfftfreq(len(signal), sample_time)[index])
 
 
 def _acts_at_once(problem: Problem) -> bool:

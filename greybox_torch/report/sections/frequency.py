@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from greybox_torch.diagnosis.describe.residual_tests import excited_band, input_answers
+from greybox_torch.diagnosis.describe.residual_tests import input_answers
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.verdict import InputTrace, Trace, Verdict
+from greybox_torch.estimate.excitation import excited_band
 from greybox_torch.estimate.frequency_response import Response, frequency_response
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.report.chart.panel import Chart

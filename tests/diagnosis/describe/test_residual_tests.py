@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from greybox_torch.diagnosis.describe.residual_tests import Detection, detect, excited_band
+from greybox_torch.diagnosis.describe.residual_tests import Detection, detect
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.verdict import Trace
 from greybox_torch.estimate.problem import make_problem
@@ -144,11 +144,3 @@ def test_validation_and_runs_that_went_astray_are_left_out(detected, rng) -> Non
     assert detected((voltage, noise, noise), role="validation") == ()
     assert detected((voltage, noise, 1e9 * noise)) == ()
     assert detected((voltage, np.where(noise > 0, -np.inf, noise), noise)) == ()
-
-
-def test_excited_band_of_a_sum_of_sines() -> None:
-    time = STEP * np.arange(SAMPLES)
-    both = 5.0 + np.sin(2 * np.pi * 2.0 * time)
-    assert excited_band(both + 0.05 * np.sin(2 * np.pi * 30.0 * time), STEP, 0.99) == pytest.approx(2.0)
-    assert excited_band(both + 0.2 * np.sin(2 * np.pi * 30.0 * time), STEP, 0.99) == pytest.approx(30.0)
-    assert excited_band(np.full(100, 3.0), STEP, 0.99) == 0.0

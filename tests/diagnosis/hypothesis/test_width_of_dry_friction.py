@@ -23,7 +23,9 @@ FRICTION = Attachment("roller", CoulombFriction())
 def fitted(stub, monkeypatch) -> Any:
     """A hypothesis whose width is known with a deviation; the level trades with it a little."""
 
-    def make(width: float, deviation: float | None, effect: Attachment = FRICTION, times: float = 3.0, known: bool = True) -> Any:
+    def make(
+        width: float, deviation: float | None, effect: Attachment = FRICTION, times: float = 3.0, known: bool = True
+    ) -> Any:
         monkeypatch.setattr(degenerate, "floor_known", lambda problem, settings: known)
         monkeypatch.setattr(degenerate, "times_noise", lambda problem, fitted, settings: times)
         information = np.linalg.inv(np.array([[1.0, 0.1], [0.1, 1.0]]) * ((deviation or 1.0) / 0.2) ** 2)

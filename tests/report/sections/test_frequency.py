@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from greybox_torch.diagnosis.describe.residual_tests import excited_band
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.verdict import InputTrace, Trace, Verdict
+from greybox_torch.estimate.excitation import excited_band
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.report.about import About
 from greybox_torch.report.page import render_page
