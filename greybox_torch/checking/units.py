@@ -12,6 +12,8 @@ from greybox_torch.checking.tracing import Traced
 from greybox_torch.checking.unit_walk import dimensions
 from greybox_torch.model import Body, Coupling, GreyBoxModel
 
+REMEDY = "what makes units fit: a number in the equation that has a unit is a parameter with that unit and fixed=True"
+
 
 def unreadable_units(model: GreyBoxModel, source: Source) -> Iterator[Finding]:
     """Findings for declared units that are none."""
@@ -46,7 +48,7 @@ def misfits(model: GreyBoxModel, traced: Traced, source: Source) -> Iterator[Fin
     roots = [*traced.rates.values(), *traced.outputs.values()]
     known = dimensions(graph, roots, leaves, text, found.setdefault)
     for node, what in found.items():
-        write = f"what makes units fit; they are {_used(traced, node, names, units)}"
+        write = f"{REMEDY}; the units are {_used(traced, node, names, units)}"
         yield Finding("warning", "units", what, write, source.file, graph.lines.get(node))
     for name, node in traced.rates.items():
         unit = next(s.unit for s in model.states if s.name == name)
