@@ -10,7 +10,8 @@ import torch
 
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.model import GreyBoxModel, Signals
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.signals import parameter_signals
 from greybox_torch.simulation.records import Records
 
 
@@ -45,7 +46,7 @@ def rates_at(
     numbers = np.array([values[p.name] for p in model.declared_parameters])
     records = model.prepared(_records(rows[len(names) :], len(model.outputs)), numbers)
     begun = model.begun(rows[: len(names)].T.copy(), records, records.first, numbers)
-    p = Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in values.items()})
+    p = parameter_signals(values)
     with torch.no_grad():
         found = model.rates(torch.as_tensor(begun.T.copy()), torch.as_tensor(np.array(records.u)), p)
     return dict(zip(names, found.numpy(), strict=True))

@@ -15,9 +15,10 @@ import numpy as np
 import torch
 
 from greybox_torch.linear_algebra import least_squares, pseudo_inverse, solve
-from greybox_torch.model import GreyBoxModel, Signals
+from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.once_per_model import once_per_model
 from greybox_torch.model.sensed_states import sensed_states
+from greybox_torch.model.signals import parameter_signals
 from greybox_torch.simulation.records import Records
 
 TRIALS = 6
@@ -123,7 +124,7 @@ def _at_random(model: GreyBoxModel) -> tuple[np.ndarray, np.ndarray | None]:
     count = TRIALS * (n_x + n_u + 1)
     drawn = rng.standard_normal((n_x + n_u, count))
     values = {q.name: q.value * (1 + 0.1 * rng.uniform(-1, 1, count)) for q in model.declared_parameters}
-    p = Signals("parameter", {n: torch.as_tensor(v, dtype=torch.float64) for n, v in values.items()})
+    p = parameter_signals(values)
     with torch.no_grad():
         rates = model.rates(torch.as_tensor(drawn[:n_x]), torch.as_tensor(drawn[n_x:]), p).numpy()
     finite = np.isfinite(rates).all(axis=0)

@@ -16,6 +16,7 @@ from greybox_torch.estimate.reconstruction import Motion
 from greybox_torch.linear_algebra import solve
 from greybox_torch.model import Body, Port, Signals
 from greybox_torch.model.ports import value_of
+from greybox_torch.model.signals import parameter_signals
 
 STEP = 1e-6
 """Relative step of differences."""
@@ -186,7 +187,7 @@ class MotionEquations:
     def _with(self, free: np.ndarray) -> Signals:
         numbers = self.problem.values_by_name
         numbers |= dict(zip(self.problem.free_names, free, strict=True))
-        return Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in numbers.items()})
+        return parameter_signals(numbers)
 
 
 def _evaluated(problem: Problem, x: torch.Tensor, u: torch.Tensor, p: Signals) -> np.ndarray:

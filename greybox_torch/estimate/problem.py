@@ -13,6 +13,7 @@ from greybox_torch.data import DataSet, Recording
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.measured_states import measured_at
 from greybox_torch.model import GreyBoxModel, Parameter, Signals, State
+from greybox_torch.model.signals import parameter_signals
 from greybox_torch.simulation.records import Records, make_records
 
 
@@ -54,7 +55,7 @@ class Problem:
     @property
     def parameter_tensors(self) -> Signals:
         """The parameter values as tensors of no dimension, by name."""
-        return Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in self.values_by_name.items()})
+        return parameter_signals(self.values_by_name)
 
     @property
     def samples(self) -> int:

@@ -10,6 +10,7 @@ import torch
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Range, Surroundings
 from greybox_torch.model import Parameter, Signals
+from greybox_torch.model.signals import parameter_signals
 
 SIGNALS: dict[str, tuple[str, ...]] = {
     "body": ("speed", "position", "load", "time", "sample_time"),
@@ -126,7 +127,7 @@ def _change(
         (len(SIGNALS[law.kinds[0]]), _POINTS), generator=torch.Generator().manual_seed(0), dtype=torch.float64
     )
     s = Signals("signal", {n: row[:points] + 0.1 for n, row in zip(SIGNALS[law.kinds[0]], drawn, strict=True)})
-    p = Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in values.items()})
+    p = parameter_signals(values)
     z = Signals("memory", {m.name: torch.zeros(points, dtype=torch.float64) for m in mechanism.states(around)})
     rates = _tried(law, "rates(s, p, z)", lambda: mechanism.rates(s, p, z))
     if set(rates) != set(z):

@@ -12,6 +12,7 @@ from greybox_torch.linear_algebra import least_squares as linear_least_squares
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 from greybox_torch.model import Signals
+from greybox_torch.model.signals import parameter_signals
 
 LEAST_MATCH = 0.5
 """Share of the curve's mean square that a law must match to be worth a refit."""
@@ -178,7 +179,7 @@ def law_force(
     Parameters that ``values`` do not mention are as declared.
     """
     complete = {p.name: p.value for p in law.parameters(around)} | dict(values)
-    p = Signals("parameter", {n: torch.tensor(float(v), dtype=torch.float64) for n, v in complete.items()})
+    p = parameter_signals(complete)
     still = dict.fromkeys(law.at_rest, torch.zeros_like(next(iter(signals.values()))))
     force = law.force(Signals("signal", {**still, **signals}), p, Signals("memory", {}))
     return np.broadcast_to(np.asarray(force), next(iter(signals.values())).shape).astype(float)

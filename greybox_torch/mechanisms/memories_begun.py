@@ -9,6 +9,7 @@ import numpy as np
 import torch
 
 from greybox_torch.model import Signals
+from greybox_torch.model.signals import parameter_signals
 
 if TYPE_CHECKING:
     from greybox_torch.mechanisms.augmented_model import AugmentedModel
@@ -29,7 +30,7 @@ def memories_begun(
     """
     base, result = model.base, states.copy()
     pairs = zip(model.declared_parameters, values, strict=True)
-    p = Signals("parameter", {q.name: torch.tensor(float(v), dtype=torch.float64) for q, v in pairs})
+    p = parameter_signals({q.name: v for q, v in pairs})
     own, inner = len(base.states), records
     if isinstance(base, type(model)):
         x, u = _begin(model, result, records, samples, p)

@@ -12,7 +12,7 @@ import torch
 
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.ports import Body, Coupling
-from greybox_torch.model.signals import Signals
+from greybox_torch.model.signals import Signals, parameter_signals
 
 EXACT = 1e-9
 """Share of a column that may be left where two columns are taken to be in proportion: what rounding leaves."""
@@ -50,7 +50,7 @@ def _columns(model: GreyBoxModel, by: str) -> Column:
         "input": [i.name for i in model.inputs],
         "port": [port.name for port in model.all_ports],
     }
-    p = Signals("parameter", {name: torch.tensor(v, dtype=torch.float64) for name, v in model.values().items()})
+    p = parameter_signals(model.values())
 
     def signals(kind: str, values: torch.Tensor | None) -> Signals:
         given = torch.zeros(len(names[kind]), dtype=torch.float64) if values is None else values

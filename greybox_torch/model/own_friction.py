@@ -9,7 +9,7 @@ import torch
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.port_forces import no_forces, with_one
 from greybox_torch.model.ports import Body
-from greybox_torch.model.signals import Signals
+from greybox_torch.model.signals import parameter_signals
 
 NEAR_REST = 0.1
 """Share of the fastest speed by which rounded dry friction has come to its level."""
@@ -32,7 +32,7 @@ def dry_friction(model: GreyBoxModel, body: Body, fastest: float, values: Mappin
     x = torch.zeros(len(names), len(parts), dtype=torch.float64)
     x[at] = fastest * torch.tensor(parts, dtype=torch.float64)
     u = torch.zeros(len(model.inputs), len(parts), dtype=torch.float64)
-    p = Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in values.items()})
+    p = parameter_signals(values)
     none = no_forces(model)
     here, there = (
         torch.as_tensor(model.derivative(*model.named_signals(x, u), p, forces)[speed]).expand(len(parts))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import torch
 
-from greybox_torch.model.signals import Signals
+from greybox_torch.model.signals import Signals, parameter_signals
 
 if TYPE_CHECKING:
     from greybox_torch.model.greybox_model import GreyBoxModel
@@ -19,5 +19,5 @@ def random_points(model: GreyBoxModel) -> tuple[torch.Tensor, torch.Tensor, Sign
     draw = torch.Generator().manual_seed(0)
     x = torch.randn(len(model.states), POINTS, generator=draw, dtype=torch.float64)
     u = torch.randn(len(model.inputs), POINTS, generator=draw, dtype=torch.float64)
-    p = Signals("parameter", {q.name: torch.tensor(q.value, dtype=torch.float64) for q in model.declared_parameters})
+    p = parameter_signals({q.name: q.value for q in model.declared_parameters})
     return x, u, p

@@ -6,6 +6,8 @@ import difflib
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import torch
+
 from greybox_torch.errors import UserError
 
 
@@ -49,3 +51,8 @@ class Signals(Mapping[str, Any]):
         return UserError(
             f"the model asks for the {self._kind} '{name}', which it does not declare (declared: {known}){hint}"
         )
+
+
+def parameter_signals(values: Mapping[str, Any]) -> Signals:
+    """Parameter values by name, as a model's equations read them: tensors in double precision."""
+    return Signals("parameter", {name: torch.as_tensor(value, dtype=torch.float64) for name, value in values.items()})

@@ -17,7 +17,8 @@ from greybox_torch.mechanisms.matching import MOST_LAWS, force_columns, kinemati
 from greybox_torch.mechanisms.matching_pairs import matching_pair
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
-from greybox_torch.model import GreyBoxModel, Signals
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.signals import parameter_signals
 
 POINTS = 400
 
@@ -150,7 +151,7 @@ def _drawn(fitted: Hypothesis, curve: Attachment, around: Surroundings) -> tuple
 def _force(fitted: Hypothesis, effect: Attachment, signals: Mapping[str, torch.Tensor]) -> np.ndarray:
     """The force of an effect without memory at signals (N,); a single number where it depends on none."""
     assert isinstance(fitted.model, AugmentedModel)
-    p = Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in fitted.values().items()})
+    p = parameter_signals(fitted.values())
     return fitted.model.curve(effect, signals, p).detach().numpy()
 
 
