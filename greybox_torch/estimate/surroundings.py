@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import torch
 
@@ -41,7 +43,9 @@ def surroundings_along(model: GreyBoxModel, problem: Problem, states: np.ndarray
     x, u = model.named_signals(torch.as_tensor(states.T), torch.as_tensor(problem.records.u))
     p = problem.parameter_tensors
     times = np.concatenate([problem.records.time(e) for e in range(len(problem.records.first))])
-    return {port.name: _around(model, port, x, u, p, times, problem) for port in model.all_ports}
+    excited = excited_up_to(problem.records)
+    around = {port.name: _around(model, port, x, u, p, times, problem) for port in model.all_ports}
+    return {name: replace(one, excited=excited) for name, one in around.items()}
 
 
 def _around(
@@ -87,8 +91,7 @@ def _around(
         ranges["position"] = no_farther(ranges["position"], as_measured(model, port.position, x, u, problem))
     if isinstance(port, Body) and _repeats(port, ranges["position"], units["position"]):
         ranges[TURN], units[TURN] = Range(0.0, WHOLE, WHOLE / 3**0.5), "rad"
-    step, force = float(np.median(problem.records.dt)), _force_unit(model, port, units)
-    return Surroundings(ranges, units, force, step, hidden, excited_up_to(problem.records))
+    return Surroundings(ranges, units, _force_unit(model, port, units), float(np.median(problem.records.dt)), hidden)
 
 
 def _load(

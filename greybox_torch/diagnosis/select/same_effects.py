@@ -54,7 +54,10 @@ def _chosen_once_more(study: Study, state: SearchState, effect: Attachment) -> S
 
 
 def _from_where_it_was(state: SearchState, rival: RankedCandidate) -> Candidate:
-    """A candidate of an earlier step with the values that its law had there, and those of ``state`` for all others, before its own."""
+    """A candidate of an earlier step with the values that its law had there, and those of ``state`` for all others, before its own.
+
+    Without the windows at the card's values that it may have begun in: they are those of fewer experiments.
+    """
     law = f"{rival.candidate.attachment.prefix}."
     own = {n: v for n, v in rival.fitted.values().items() if n.startswith(law)}
-    return replace(rival.candidate, found_before=({**state.current.values(), **own},))
+    return replace(rival.candidate, found_before=({**state.current.values(), **own},), at_card=(), begun=None)

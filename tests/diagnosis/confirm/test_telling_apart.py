@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -73,6 +75,25 @@ def test_what_was_undecided_is_chosen_once_more_and_nothing_else(rubbing, motor,
     (effect,) = after.effects
     assert not undecided(both.study, after, effect)
     assert after.current.values()["rotor.coulomb_friction.F_c"] == pytest.approx(0.03, rel=0.03)
+
+
+def test_nothing_is_begun_in_windows_of_fewer_experiments(rubbing, motor, begun) -> None:
+    """Seen: an arm's mode, tried at the card's values first, of which no verdict came: windows of fewer records."""
+    data = rubbing(ONE_WAY, ONE_WAY, BOTH_WAYS, ONE_WAY)
+    search = begun(data, motor)
+    before = stepped(search)
+    *earlier, done = before.steps
+    ranked = tuple(_at_card(r, search.plain.fits[0]) for r in done.ranked)
+    before = replace(
+        before, steps=(*earlier, replace(done, ranked=ranked, taken=_at_card(done.taken, search.plain.fits[0])))
+    )
+    more = promote_to_tell_apart(search.study, data, before, HeldOut(data, search.study), {})
+    both = begun(more.dataset, motor)
+    assert with_same_effects(both.study, both.state, before).prefixes == {"rotor.coulomb_friction"}
+
+
+def _at_card(ranked, windows):
+    return replace(ranked, candidate=replace(ranked.candidate, at_card=({},), begun=windows))
 
 
 def test_what_one_way_motion_leaves_undecided_is_told_by_its_name(rubbing, motor) -> None:
