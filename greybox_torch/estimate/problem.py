@@ -23,9 +23,9 @@ class Problem:
 
     ``values`` (n_p,) and ``lower``, ``upper`` in physical units, in the order of the model's parameters; ``free`` (n_p,) says which are
     estimated. ``initial`` (E, n_x) start states per experiment, ``initial_free`` (n_x,) which are estimated. ``weights`` (n_y,) multiply
-    the errors of the outputs. ``expected`` (n_p,) are the values that parameters are weakly held at where data say nothing: those that the
-    user began with. ``carried`` (n_x,) marks states (integrated positions, time, memories) that are never free in a window but carried
-    into it from the one before. ``most_noise`` (n_y,) is the largest variance that noise can have, by a fit.
+    the errors of the outputs. ``expected`` (n_p,) are the user's, which parameters are weakly held at where data say nothing. ``carried``
+    (n_x,) marks states (integrated positions, time, memories) that are never free in a window but carried into it from the one before.
+    ``most_noise`` (n_y,) is the largest variance that noise can have, by a fit.
     """
 
     model: GreyBoxModel
