@@ -13,7 +13,6 @@ from greybox_torch.data import DataSet, Recording
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.measured_states import measured_at
 from greybox_torch.model import GreyBoxModel, Parameter, Signals, State
-from greybox_torch.model.signals import parameter_signals
 from greybox_torch.simulation.records import Records, make_records
 
 
@@ -21,11 +20,11 @@ from greybox_torch.simulation.records import Records, make_records
 class Problem:
     """A model on some recordings.
 
-    ``values`` (n_p,) and ``lower``, ``upper`` in physical units, in the order of the model's parameters; ``free`` (n_p,) says which are
-    estimated. ``initial`` (E, n_x) start states per experiment, ``initial_free`` (n_x,) which are estimated. ``weights`` (n_y,) multiply
-    the errors of the outputs. ``expected`` (n_p,) are the user's, which parameters are weakly held at where data say nothing. ``carried``
-    (n_x,) marks states (integrated positions, time, memories) that are never free in a window but carried into it from the one before.
-    ``most_noise`` (n_y,) is the largest variance that noise can have, by a fit.
+    ``values`` (n_p,) and ``lower``, ``upper`` in physical units, in the order of the model's parameters; ``free`` (n_p,) says which
+    are estimated. ``initial`` (E, n_x) start states per experiment, ``initial_free`` (n_x,) which are estimated. ``weights`` (n_y,)
+    multiply the errors of the outputs. ``expected`` (n_p,) are the values that parameters are weakly held at where data say nothing:
+    those that the user began with. ``carried`` (n_x,) marks states (integrated positions, time, memories) that are never free in
+    a window but carried into it from the one before. ``most_noise`` (n_y,) is the largest variance that noise can have, by a fit.
     """
 
     model: GreyBoxModel
@@ -55,7 +54,7 @@ class Problem:
     @property
     def parameter_tensors(self) -> Signals:
         """The parameter values as tensors of no dimension, by name."""
-        return parameter_signals(self.values_by_name)
+        return Signals("parameter", {n: torch.tensor(v, dtype=torch.float64) for n, v in self.values_by_name.items()})
 
     @property
     def samples(self) -> int:
