@@ -8,6 +8,7 @@ from typing import Any
 import torch
 
 from greybox_torch.mechanisms.degenerate import faster_than_it_went
+from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
@@ -169,6 +170,11 @@ class CoulombAsymmetry(DryLaw):
         sign = smooth_sign(s.speed, p.v_0)
         uneven = self.law(s, p.delta) * sign**2
         return uneven - p.F_c * sign if self.with_level else uneven
+
+    def as_two(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """Coulomb friction and a constant force, which pushes at rest."""
+        level = {n: values[n] for n in ("F_c", "v_0")} if self.with_level else {}
+        return ((CoulombFriction(), level), (ConstantBias(), {"bias": -values["delta"]})) if level else ()
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         half, level, unit = abs(values["delta"]), values.get("F_c", 0.0), around.force_unit

@@ -188,6 +188,10 @@ class Mechanism:
         """The form with fewer parameters, of the same names, of which this one is a :meth:`richer` one; None where there is none."""
         return None
 
+    def as_two(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """Two laws of the same port that do together what this one does but at rest, and where they begin; empty where there are none."""
+        return ()
+
     def begun_elsewhere(self, around: Surroundings, values: Mapping[str, float]) -> Sequence[Mapping[str, float]]:
         """Where else a refit that came to ``values`` may begin, as its errors may have other minima; empty where nothing is known."""
         return ()

@@ -61,6 +61,19 @@ def test_uneven_friction_with_a_level_has_one_for_each_direction(law) -> None:
     assert (force * SPEEDS <= 0.0).all() and type(uneven)(**uneven.options()).options() == {"with_level": True}
 
 
+def test_uneven_friction_is_dry_friction_and_a_constant_force_in_motion(law) -> None:
+    uneven, values = CoulombAsymmetry(with_level=True), {"F_c": 2.0, "delta": -0.5, "v_0": 0.1}
+    parts = uneven.as_two(values)
+    assert [m.name for m, _ in parts] == ["coulomb_friction", "constant_bias"]
+    both = sum(law(m, own, speed=SPEEDS) for m, own in parts)
+    moving = np.abs(SPEEDS) > 1.0
+    np.testing.assert_allclose(both[moving], law(uneven, values, speed=SPEEDS)[moving], rtol=1e-7)
+    assert law(parts[1][0], parts[1][1], speed=np.array(0.0)) == pytest.approx(0.5), (
+        "it pushes at rest, friction does not"
+    )
+    assert not CoulombAsymmetry().as_two({"delta": -0.5, "v_0": 0.1}) and not CoulombFriction().as_two({"F_c": 2.0})
+
+
 @pytest.mark.parametrize(("delta", "pushes"), [(1.9, False), (-1.9, False), (2.1, True), (-2.1, True)])
 def test_a_difference_of_levels_larger_than_friction_is_not_friction(around, delta, pushes) -> None:
     told = CoulombAsymmetry(with_level=True).misplaced(around, {"F_c": 2.0, "delta": delta, "v_0": 0.1})

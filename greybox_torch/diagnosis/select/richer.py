@@ -17,6 +17,7 @@ from greybox_torch.diagnosis.hypothesis.noise import floor_known, noise_floor
 from greybox_torch.diagnosis.refit.possible_form import possible_form
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
+from greybox_torch.diagnosis.select.as_two_laws import two_in_its_place
 from greybox_torch.diagnosis.select.choice import least_gain, priced_score
 from greybox_torch.diagnosis.select.flexed import widened
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
@@ -66,8 +67,8 @@ def with_earlier_law_richer(study: Study, state: SearchState) -> Stage[SearchSta
 def richer_instead(study: Study, before: SearchState, after: SearchState) -> SearchState | None:
     """``before`` with a law at the port of the newest effect in a richer form, where that does as well as ``after`` with one more effect.
 
-    None where no such form does, or where ``after`` took nothing. A second harmonic is not seen beside all that a first one leaves while
-    other effects are missing; once they are found, some other law of the same port takes it up.
+    None where no such form does, where two laws do as well, or where ``after`` took nothing. A second harmonic is not seen beside
+    all that a first one leaves while other effects are missing; once they are found, some other law of the same port takes it up.
     """
     newest = after.steps[-1].taken
     if newest is None:
@@ -80,7 +81,10 @@ def richer_instead(study: Study, before: SearchState, after: SearchState) -> Sea
             continue
         for law, start in _forms_of_both(effect, latest, before, after):
             found = _in_form(study, before, done.taken, law, start)
-            if found is not None and priced_score(found.fitted, study.settings) <= to_reach and _improves(study, found):
+            far = (
+                found is not None and priced_score(found.fitted, study.settings) <= to_reach and _improves(study, found)
+            )
+            if found is not None and far and two_in_its_place(study, found.fitted, law) is None:
                 in_step = _beside_rivals(done.taken, found)
                 return replace(widened(before, done, in_step, found.fitted), plain=after.plain)
     return None

@@ -7,14 +7,14 @@ to make up for the other that the second is not found beside it.
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.curve import two_laws_on_curve
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.forward_step import forward_step
-from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
@@ -35,20 +35,30 @@ def with_first_of_two(study: Study, start: SearchState, with_curve: SearchState)
         return None
     laws, values = found
     study.working_on(f"refitting {laws[0].prefix} and {laws[1].prefix} from the curve")
-    refit = partial(fit, study, shorter=with_curve.current.fits[0])
-    both = refit((*start.effects, *laws), [values, {**values, **study.card}])
+    begun = [values, {**values, **study.card}]
+    both = fit(study, (*start.effects, *laws), begun, with_curve.current.fits[0])
     if both is None or both.score >= start.current.score:
         return None
-    first = _refitted_alone(done.ranked, laws[0])
+    return with_first(study, start, done, both)
+
+
+def with_first(study: Study, start: SearchState, done: SelectionStep, both: Hypothesis) -> SearchState | None:
+    """``start`` with the first of the two last laws of ``both``, as if ``done``, a step from there, had taken it, and both as found before.
+
+    None where it cannot be fitted alone.
+    """
+    law, port = both.effects[-2], both.effects[-1].port
+    first = _refitted_alone(done.ranked, law)
     if first is None:
-        alone = refit((*start.effects, laws[0]), [both.values()], limits=study.budget.trial_iterations)
+        limits = study.budget.trial_iterations
+        alone = fit(study, (*start.effects, law), [both.values()], done.parent.fits[0], limits=limits)
         if alone is None:
             return None
-        candidate = Candidate(laws[0], (), done.taken.candidate.explained)
-        first = judged(candidate, start.current, alone, study.settings)
-    # The curve has told the place: what comes as far as one of the two laws elsewhere is no rival of both.
-    there = (r for r in done.ranked if r.candidate.attachment.port == laws[0].port and r is not first)
-    ranked = (first, *(r for r in there if r.candidate.attachment.named != laws[0].named))
+        explained = 0.0 if done.taken is None else done.taken.candidate.explained
+        first = judged(Candidate(law, (), explained), start.current, alone, study.settings)
+    # The place is known from both: what comes as far as one of the two laws elsewhere is no rival of both.
+    there = (r for r in done.ranked if r.candidate.attachment.port == port and r is not first)
+    ranked = (first, *(r for r in there if r.candidate.attachment.named != law.named))
     step = replace(done, ranked=ranked, taken=first, led=None)
     return replace(start.at(first.fitted), steps=(*start.steps, step), found_before=both)
 
