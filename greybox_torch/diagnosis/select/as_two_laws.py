@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.significance import overall_significance
 from greybox_torch.diagnosis.refit.likelihood import needed_by_likelihood
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.state import SearchState
@@ -49,5 +50,16 @@ def two_in_its_place(study: Study, one: Hypothesis, law: Attachment) -> Hypothes
     two = fit(study, (*(e for e in one.effects if e != law), *laws), [others | begun], one.fits[0])
     if two is None or two.problem.free.sum() > one.problem.free.sum():
         return None
-    near = two.score - one.score < study.settings.score_tie
-    return two if near and not needed_by_likelihood(two, one, study.settings) else None
+    return None if _tells(study, two, one) else two
+
+
+def _tells(study: Study, two: Hypothesis, one: Hypothesis) -> bool:
+    """Whether the recordings tell one law from two: by its score, by windows beyond chance, or by the likelihood of whole records.
+
+    Seen: an excavator's boom, 420 N m up and 120 N m down, 15 standard errors from dry friction and a constant force.
+    """
+    settings = study.settings
+    if two.score - one.score >= settings.score_tie:
+        return True
+    by_chance = overall_significance(two, one, settings) < settings.least_significance
+    return not by_chance or needed_by_likelihood(two, one, settings)

@@ -68,9 +68,13 @@ def test_uneven_friction_stays_one_law_where_recordings_tell(told_as_one) -> Non
     assert result_of(as_two_laws(search.study, search.state, one)) is one
 
 
-def test_likelihood_tells_where_windows_tie(told_as_one, monkeypatch) -> None:
+@pytest.mark.parametrize(
+    ("says", "answer"), [("needed_by_likelihood", True), ("overall_significance", 15.0)], ids=["likelihood", "windows"]
+)
+def test_windows_and_likelihood_tell_where_the_scores_tie(told_as_one, monkeypatch, says, answer) -> None:
+    """Seen: an excavator's boom, 420 N m up and 120 N m down, whose scores differ by 0.015, 15 standard errors."""
     search, one = told_as_one(with_offset)
-    monkeypatch.setattr(module, "needed_by_likelihood", lambda two, one, settings: True)
+    monkeypatch.setattr(module, says, lambda two, one, settings: answer)
     assert two_in_its_place(search.study, one.current, one.effects[0]) is None
 
 
