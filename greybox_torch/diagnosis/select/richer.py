@@ -21,6 +21,7 @@ from greybox_torch.diagnosis.select.as_two_laws import two_in_its_place
 from greybox_torch.diagnosis.select.choice import least_gain, priced_score
 from greybox_torch.diagnosis.select.flexed import widened
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
+from greybox_torch.diagnosis.select.rivals_of_form import with_rivals_of_form
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import Stage
@@ -45,8 +46,12 @@ def with_richer_form(study: Study, state: SearchState, done: SelectionStep | Non
     best = min(paying, key=lambda r: r.fitted.score, default=None)
     if best is None:
         return state
+    newest = done is state.steps[-1]
     state = widened(state, done, _beside_rivals(taken, best), best.fitted)
     yield state
+    if newest:
+        state = with_rivals_of_form(study, state)
+        yield state
     return state
 
 
