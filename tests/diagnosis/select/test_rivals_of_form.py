@@ -68,8 +68,8 @@ def test_a_rival_that_goes_farther_from_there_is_taken(after_form, motor) -> Non
 
 
 def test_the_form_stays_where_no_rival_goes_as_far_and_has_them_as_they_are_from_there(after_form, motor) -> None:
-    drag = attach(motor, "rotor", QuadraticDrag())
-    search, state = after_form(drag, torque=lambda q, v: -0.06 * np.tanh(v / 0.2) - 0.03 * v * abs(v))
+    dry = attach(motor, "rotor", CoulombFriction())
+    search, state = after_form(dry, torque=lambda q, v: -0.06 * np.tanh(v / 0.2) - 0.03 * np.tanh(v / 0.2) ** 2)
     before = state.steps[-1].ranked[0]
     after = with_rivals_of_form(search.study, state)
     assert after.effects == state.effects and after.current is state.current
