@@ -11,6 +11,7 @@ from greybox_torch.diagnosis.hypothesis.mismatch import negligible
 from greybox_torch.diagnosis.hypothesis.significance import window_significance
 from greybox_torch.diagnosis.screen.shortlist import identity_of
 from greybox_torch.diagnosis.select.as_two_laws import as_two_laws
+from greybox_torch.diagnosis.select.at_joined_bodies import at_joined_bodies
 from greybox_torch.diagnosis.select.choice import alone_at_noise, chosen, least_gain
 from greybox_torch.diagnosis.select.finer_steps import in_finer_steps
 from greybox_torch.diagnosis.select.flexed import flexed
@@ -56,7 +57,8 @@ def take_effects(
                 break
             state = richer
             continue
-        state = yield from as_two_laws(study, before, in_finer_steps(study, state))
+        state = at_joined_bodies(study, in_finer_steps(study, state))
+        state = yield from as_two_laws(study, before, state)
         wider = flexed(study, before, state) or richer_instead(study, before, state)
         if wider is not None:
             state = wider
