@@ -9,8 +9,8 @@ import torch
 
 from greybox_torch.model import GreyBoxModel, Signals
 
-SIZES = (0.01, 1.0, 30.0)
-"""Standard deviations of states and inputs."""
+SIZES = (1e-5, 0.01, 1.0, 30.0)
+"""Standard deviations of states and inputs; the least for machines whose gaps are fractions of a millimetre, beyond which a clamp hides."""
 
 EACH = 32
 """Points of each size."""

@@ -172,6 +172,13 @@ def test_numbers_may_carry_units(tmp_path: Path, machines: Path) -> None:
     assert result.findings == ()
 
 
+def test_what_a_clamp_hides_beyond_small_values_moves_the_output(tmp_path: Path, machines: Path) -> None:
+    """Seen: a magnetic bearing of 0.4 mm under a clamped command, whose gains and reference "move no output"."""
+    clamped = rate("p.k * u.voltage", "torch.clamp(1e6 * p.k * u.voltage, -0.8, 0.8)")
+    found, _ = examined(tmp_path, machines, clamped)
+    assert not [f for f in found.findings if "moves no output" in f.found]
+
+
 def test_a_state_that_nothing_shows_is_a_note(machines: Path) -> None:
     result = examine(model_class(f"{machines / 'small.py'}:WarmRotor"))
     assert [(f.level, f.topic) for f in result.findings] == [("note", "influence")]
