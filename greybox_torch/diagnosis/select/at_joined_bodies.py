@@ -10,15 +10,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from greybox_torch.diagnosis.hypothesis.above_noise import only_noise
 from greybox_torch.diagnosis.refit.possible_form import possible_form
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, judged, sound
-from greybox_torch.diagnosis.refit.refitted import fit
+from greybox_torch.diagnosis.refit.refitted import fit, refitted
 from greybox_torch.diagnosis.select.choice import chosen
 from greybox_torch.diagnosis.select.flexed import widened
-from greybox_torch.diagnosis.select.remaining import completes
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment, attach
+from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.model.joined_bodies import joined_bodies
 
 
@@ -29,13 +30,14 @@ def at_joined_bodies(study: Study, state: SearchState) -> SearchState:
     """
     done = state.steps[-1]
     taken = done.taken
-    if taken is None or taken.unknown or completes(state.current, study.settings):
+    if taken is None or taken.unknown or only_noise(study.problem, state.current, study.settings):
         return state
     there = {r.candidate.attachment.named for r in done.ranked}
     laws = [law for law in _elsewhere(study, taken.candidate.attachment) if law.named not in there]
     moved = [found for law in laws if (found := _moved(study, state, taken, law)) is not None]
     if not moved:
         return state
+    moved += _contained(study, state, min(moved, key=lambda r: r.fitted.score), there)
     ranked = in_order([*done.ranked, *moved], study.settings)
     step = replace(done, ranked=tuple(ranked))
     state = replace(state, steps=(*state.steps[:-1], step))
@@ -61,6 +63,24 @@ def _moved(study: Study, state: SearchState, taken: RankedCandidate, law: Attach
     start = {_renamed(n, before, law): v for n, v in state.current.values().items()}
     fitted = fit(study, (*parent.effects, law), [start], state.current.fits[0])
     return None if fitted is None else judged(replace(taken.candidate, attachment=law), parent, fitted, study.settings)
+
+
+def _contained(
+    study: Study, state: SearchState, moved: RankedCandidate, there: set[tuple[str, str]]
+) -> list[RankedCandidate]:
+    """The laws that a moved one contains at its port, where that goes farther than the law it came from.
+
+    Seen: the dry friction of an arm, told as presliding at its gearbox (0.85): at the arm presliding does better, dry friction best.
+    """
+    law, parent, found = moved.candidate.attachment, state.steps[-1].parent, []
+    farther = moved.fitted.score < state.current.score
+    names = [n for n in law.mechanism.generalises if n in LIBRARY and (law.port, n) not in there] if farther else []
+    for other in (attach(study.problem.model, law.port, LIBRARY[name]()) for name in names):
+        study.working_on(f"refitting {other.prefix} in the place of {law.prefix}")
+        fitted = None if study.beliefs.exclude(other) else refitted(study, (*parent.effects, other), moved.fitted)
+        if fitted is not None:
+            found.append(judged(replace(moved.candidate, attachment=other), parent, fitted, study.settings))
+    return found
 
 
 def _renamed(name: str, before: Attachment, after: Attachment) -> str:

@@ -101,9 +101,19 @@ def test_what_goes_farther_at_the_other_end_of_a_spring_is_told_there(told_at_th
     assert [r.candidate.attachment.port for r in step.ranked] == ["load", "motor"], "each is the other's rival"
 
 
+def test_what_a_moved_law_contains_is_asked_there_too(told_at_the_motor, monkeypatch) -> None:
+    """Seen: the dry friction of an arm, told as presliding at its gearbox (0.85)."""
+    search, state = told_at_the_motor
+    monkeypatch.setattr(QuadraticDrag, "generalises", ("viscous_friction",))
+    (step,) = at_joined_bodies(search.study, state).steps
+    asked = [r.candidate.attachment.named for r in step.ranked]
+    assert ("load", "viscous_friction") in asked and ("motor", "viscous_friction") not in asked
+    assert step.taken is not None and step.taken.candidate.attachment.named == ("load", "quadratic_drag")
+
+
 def test_what_goes_no_farther_there_is_a_rival(told_at_the_motor, monkeypatch) -> None:
     search, state = told_at_the_motor
-    monkeypatch.setattr(module, "completes", lambda *_: False)
+    monkeypatch.setattr(module, "only_noise", lambda *_: False)
     at_load = at_joined_bodies(search.study, state)
     step = at_load.steps[0]
     alone = replace(at_load, steps=(replace(step, ranked=step.ranked[:1]),))
@@ -125,7 +135,7 @@ def test_asked_only_of_a_law_that_leaves_more_than_noise_and_had_no_turn_elsewhe
     curve = replace(step.taken.candidate, attachment=attach(search.study.problem.model, "motor", Unknown("speed", 8)))
     unknown = replace(state, steps=(replace(step, taken=replace(step.taken, candidate=curve)),))
     assert at_joined_bodies(search.study, unknown) is unknown
-    monkeypatch.setattr(module, "completes", lambda *_: True)
+    monkeypatch.setattr(module, "only_noise", lambda *_: True)
     assert at_joined_bodies(search.study, state) is state
 
 
