@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import secrets
 import shutil
 import subprocess
@@ -49,8 +50,9 @@ class Proof:
         seed = self._seed(seed)
         planned = plans(kind, seed)
         self.progress(f"seed {seed}: {len(planned)} cases")
-        partial, cases = self.folder / "cases.partial", self.folder / "cases"
-        for leftover in (partial, cases):  # of a run that was killed before the answers were sealed
+        # A folder of its own for every run: processes of one that was killed may go on writing into theirs.
+        partial, cases = self.folder / f"cases.partial-{os.getpid()}", self.folder / "cases"
+        for leftover in (*self.folder.glob("cases.partial*"), cases):  # of runs killed before the answers were sealed
             shutil.rmtree(leftover, ignore_errors=True)
         answers = draw_cases(planned, seed, partial, workers=workers, progress=self.progress)
         partial.rename(cases)

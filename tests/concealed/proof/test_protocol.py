@@ -181,6 +181,24 @@ def test_a_drawing_that_was_killed_begins_anew_with_its_seed(tmp_path: Path, by_
     assert proof.record.sealed["seed"] == seed
 
 
+def test_what_a_killed_run_goes_on_writing_is_not_taken_for_a_case(
+    tmp_path: Path, by_hand, monkeypatch: pytest.MonkeyPatch
+):
+    """Seen: two draws wrote into one folder, and 27 of 43 stages had recordings of other machines."""
+    draw, killed = protocol.draw_cases, tmp_path / "cases.partial-1"
+
+    def beside_another(planned: object, seed: int, folder: Path, **how: object) -> object:
+        for name in ANSWERS:
+            (killed / name).mkdir(parents=True)
+            (killed / name / "dataset.toml").write_text('name = "another seed"\n')
+        return draw(planned, seed, folder, **how)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(protocol, "draw_cases", beside_another)
+    Proof(tmp_path, quiet).prepare("quick", 7)
+    cards = [card.read_text() for card in (tmp_path / "cases").glob("*/dataset.toml")]
+    assert len(cards) == len(ANSWERS) and all(card.endswith(' 7"\n') for card in cards)
+
+
 def test_a_folder_keeps_its_proof(tmp_path: Path, by_hand):
     sealed_and_frozen(tmp_path)
     with pytest.raises(ProofError, match="holds a proof of the quick set with seed 7"):
