@@ -42,12 +42,14 @@ def two_in_its_place(study: Study, one: Hypothesis, law: Attachment) -> Hypothes
     values = one.values()
     parts = law.mechanism.as_two({n.removeprefix(start): v for n, v in values.items() if n.startswith(start)})
     laws = [replace(law, mechanism=mechanism) for mechanism, _ in parts]
-    if not laws or any(study.beliefs.exclude(part) for part in laws):
+    others = tuple(e for e in one.effects if e != law)
+    there = {e.named for e in others}
+    if not laws or any(study.beliefs.exclude(part) or part.named in there for part in laws):
         return None
     study.working_on(f"refitting {law.prefix} as {laws[0].prefix} and {laws[1].prefix}")
     begun = {f"{part.prefix}.{n}": v for part, (_, own) in zip(laws, parts, strict=True) for n, v in own.items()}
-    others = {n: v for n, v in values.items() if not n.startswith(start)}
-    two = fit(study, (*(e for e in one.effects if e != law), *laws), [others | begun], one.fits[0])
+    rest = {n: v for n, v in values.items() if not n.startswith(start)}
+    two = fit(study, (*others, *laws), [rest | begun], one.fits[0])
     if two is None or two.problem.free.sum() > one.problem.free.sum():
         return None
     return None if _tells(study, two, one) else two

@@ -26,13 +26,13 @@ from greybox_torch.model.joined_bodies import joined_bodies
 def at_joined_bodies(study: Study, state: SearchState) -> SearchState:
     """``state`` with the law of its last step at the joined body where it goes farthest; asked where more than noise is left.
 
-    Only at bodies where it had no turn in that step. What was asked is a rival there in any case.
+    Only at bodies where it had no turn in that step and is not there already. What was asked is a rival there in any case.
     """
     done = state.steps[-1]
     taken = done.taken
     if taken is None or taken.unknown or only_noise(study.problem, state.current, study.settings):
         return state
-    there = {r.candidate.attachment.named for r in done.ranked}
+    there = {r.candidate.attachment.named for r in done.ranked} | {e.named for e in done.parent.effects}
     laws = [law for law in _elsewhere(study, taken.candidate.attachment) if law.named not in there]
     moved = [found for law in laws if (found := _moved(study, state, taken, law)) is not None]
     if not moved:

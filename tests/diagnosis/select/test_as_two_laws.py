@@ -17,6 +17,7 @@ from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction
 
 
@@ -86,6 +87,13 @@ def test_not_where_no_effect_may_be_added_nor_where_a_part_is_excluded(told_as_o
     assert result_of(as_two_laws(search.study, search.state, nothing)) is nothing
     believed = replace(search.study, beliefs=Excluding("constant_bias"))
     assert two_in_its_place(believed, one.current, one.effects[0]) is None
+
+
+def test_not_beside_one_of_the_two(told_as_one, motor) -> None:
+    search, one = told_as_one(with_offset)
+    bias = attach(motor, "rotor", ConstantBias())
+    beside = search.refitted((*one.effects, bias), one.current)
+    assert two_in_its_place(search.study, beside, one.effects[0]) is None, "its parameters would be there twice"
 
 
 def test_other_laws_are_not_two(told_as_one, motor) -> None:

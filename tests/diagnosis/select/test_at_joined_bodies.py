@@ -130,6 +130,9 @@ def test_asked_only_of_a_law_that_leaves_more_than_noise_and_had_no_turn_elsewhe
     (step,) = state.steps
     both = replace(state, steps=(at_turn_of_both(search, step),))
     assert at_joined_bodies(search.study, both) is both
+    law = attach(search.study.problem.model, "load", QuadraticDrag())
+    there_already = replace(state, steps=(replace(step, parent=search.refitted((law,), search.plain)),))
+    assert at_joined_bodies(search.study, there_already) is there_already, "its parameters would be there twice"
     nothing = replace(state, steps=(replace(step, taken=None),))
     assert at_joined_bodies(search.study, nothing) is nothing
     curve = replace(step.taken.candidate, attachment=attach(search.study.problem.model, "motor", Unknown("speed", 8)))
