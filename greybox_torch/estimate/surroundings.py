@@ -87,8 +87,11 @@ def _around(
         if "deflection" in ranges and "deflection" not in hidden:
             measured = as_measured(model, port.signals["deflection"], x, u, problem)
             ranges["deflection"] = farther(ranges["deflection"], measured)
-    if isinstance(port, Body) and port.position is not None and _is_measured(model, port.position):
-        ranges["position"] = no_farther(ranges["position"], as_measured(model, port.position, x, u, problem))
+    if isinstance(port, Body):
+        if port.position is not None and _is_measured(model, port.position):
+            ranges["position"] = no_farther(ranges["position"], as_measured(model, port.position, x, u, problem))
+        else:
+            hidden = frozenset({"position"})
     if isinstance(port, Body) and _repeats(port, ranges["position"], units["position"]):
         ranges[TURN], units[TURN] = Range(0.0, WHOLE, WHOLE / 3**0.5), "rad"
     return Surroundings(ranges, units, _force_unit(model, port, units), float(np.median(problem.records.dt)), hidden)

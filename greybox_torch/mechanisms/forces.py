@@ -26,6 +26,9 @@ GIVES_WAY = 0.3
 """Share of the travel beyond its place from which a stop is none: of machines whose stops are known 0.09 at the most lies beyond them, a
 rubber buffer's; of stops that were told where none is, 0.35."""
 
+GIVES_WAY_UNSEEN = 0.5
+"""The same where no sensor shows the position: the travel is that of a model without the stop, which goes farther (0.4 of a valve's)."""
+
 MARGIN = 0.1
 """Share of the travel, as a model without a stop has it, by which the machine may have gone farther before it met one."""
 
@@ -162,7 +165,7 @@ class EndStop(Mechanism):
         passed = (travel.high - where if values["side"] > 0 else where - travel.low) / travel.span
         return (
             f"{100 * passed:.0f} % of the travel lies beyond it: no stop gives way so far"
-            if passed > GIVES_WAY
+            if passed > (GIVES_WAY_UNSEEN if "position" in around.unmeasured else GIVES_WAY)
             else None
         )
 

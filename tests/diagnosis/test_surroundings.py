@@ -80,7 +80,8 @@ def test_signals_by_port(arm_search) -> None:
 def test_what_no_sensor_shows_is_known_only_as_a_model_without_effects_moves_it(arm_search) -> None:
     found = {port: around.unmeasured for port, around in arm_search.surroundings.items()}
     springs = {"gear_spring": {"deflection", "rate"}, "arm_spring": {"deflection", "rate"}}
-    assert found == dict.fromkeys(found, frozenset()) | springs, "the speed of the motor alone is measured"
+    bodies = {body: {"position"} for body in ("motor", "gearbox", "arm")}
+    assert found == dict.fromkeys(found, frozenset()) | springs | bodies, "the speed of the motor alone is measured"
 
 
 def test_a_difference_of_measured_states_is_measured() -> None:

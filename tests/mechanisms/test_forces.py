@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -165,3 +167,12 @@ def test_the_reference_may_lie_at_zero_or_about_the_travelled_levels() -> None:
         assert all(reference.bounds[0] <= place <= reference.bounds[1] for place in inside)
         looked_at = [probe.values["reference"] for probe in LinearLeak().probes(around)]
         assert looked_at == [0.0, low, 0.5 * (low + high)]
+
+
+@pytest.mark.parametrize(("where", "said"), [(1.4, False), (0.9, True)])
+def test_a_stop_may_stand_farther_in_a_travel_that_no_sensor_shows(where, said, around) -> None:
+    """Seen: a valve's seat, 0.4 of the travel that the model without it has; told as a stop of the coil that drives it (0.85)."""
+    unseen = replace(around, unmeasured=frozenset({"position"}))
+    values = {"k": 500.0, "where": where, "c": 1.0, "side": 1.0}
+    assert ("no stop gives way" in (EndStop().misplaced(unseen, values) or "")) is said
+    assert "no stop gives way" in (EndStop().misplaced(around, values) or "")
