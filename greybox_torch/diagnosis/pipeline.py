@@ -11,6 +11,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, until
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.common_gain import with_common_gain
+from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
 from greybox_torch.diagnosis.confirm.standing import refinements, sizes
 from greybox_torch.diagnosis.confirm.unstable import no_free_run_follows
 from greybox_torch.diagnosis.contradictions import contradictions
@@ -226,6 +227,8 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
     if not found.complete:
         told = of_a_stopped_search(told, study.settings)
     small = refinements(study, state, found.others, found.gains, by_effect)
+    if small == state.prefixes:
+        small -= shown_by_free_runs(study, state, found.gains, judged)
     both = list(zip(state.effects, told, strict=True))
     return (
         tuple(e for attached, e in both if attached.prefix not in small),

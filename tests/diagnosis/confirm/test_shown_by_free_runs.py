@@ -1,0 +1,89 @@
+"""What free runs show and windows hardly do is a finding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from greybox_torch.diagnosis import pipeline
+from greybox_torch.diagnosis.confirm import shown_by_free_runs as module
+from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.forces import ConstantBias
+from greybox_torch.mechanisms.friction import CoulombAsymmetry
+
+FRICTION, BIAS = Attachment("motor", CoulombAsymmetry()), Attachment("arm", ConstantBias())
+
+
+@dataclass(frozen=True)
+class FreeRuns:
+    """What free runs of the validation experiments leave: times the noise without the effects, and the share of it with them."""
+
+    times: float
+    share: float
+    unstable: frozenset[str] = frozenset()
+    problem: Any = None
+    begun: Any = None
+
+    def left(self, effects: bool) -> tuple[float, float, str]:
+        return (self.share, 2.0, "sweep") if effects else (1.0, self.times, "sweep")
+
+
+@pytest.fixture
+def shown(monkeypatch):
+    """What free runs show of two effects, with the standard errors by which held-out windows bear them out."""
+    study: Any = SimpleNamespace(settings=DiagnosisSettings(), surroundings={"motor": None, "arm": None}, budget=None)
+    state: Any = SimpleNamespace(effects=(FRICTION, BIAS), current=None)
+
+    def ask(runs: FreeRuns, friction: float, bias: float, everywhere: bool = True) -> set[str]:
+        monkeypatch.setattr(module, "same_everywhere", lambda *_: everywhere)
+        away = {FRICTION.prefix: friction, BIAS.prefix: bias}
+        gains: Any = {n: SimpleNamespace(errors_away=a) for n, a in away.items()}
+        return shown_by_free_runs(study, state, gains, runs)  # type: ignore[arg-type]
+
+    return ask
+
+
+def test_what_free_runs_need_and_windows_bear_out_is_shown(shown) -> None:
+    """Seen: an arm's friction that differs by direction, 171 times the noise in free runs, 2.3 with it, 12 % of what windows leave."""
+    assert shown(FreeRuns(171.0, 0.0001), 3.7, 0.4) == {FRICTION.prefix}
+    assert shown(FreeRuns(171.0, 0.0001), 3.7, 5.0) == {FRICTION.prefix, BIAS.prefix}
+
+
+@pytest.mark.parametrize(
+    "runs",
+    [
+        FreeRuns(7.0, 0.01),
+        FreeRuns(171.0, 0.3),
+        FreeRuns(float("nan"), 0.01),
+        FreeRuns(171.0, 0.01, frozenset({"sweep"})),
+    ],
+    ids=["as disturbances leave", "most of it left", "no noise known", "no free run follows"],
+)
+def test_not_what_disturbances_make_nor_what_free_runs_do_not_need(shown, runs) -> None:
+    assert shown(runs, 3.7, 5.0) == set()
+
+
+def test_not_what_is_another_one_in_every_experiment_nor_chance(shown) -> None:
+    assert shown(FreeRuns(171.0, 0.01), 3.7, 5.0, everywhere=False) == set()
+    assert shown(FreeRuns(171.0, 0.01), 0.5, 0.5) == set()
+
+
+@pytest.mark.parametrize("small", [{FRICTION.prefix}, {FRICTION.prefix, BIAS.prefix}])
+def test_asked_where_nothing_else_is_a_finding(monkeypatch, small) -> None:
+    state = SimpleNamespace(effects=(FRICTION, BIAS), prefixes={FRICTION.prefix, BIAS.prefix})
+    judged = SimpleNamespace(augmented=None, missed=None)
+    found: Any = SimpleNamespace(
+        by_parameters=None, study=None, state=state, judged=judged, gains={}, others=None, complete=True
+    )
+    monkeypatch.setattr(pipeline, "sizes", lambda *_: {})
+    monkeypatch.setattr(pipeline, "_sums", lambda *_: (1.0, 0.5))
+    monkeypatch.setattr(pipeline, "describe", lambda *_: ("friction", "bias"))
+    monkeypatch.setattr(pipeline, "refinements", lambda *_: set(small))
+    monkeypatch.setattr(pipeline, "shown_by_free_runs", lambda *_: {FRICTION.prefix})
+    told = pipeline._told(found)
+    assert told == ((("bias",), ("friction",)) if len(small) == 1 else (("friction",), ("bias",)))
