@@ -24,6 +24,7 @@ from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 from greybox_torch.systems import RobotArm
 from greybox_torch.systems.load import load_model
+from tests.diagnosis.by_runge_kutta import by_runge_kutta
 
 STEP = 0.01
 
@@ -71,15 +72,7 @@ def turned(voltage: np.ndarray, torque: Callable[[float, float], float], substep
     def rate(x: np.ndarray, v: float) -> np.ndarray:
         return np.array([x[1], (0.1 * v - 0.05 * x[1] + torque(x[0], x[1])) / 0.02])
 
-    x, h, speeds = np.array([0.4, 0.3]), STEP / substeps, []
-    for v in voltage:
-        speeds.append(x[1])
-        for _ in range(substeps):
-            k1 = rate(x, v)
-            k2 = rate(x + h / 2 * k1, v)
-            k3 = rate(x + h / 2 * k2, v)
-            x = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + rate(x + h * k3, v))
-    return np.array(speeds)
+    return by_runge_kutta(rate, np.array([0.4, 0.3]), voltage, STEP, substeps)[:, 1]
 
 
 @dataclass(frozen=True)

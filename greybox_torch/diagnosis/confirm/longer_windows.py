@@ -55,13 +55,15 @@ def stands(study: Study, before: Judged, after: Judged) -> bool:
     state, gains, judged = after
     new = [e for e in state.effects if e.prefix not in before[0].prefixes]
     settings = study.settings
-
-    def same(effect: Attachment) -> bool:
-        around = study.surroundings[effect.port]
-        return same_everywhere(state.current, judged.problem, around, effect, study.budget, judged.begun)
-
     sure = all(gains[e.prefix].errors_away > settings.held_out_beyond_chance for e in new if e.prefix in gains)
-    return bool(state.effects) and sure and explains_free_runs(before[2], judged, settings) and all(map(same, new))
+    explained = bool(state.effects) and sure and explains_free_runs(before[2], judged, settings)
+    return explained and all(constant_effect(study, state, judged, e) for e in new)
+
+
+def constant_effect(study: Study, state: SearchState, judged: Judgement, effect: Attachment) -> bool:
+    """Whether an effect of ``state``, whose free runs are ``judged``, is the same in every experiment."""
+    around = study.surroundings[effect.port]
+    return same_everywhere(state.current, judged.problem, around, effect, study.budget, judged.begun)
 
 
 def explains_free_runs(before: Judgement, after: Judgement, settings: DiagnosisSettings) -> bool:

@@ -12,10 +12,9 @@ from collections.abc import Mapping
 
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.judgement import Judgement
-from greybox_torch.diagnosis.confirm.same_everywhere import same_everywhere
+from greybox_torch.diagnosis.confirm.longer_windows import constant_effect
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
-from greybox_torch.mechanisms.attachment import Attachment
 
 
 def shown_by_free_runs(study: Study, state: SearchState, gains: Mapping[str, Gain], judged: Judgement) -> set[str]:
@@ -28,11 +27,6 @@ def shown_by_free_runs(study: Study, state: SearchState, gains: Mapping[str, Gai
     share, _, _ = judged.left(True)
     if judged.unstable or not (times > settings.far_above_disturbances and share <= settings.slow_share):
         return set()
-
-    def same(effect: Attachment) -> bool:
-        around = study.surroundings[effect.port]
-        return same_everywhere(state.current, judged.problem, around, effect, study.budget, judged.begun)
-
-    sure = (e for e in state.effects if e.prefix in gains)
-    sure = (e for e in sure if gains[e.prefix].errors_away > settings.held_out_beyond_chance)
-    return {e.prefix for e in sure if same(e)}
+    asked = [e for e in state.effects if e.prefix in gains]
+    sure = [e for e in asked if gains[e.prefix].errors_away > settings.held_out_beyond_chance]
+    return {e.prefix for e in sure if constant_effect(study, state, judged, e)}

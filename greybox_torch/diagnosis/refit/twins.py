@@ -36,7 +36,7 @@ def from_twin(candidate: Candidate, reached: Hypothesis | None, tried: Sequence[
     if not better:
         return {}
     _, twin, values = min(better, key=lambda entry: entry[0])
-    return _renamed(values, f"{twin.attachment.prefix}.", f"{candidate.attachment.prefix}.")
+    return renamed(values, f"{twin.attachment.prefix}.", f"{candidate.attachment.prefix}.")
 
 
 def from_contained(
@@ -64,5 +64,6 @@ def _as_contained(law: Attachment, contained: Attachment, fitted: Hypothesis) ->
     return {**rest, **begun} if begun else {}
 
 
-def _renamed(values: Mapping[str, float], old: str, new: str) -> dict[str, float]:
+def renamed(values: Mapping[str, float], old: str, new: str) -> dict[str, float]:
+    """The values by name, those whose names begin with ``old`` under names that begin with ``new``."""
     return {new + n.removeprefix(old) if n.startswith(old) else n: v for n, v in values.items()}

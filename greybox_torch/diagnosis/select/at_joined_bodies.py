@@ -14,6 +14,7 @@ from greybox_torch.diagnosis.hypothesis.above_noise import only_noise
 from greybox_torch.diagnosis.refit.possible_form import possible_form
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit, refitted
+from greybox_torch.diagnosis.refit.twins import renamed
 from greybox_torch.diagnosis.select.choice import chosen
 from greybox_torch.diagnosis.select.flexed import widened
 from greybox_torch.diagnosis.select.state import SearchState
@@ -60,7 +61,7 @@ def _moved(study: Study, state: SearchState, taken: RankedCandidate, law: Attach
     """The hypothesis of ``state`` with ``law`` in the place of the one taken, from its values; None where it cannot be fitted."""
     before, parent = taken.candidate.attachment, state.steps[-1].parent
     study.working_on(f"refitting {law.prefix} in the place of {before.prefix}")
-    start = {_renamed(n, before, law): v for n, v in state.current.values().items()}
+    start = renamed(state.current.values(), f"{before.prefix}.", f"{law.prefix}.")
     fitted = fit(study, (*parent.effects, law), [start], state.current.fits[0])
     return None if fitted is None else judged(replace(taken.candidate, attachment=law), parent, fitted, study.settings)
 
@@ -81,8 +82,3 @@ def _contained(
         if fitted is not None:
             found.append(judged(replace(moved.candidate, attachment=other), parent, fitted, study.settings))
     return found
-
-
-def _renamed(name: str, before: Attachment, after: Attachment) -> str:
-    own = f"{before.prefix}."
-    return f"{after.prefix}.{name.removeprefix(own)}" if name.startswith(own) else name

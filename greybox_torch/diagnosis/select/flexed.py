@@ -64,9 +64,20 @@ def in_its_place(
     Args:
         starts: further values to begin with than those of ``state`` with the law's own.
     """
-    law = other.candidate.attachment
     if state.effects == (*done.parent.effects, effect):
         return other.fitted
+    return refitted_in_its_place(study, state, effect, other, starts)
+
+
+def refitted_in_its_place(
+    study: Study,
+    state: SearchState,
+    effect: Attachment,
+    other: RankedCandidate,
+    starts: Sequence[dict[str, float]] = (),
+) -> Hypothesis | None:
+    """The same, refitted from the values of ``state`` and the law's own in any case."""
+    law = other.candidate.attachment
     study.working_on(f"trying {law.prefix} in the place of {effect.prefix}")
     own = {n: v for n, v in other.fitted.values().items() if n.startswith(f"{law.prefix}.")}
     return fit(study, state.with_law(effect, law), [state.current.values() | own, *starts], state.current.fits[0])

@@ -12,9 +12,8 @@ from dataclasses import replace
 from itertools import islice
 
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, judged, sound
-from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.choice import chosen
-from greybox_torch.diagnosis.select.flexed import widened
+from greybox_torch.diagnosis.select.flexed import refitted_in_its_place, widened
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.study import Study
 
@@ -26,7 +25,7 @@ def with_rivals_of_form(study: Study, state: SearchState) -> SearchState:
     if form is None or len(state.effects) != len(done.parent.effects) + 1:
         return state
     found = {
-        id(rival): better for rival in _asked(study, done, form) if (better := _refitted(study, state, done, rival))
+        id(rival): better for rival in _asked(study, done, form) if (better := _refitted(study, state, form, rival))
     }
     if not found:
         return state
@@ -49,12 +48,11 @@ def _asked(study: Study, done: SelectionStep, form: RankedCandidate) -> Iterator
     return islice(others, study.budget.front_runners)
 
 
-def _refitted(study: Study, state: SearchState, done: SelectionStep, rival: RankedCandidate) -> RankedCandidate | None:
+def _refitted(
+    study: Study, state: SearchState, form: RankedCandidate, rival: RankedCandidate
+) -> RankedCandidate | None:
     """A rival in the place of the form, refitted from its own values and the form's of the model; None where that is no better."""
-    law = rival.candidate.attachment
-    study.working_on(f"refitting {law.prefix} in the place of a richer form")
-    own = {n: v for n, v in rival.fitted.values().items() if n.startswith(f"{law.prefix}.")}
-    fitted = fit(study, (*done.parent.effects, law), [state.current.values() | own], state.current.fits[0])
+    fitted = refitted_in_its_place(study, state, form.candidate.attachment, rival)
     if fitted is None or fitted.score >= rival.fitted.score:
         return None
-    return judged(rival.candidate, done.parent, fitted, study.settings)
+    return judged(rival.candidate, state.steps[-1].parent, fitted, study.settings)

@@ -40,7 +40,7 @@ def shown(monkeypatch):
     state: Any = SimpleNamespace(effects=(FRICTION, BIAS), current=None)
 
     def ask(runs: FreeRuns, friction: float, bias: float, everywhere: bool = True) -> set[str]:
-        monkeypatch.setattr(module, "same_everywhere", lambda *_: everywhere)
+        monkeypatch.setattr(module, "constant_effect", lambda *_: everywhere)
         away = {FRICTION.prefix: friction, BIAS.prefix: bias}
         gains: Any = {n: SimpleNamespace(errors_away=a) for n, a in away.items()}
         return shown_by_free_runs(study, state, gains, runs)  # type: ignore[arg-type]

@@ -17,6 +17,7 @@ from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.friction import QuadraticDrag
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
+from tests.diagnosis.by_runge_kutta import by_runge_kutta
 
 STEP = 0.01
 
@@ -61,15 +62,7 @@ def with_drag_at_the_load(torque: np.ndarray, drag: float = 0.02, substeps: int 
         accelerations = (u - carried - 0.05 * x[2]) / 0.02, (carried - drag * x[3] * abs(x[3])) / 0.03
         return np.array([x[2], x[3], *accelerations])
 
-    x, h, speeds = np.zeros(4), STEP / substeps, []
-    for u in torque:
-        speeds.append(x[2])
-        for _ in range(substeps):
-            k1 = rate(x, u)
-            k2 = rate(x + h / 2 * k1, u)
-            k3 = rate(x + h / 2 * k2, u)
-            x = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + rate(x + h * k3, u))
-    return np.array(speeds)
+    return by_runge_kutta(rate, np.zeros(4), torque, STEP, substeps)[:, 2]
 
 
 @pytest.fixture(scope="module")
