@@ -17,7 +17,7 @@ from greybox_torch.diagnosis.confirm.holding import Judged, holding
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.final import Final, finish, from_longest_windows
-from greybox_torch.diagnosis.refit.ranked import sound
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, sound
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.selection import Selection
 from greybox_torch.diagnosis.stopping import or_else
@@ -78,7 +78,7 @@ def _finished(study: Study, state: SearchState, deadline: Deadline) -> tuple[tup
 def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
     """Effects taken back, the weakest first, until those left hold on the validation experiments, and whether there was time for that.
 
-    Where there is none, the effect that was found first is left if that holds by itself, else nothing. Where none holds, a free curve may.
+    Where there is none, what was found first is left if that holds by itself, else nothing. Where none holds, or little, a free curve may.
     """
     study, state, others = selection.study, selection.state, selection.others
     study.working_on("judging on the validation experiments")
@@ -88,7 +88,7 @@ def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
     curve, whole = None, True
     with until(selection.schedule.judging):
         found, _ = or_else(lambda: holding(study, state, others, selection.gains, judged), lambda: None)
-        if found is not None and not found[0].effects:
+        if found is not None and _curve_is_asked(state, found):
             curve, whole = or_else(partial(curve_instead, study, found[0], others, found[2]), lambda: None)
     if found is None:
         return _found_first(study, state, judged)  # free runs of its own, for which time was left beyond that
@@ -97,17 +97,41 @@ def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
     return (*curve, found[3], whole)
 
 
-def _found_first(study: Study, state: SearchState, judged: Judgement) -> Judged:
-    """The effect of the first step alone, with the values of its windows, if free runs leave half of the mismatch or less with it.
+def _curve_is_asked(searched: SearchState, found: Judged) -> bool:
+    """Whether nothing lasted, or so little of the names for a curve that much is left of the mismatch.
 
-    Seen: an arm's mode, told as a gain (the statement says both), whose search found the gear's errors beside it, none of which lasted: all
-    was taken back when time was over, and 300 times the noise left without a name.
+    Seen: what evaporates from a bath, told as a flow above a threshold and a constant: no threshold was there, and the constant alone left
+    28 times the noise.
     """
-    nothing = state.at(state.plain), {}, judged.without_effects(), (), False
-    first = next((s.taken for s in state.steps if s.taken is not None and not s.parent.effects), None)
-    if first is None or first.unknown or not sound(study, first):
-        return nothing
-    alone = judged.having(from_longest_windows(first.fitted))
-    if not alone.holds or alone.mismatch(True) > study.settings.left_if_far_better * alone.mismatch(False):
-        return nothing
-    return state.at(first.fitted), {}, alone, (), False
+    state, _, judged, *_ = found
+    if not state.effects:
+        return True
+    lost = searched.prefixes - state.prefixes
+    return bool(lost) and not state.has_curve and judged.left(True)[0] > judged.settings.left_to_doubt_a_curve
+
+
+def _found_first(study: Study, state: SearchState, judged: Judgement) -> Judged:
+    """The effect of the first step, or those of the first two, with the values of their windows, if free runs leave at most half with them.
+
+    Each of them costs a comparison with all experiments, hence no more than two. Seen: an arm's mode, told as a gain (the statement says
+    both), whose search found the gear's errors beside it, none of which lasted: all was taken back when time was over, and 300 times the
+    noise left without a name. An arm's friction over its position and its spring's play, of which neither is half of the mismatch.
+    """
+    for found in _first_found(state):
+        if not all(not taken.unknown and sound(study, taken) for taken in found):
+            break
+        alone = judged.having(from_longest_windows(found[-1].fitted))
+        if alone.holds and alone.mismatch(True) <= study.settings.left_if_far_better * alone.mismatch(False):
+            return state.at(found[-1].fitted), {}, alone, (), False
+    return state.at(state.plain), {}, judged.without_effects(), (), False
+
+
+def _first_found(state: SearchState, most: int = 2) -> list[tuple[RankedCandidate, ...]]:
+    """What the first step took, and what the first two took, the second built upon the first; at most ``most`` steps."""
+    begun: list[tuple[RankedCandidate, ...]] = []
+    for step in state.steps:
+        before = begun[-1] if begun else ()
+        built_upon = {taken.candidate.attachment.prefix for taken in before}
+        if step.taken is not None and {e.prefix for e in step.parent.effects} == built_upon and len(begun) < most:
+            begun.append((*before, step.taken))
+    return begun

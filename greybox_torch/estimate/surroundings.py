@@ -23,7 +23,14 @@ from greybox_torch.model.own_rate import RATE, adds_to_rate, balanced_state, wit
 from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
 from greybox_torch.model.sensed_states import sensed_states
-from greybox_torch.model.signals_elsewhere import ABOVE, DIFFERENCE, positions_elsewhere, signals_elsewhere
+from greybox_torch.model.signals_elsewhere import (
+    ABOVE,
+    DIFFERENCE,
+    SPEED,
+    positions_elsewhere,
+    signals_elsewhere,
+    turning_elsewhere,
+)
 from greybox_torch.model.states_of import states_of
 from greybox_torch.model.unit_of_rate import unit_of_rate
 from greybox_torch.model.within_turn import TURN, WHOLE
@@ -31,6 +38,9 @@ from greybox_torch.simulation.simulator import Simulator
 
 SEEN_AGAIN = 1.5
 """Turns that a shaft has to travel for what depends on its angle to be seen to repeat."""
+
+A_TURN = Range(0.0, WHOLE, WHOLE / 3**0.5)
+"""Where a shaft stands within its turn."""
 
 
 def survey(model: GreyBoxModel, problem: Problem, simulator: Simulator) -> dict[str, Surroundings]:
@@ -93,7 +103,13 @@ def _around(
         else:
             hidden = frozenset({"position"})
     if isinstance(port, Body) and _repeats(port, ranges["position"], units["position"]):
-        ranges[TURN], units[TURN] = Range(0.0, WHOLE, WHOLE / 3**0.5), "rad"
+        ranges[TURN], units[TURN] = A_TURN, "rad"
+    for signal, body in turning_elsewhere(model, port).items():
+        assert body.position is not None
+        if _repeats(body, _range(_evaluated(body.position, x, u, p, times)), position_unit(model, body)):
+            fast = f"{SPEED}{body.name}"
+            ranges |= {signal: A_TURN, fast: _range(_evaluated(body.speed, x, u, p, times))}
+            units |= {signal: "rad", fast: "rad/s"}
     return Surroundings(ranges, units, _force_unit(model, port, units), float(np.median(problem.records.dt)), hidden)
 
 
@@ -162,6 +178,7 @@ def _units(model: GreyBoxModel, port: Port) -> dict[str, str]:
     units = {name: of[signal] for name, signal in signals.items() if isinstance(signal, str) and signal in of}
     if isinstance(port, Body):
         units["position"] = position_unit(model, port)
+    if isinstance(port, Body | Coupling):
         units |= {name: position_unit(model, b) for name, b in positions_elsewhere(model, port).items()}
     if isinstance(port, Body | Balance):
         units |= {f"{kind}{one.name}": one.unit for kind in (INPUT, ALONG) for one in model.inputs}

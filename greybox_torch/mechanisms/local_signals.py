@@ -16,7 +16,7 @@ from greybox_torch.model.own_rate import RATE, own_rate
 from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Port, Sensor, driving_body, value_of
 from greybox_torch.model.signals_elsewhere import ABOVE, DIFFERENCE, above, difference
-from greybox_torch.model.within_turn import TURN, within_turn
+from greybox_torch.model.within_turn import TURN, TURN_OF, within_turn
 
 
 class LocalSignals:
@@ -153,8 +153,8 @@ class LocalSignals:
     def _from_elsewhere(
         self, site: Port, signal: str, x: Signals, u: Signals, p: Signals, forces: Signals | None
     ) -> Any:
-        """An input of the model, by itself or along a body's motion, a signal of another port, by how much the level of a balance is above
-        another one's or an input, or a port's rate.
+        """An input of the model, by itself or along a body's motion, a signal of another port, its angle within a turn, by how much the
+        level of a balance is above another one's or an input, or a port's rate.
         """
         kind, _, name = signal.partition("@")
         if kind == "input":
@@ -172,6 +172,8 @@ class LocalSignals:
         if signal.startswith(DIFFERENCE):
             assert isinstance(site, Balance) and isinstance(other, Balance)
             return value_of(difference(site, other), x, u, p)
+        if isinstance(other, Body) and signal.startswith(TURN_OF):
+            return within_turn(other, x, u, p)
         return value_of(other.signals[kind], x, u, p)
 
     def _position(self, name: str, x: Signals, u: Signals, p: Signals) -> Any:

@@ -12,7 +12,7 @@ from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
 from greybox_torch.model.own_rate import RATE
 from greybox_torch.model.signals_elsewhere import DIFFERENCE, POSITION, SPEED
-from greybox_torch.model.within_turn import TURN, WHOLE
+from greybox_torch.model.within_turn import TURN, TURN_OF, WHOLE
 
 REACH = 4
 """To either side of how many neighbours a bump is computed with: an exponential costs as much as ten products."""
@@ -31,8 +31,8 @@ class Unknown(Mechanism):
     ``knots`` bumps exp(−((s − s_k) / w)²) with centres spread evenly over where the signal moved; beyond that the curve stays level.
     With a ``factor`` the curve is what that other signal is multiplied by: a gain that changes. The factor may be an input of the model,
     ``input@NAME``, also where it does not act; the signal may be that of another port, ``position@BODY`` or ``level@BALANCE``: what one
-    axis does to the other, or a charge to how a battery warms. Of a ``difference@BALANCE`` of levels it is what two balances exchange: the
-    other one has it with the opposite sign.
+    axis does to the other, a charge to how a battery warms, or the angle of its rotor (``turn@BODY``) to what a pump delivers. Of a
+    ``difference@BALANCE`` of levels it is what two balances exchange: the other one has it with the opposite sign.
 
     The factor ``rate@PORT`` is how fast the port's own level or speed changes without this curve: a capacity or an inertia that varies. An
     inertia m(θ) more than the model has needs −m a − ½ m' ω² of the torque; one over the position of another axis, m(θ_2), needs
@@ -114,7 +114,7 @@ class Unknown(Mechanism):
     @property
     def closed(self) -> bool:
         """Whether the curve ends where it begins: over a turn."""
-        return self.signal == TURN
+        return self.signal == TURN or self.signal.startswith(TURN_OF)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(tuple(f"w_{k}" for k in self.bumps))]

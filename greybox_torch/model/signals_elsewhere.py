@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.joined_bodies import bodies_apart
-from greybox_torch.model.ports import Actuator, Balance, Body, Port, Signal, value_of
+from greybox_torch.model.ports import Actuator, Balance, Body, Coupling, Port, Signal, driving_body, value_of
+from greybox_torch.model.within_turn import TURN_OF
 
 LEVEL, POSITION, SPEED = "level@", "position@", "speed@"
 """Beginnings of the names of such signals; the name of their port follows."""
@@ -18,13 +19,14 @@ ABOVE = "above@"
 
 
 def signals_elsewhere(model: GreyBoxModel, port: Port) -> dict[str, Signal]:
-    """By name, at a body the positions and speeds of other axes and the levels of balances, at an actuator those levels, at a balance the
-    levels of others, and by how much its own is above those of them, and above those inputs, that have its unit.
+    """By name, at a body the positions and speeds of other axes and the levels of balances, at a coupling the positions of bodies, at an
+    actuator those levels, at a balance the levels of others, and by how much its own is above those of them, and above those inputs, that
+    have its unit.
 
     A force by the speed of what a spring joins with a body is friction there, or the spring's damping.
     """
     found: dict[str, Signal] = {}
-    if isinstance(port, Body):
+    if isinstance(port, Body | Coupling):
         there = positions_elsewhere(model, port).items()
         found |= {name: body.position for name, body in there if body.position is not None}
     if isinstance(port, Actuator | Body | Balance):
@@ -66,11 +68,24 @@ def _unit_of_level(model: GreyBoxModel, balance: Balance) -> str | None:
     return next((s.unit for s in model.states if s.name == balance.level), None)
 
 
-def positions_elsewhere(model: GreyBoxModel, body: Body) -> dict[str, Body]:
-    """By the name of their position as a signal, the bodies apart from one (:func:`bodies_apart`) whose positions recordings show.
+def positions_elsewhere(model: GreyBoxModel, port: Body | Coupling) -> dict[str, Body]:
+    """By the name of their position as a signal, the bodies apart from one (:func:`bodies_apart`), or for a coupling all but the driving
+    body, whose positions recordings show.
 
     Not where nothing depends on a position: where it begins is then not known.
     """
+    if isinstance(port, Body):
+        there = bodies_apart(model, port)
+    else:
+        there = [b for b in model.ports if isinstance(b, Body) and b is not driving_body(model.ports)]
     kept = model.carried_states()
-    apart = bodies_apart(model, body)
-    return {f"{POSITION}{b.name}": b for b in apart if b.position is not None and b.position not in kept}
+    return {f"{POSITION}{b.name}": b for b in there if b.position is not None and b.position not in kept}
+
+
+def turning_elsewhere(model: GreyBoxModel, port: Port) -> dict[str, Body]:
+    """For a balance, by the name of the body's angle within its turn as a signal, the bodies whose positions recordings show."""
+    if not isinstance(port, Balance):
+        return {}
+    kept = model.carried_states()
+    bodies = (q for q in model.ports if isinstance(q, Body))
+    return {f"{TURN_OF}{b.name}": b for b in bodies if b.position is not None and b.position not in kept}

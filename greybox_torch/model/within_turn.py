@@ -12,6 +12,9 @@ from greybox_torch.model.ports import Body, Signal, value_of
 TURN = "turn"
 """The name of such a signal."""
 
+TURN_OF = "turn@"
+"""Beginning of the name of that of another port's body; the body's name follows."""
+
 WHOLE = 2.0 * math.pi
 """A turn, in rad."""
 

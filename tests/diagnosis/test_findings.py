@@ -45,10 +45,7 @@ def test_where_time_ends_what_led_the_search_stands_if_free_runs_bear_it_out(
     """Seen: 300 times the noise without a name, as four effects that came after the right statement were being taken back."""
     gain, ripple = stub(prefix="actuator.gain"), stub(prefix="motor.ripple")
     plain, alone, both = (stub(effects=e) for e in ((), (gain,), (gain, ripple)))
-    steps = (
-        stub(parent=plain, taken=stub(fitted=alone, unknown=unknown)),
-        stub(parent=alone, taken=stub(fitted=both, unknown=False)),
-    )
+    steps = _steps(stub, plain, (gain, alone, unknown), (ripple, both, False))
     judged = stub(
         having=lambda final, *_: stub(holds=holds, mismatch=lambda effects: left if effects else 1.0),
         without_effects=lambda: None,
@@ -59,6 +56,40 @@ def test_where_time_ends_what_led_the_search_stands_if_free_runs_bear_it_out(
     state, gains, _, _, whole = findings._found_first(study, SearchState(plain, both, steps), judged)
     assert state.current is (alone if stands else plain) and not gains and not whole
     assert findings._found_first(study, SearchState(plain, plain), judged)[0].current is plain
+
+
+def _steps(stub, plain: Any, *taken: tuple[Any, Any, bool]) -> tuple[Any, ...]:
+    """The steps of a search from ``plain``: each effect that was taken, the hypothesis with it, and whether it is a curve."""
+    parents = (plain, *(fitted for _, fitted, _ in taken))
+    return tuple(
+        stub(parent=parent, taken=stub(fitted=fitted, unknown=unknown, candidate=stub(attachment=effect)))
+        for parent, (effect, fitted, unknown) in zip(parents, taken, strict=False)
+    )
+
+
+@pytest.mark.parametrize(
+    ("left_with_both", "unknown", "stands"), [(0.1, False, True), (0.7, False, False), (0.1, True, False)]
+)
+def test_of_two_effects_of_which_neither_is_half_of_the_mismatch_both_stand_where_time_ends(
+    monkeypatch, stub, left_with_both, unknown, stands
+) -> None:
+    """Seen: friction over an arm's position (64 %) and its spring's play (35 %), both taken back as time ended."""
+    friction, play, crumb = (stub(prefix=p) for p in ("motor.friction", "arm_spring.backlash", "arm.friction"))
+    plain, alone, both, three = (stub(effects=e) for e in ((), (friction,), (friction, play), (friction, play, crumb)))
+    left = {1: 0.6, 2: left_with_both, 3: 0.01}
+    judged = stub(
+        having=lambda final, *_: stub(
+            holds=True, mismatch=lambda effects: left[len(final.effects)] if effects else 1.0
+        ),
+        without_effects=lambda: None,
+    )
+    monkeypatch.setattr(findings, "from_longest_windows", lambda hypothesis: hypothesis)
+    monkeypatch.setattr(findings, "sound", lambda study, ranked: True)
+    steps = _steps(stub, plain, (friction, alone, False), (play, both, unknown), (crumb, three, False))
+    chosen_anew = stub(parent=stub(effects=(play, crumb)), taken=stub(candidate=stub(attachment=friction)))
+    state = SearchState(plain, three, (*steps, chosen_anew))
+    found = findings._found_first(stub(settings=DiagnosisSettings()), state, judged)[0]
+    assert found.current is (both if stands else plain)
 
 
 def test_what_led_the_search_is_judged_also_where_time_has_ended(monkeypatch, stub) -> None:
@@ -80,10 +111,30 @@ def test_what_led_the_search_is_judged_also_where_time_has_ended(monkeypatch, st
     monkeypatch.setattr(findings, "holding", until_time_ends)
     monkeypatch.setattr(findings, "from_longest_windows", lambda hypothesis: hypothesis)
     monkeypatch.setattr(findings, "sound", lambda study, ranked: True)
-    state = SearchState(plain, alone, (stub(parent=plain, taken=stub(fitted=alone, unknown=False)),))
+    state = SearchState(plain, alone, _steps(stub, plain, (gain, alone, False)))
     study = stub(settings=DiagnosisSettings(), working_on=lambda text: None)
     over = stub(
         study=study, state=state, others=None, gains={}, free_runs=None, schedule=Schedule(judging=Deadline(0.0))
     )
     found, _, _, _, whole = findings._judged(over, stub(), stub())
     assert found.current is alone and not whole
+
+
+@pytest.mark.parametrize(
+    ("searched", "lasted", "share_left", "has_curve", "asked"),
+    [
+        (("bath.flow", "bath.bias"), (), 1.0, False, True),
+        (("bath.flow", "bath.bias"), ("bath.bias",), 0.12, False, True),
+        (("bath.flow", "bath.bias"), ("bath.bias",), 0.02, False, False),
+        (("bath.bias",), ("bath.bias",), 0.12, False, False),
+        (("bath.unknown", "bath.bias"), ("bath.unknown",), 0.12, True, False),
+    ],
+    ids=["nothing lasted", "little lasted", "enough lasted", "all lasted", "a curve lasted"],
+)
+def test_a_curve_is_asked_where_little_of_the_names_lasted(
+    stub, searched, lasted, share_left, has_curve, asked
+) -> None:
+    """Seen: what evaporates from a bath, told as a constant (0.74) with 28 times the noise; the curve over its temperature leaves 1.4."""
+    before, state = (stub(effects=names, prefixes=set(names), has_curve=has_curve) for names in (searched, lasted))
+    judged = stub(left=lambda effects: (share_left, 28.0), settings=DiagnosisSettings())
+    assert findings._curve_is_asked(before, (state, {}, judged, (), True)) is asked

@@ -11,6 +11,8 @@ from greybox_torch.mechanisms.balance import LinearLeak, ThresholdFlow
 from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndStop, TorqueRipple
 from greybox_torch.mechanisms.gravity import Gravity
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
+from greybox_torch.mechanisms.transmission_error import TransmissionError
+from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 
 ANGLES = np.linspace(-4.0, 4.0, 201)
 
@@ -176,3 +178,11 @@ def test_a_stop_may_stand_farther_in_a_travel_that_no_sensor_shows(where, said, 
     values = {"k": 500.0, "where": where, "c": 1.0, "side": 1.0}
     assert ("no stop gives way" in (EndStop().misplaced(unseen, values) or "")) is said
     assert "no stop gives way" in (EndStop().misplaced(around, values) or "")
+
+
+@pytest.mark.parametrize("law", [TorqueRipple, PositionDependentFriction, TransmissionError])
+def test_an_order_may_turn_out_an_octave_from_the_one_that_a_screen_found(law) -> None:
+    """Seen: the friction of an arm's motor, of order 2, held at 2.03 by the bound of a screen's 2.53."""
+    around = Surroundings({"position": Range(-3.0, 5.0, 2.0), "speed": Range(-3.0, 5.0, 2.0)}, {}, "N m", 1e-3)
+    (order,) = (p for p in law(2.53).parameters(around) if p.name == "order")
+    assert order.bounds == pytest.approx((1.265, 5.06)) and order.value == 2.53

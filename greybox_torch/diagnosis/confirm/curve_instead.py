@@ -1,4 +1,4 @@
-"""A free curve in the place of nothing, where no name lasted and held-out experiments bear the curve out."""
+"""A free curve in the place of nothing, or of little, where no name lasted that explains most and held-out experiments bear it out."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from greybox_torch.simulation.side_by_side import side_by_side
 def curve_instead(
     study: Study, state: SearchState, others: HeldOut | None, judged: Judgement
 ) -> tuple[SearchState, Mapping[str, Gain], Judgement] | None:
-    """``state``, of which nothing was left, with the free curve that led its first step, drawn as finely as pays; None where free runs do
-    not leave half of the mismatch or less with it, or windows do not bear it out beyond chance.
+    """The free curve that led the first step of ``state``, drawn as finely as pays, in the place of what was left of that; None where free
+    runs do not leave half of what that leaves or less with it, or windows do not bear it out beyond chance.
 
     A name of many amplitudes may go farther than a curve of few knots, and what joins it takes up what it lacks. Seen: a dip and a bump of
     a rail, told as a ripple of six harmonics and a curve; neither lasted, and 56 times the noise was left without a name.
@@ -41,7 +41,8 @@ def curve_instead(
         without={best.candidate.attachment.prefix: state.plain},
     )
     gains, by_it = judged_anew(study, curve, others, judged)
-    return (curve, gains, by_it) if leaves_far_less(gains, by_it, by_it.mismatch(False), settings) else None
+    left = judged.mismatch(True) if state.effects else by_it.mismatch(False)
+    return (curve, gains, by_it) if leaves_far_less(gains, by_it, left, settings) else None
 
 
 def _curves(study: Study, step: SelectionStep) -> list[RankedCandidate]:

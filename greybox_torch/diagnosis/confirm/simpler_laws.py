@@ -11,6 +11,7 @@ from greybox_torch.diagnosis.hypothesis.significance import likelihood_significa
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.select.backward import drop_superfluous
+from greybox_torch.diagnosis.select.finer_steps import finely_enough
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
@@ -63,7 +64,10 @@ def simplified(study: Study, state: SearchState, effect: Attachment) -> SearchSt
 
 
 def _contained(study: Study, state: SearchState, effect: Attachment) -> list[tuple[RankedCandidate, Hypothesis]]:
-    """Laws that the law of ``effect`` contains, of those that were refitted beside it, and each in its place beside the others."""
+    """Laws that the law of ``effect`` contains, of those that were refitted beside it, and each in its place beside the others.
+
+    In as fine steps as it needs. Seen: a press's dry friction, whose sign changes within 0.3 mm/s, told as presliding of 18 um (0.97).
+    """
     done, found = state.step_of(effect.prefix), []
     for rival in done.ranked if done is not None else ():
         other = rival.candidate.attachment
@@ -71,7 +75,7 @@ def _contained(study: Study, state: SearchState, effect: Attachment) -> list[tup
         if inside and other.prefix not in state.prefixes:
             study.working_on(f"refitting {other.prefix} in the place of {effect.prefix}")
             fitted = refitted(study, state.with_law(effect, other), state.current, [rival.fitted.values()])
-            found += [] if fitted is None else [(rival, fitted)]
+            found += [] if fitted is None else [(rival, finely_enough(study, fitted, other))]
     return found
 
 

@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from greybox_torch.diagnosis.confirm.coarser_curve import with_coarser_curve
 from greybox_torch.diagnosis.confirm.exercised import hardly_exercised, untouched
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, timelines
 from greybox_torch.diagnosis.confirm.second_choice import second_choice
@@ -33,6 +34,7 @@ def confirm(study: Study, state: SearchState, others: HeldOut) -> Stage[SearchSt
     if not state.effects:
         return state
     study.working_on("confirming on held-out experiments")
+    state = yield from with_coarser_curve(study, state, others)
     with_curve = state if state.has_curve else None
     state = yield from _names_for_curve(study, state, others)
     state = yield from with_simpler_laws(study, state, others)

@@ -28,7 +28,7 @@ from greybox_torch.model.along_motion import ALONG, DIRECTION
 from greybox_torch.model.own_rate import RATE, balanced_state
 from greybox_torch.model.ports import Actuator, Port, driving_body
 from greybox_torch.model.signals_elsewhere import ABOVE, DIFFERENCE
-from greybox_torch.model.within_turn import TURN
+from greybox_torch.model.within_turn import TURN, TURN_OF
 
 
 def describe(
@@ -171,6 +171,8 @@ def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:
         return f"{signal_name(model, site, 'level')} - {signal_name(model, other, 'level')}"
     if signal.startswith(ABOVE):
         return f"{signal_name(model, site, 'level')} - {signal.removeprefix(ABOVE)}"
+    if signal.startswith(TURN_OF):
+        return signal_name(model, next(q for q in model.all_ports if q.name == signal.removeprefix(TURN_OF)), TURN)
     if signal == TURN:
         return f"{signal_name(model, site, 'position')} within a turn"
     if signal.startswith(ALONG):

@@ -9,7 +9,7 @@ from typing import Any
 import torch
 
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
-from greybox_torch.model import Balance, Body, GreyBoxModel, Port
+from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port
 from greybox_torch.model.along_motion import ALONG, DIRECTION, inputs_that_push
 from greybox_torch.model.idle_inputs import idle_inputs, ports_in_use
 from greybox_torch.model.joined_bodies import bodies_apart
@@ -24,7 +24,9 @@ from greybox_torch.model.signals_elsewhere import (
     SPEED,
     balances_alike,
     inputs_alike,
+    positions_elsewhere,
     signals_elsewhere,
+    turning_elsewhere,
 )
 from greybox_torch.model.states_of import inputs_of
 from greybox_torch.model.within_turn import TURN
@@ -35,7 +37,7 @@ MOST_FROM_ELSEWHERE, MOST_FROM_INPUTS, MOST_EXCHANGED, MOST_LOST = 32, 12, 12, 1
 
 def further_curves(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
     """All of them, with the port of each."""
-    ways = (_by_rate, _by_direction, _from_elsewhere, _from_inputs, _exchanged, _lost)
+    ways = (_by_rate, _by_direction, _from_elsewhere, _from_inputs, _stiffness, _within_a_turn, _exchanged, _lost)
     return chain.from_iterable(way(model, knots) for way in ways)
 
 
@@ -87,7 +89,14 @@ def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unk
         yield from ((actuator, Unknown(level, knots, "input")) for level in signals_elsewhere(model, actuator))
 
     actuators = (q for q in ports_in_use(model) if isinstance(q, Actuator))
-    return _in_turn((*map(of, model.ports), *map(at, actuators)), MOST_FROM_ELSEWHERE)
+    others = (port for port in model.ports if not isinstance(port, Coupling))
+    return _in_turn((*map(of, others), *map(at, actuators)), MOST_FROM_ELSEWHERE)
+
+
+def _stiffness(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """A coupling's stiffness by where a body stands: the free length of a belt, a rope or a screw."""
+    for port in (q for q in model.ports if isinstance(q, Coupling)):
+        yield from ((port, Unknown(signal, knots, "deflection")) for signal in positions_elsewhere(model, port))
 
 
 def _own(port: Port) -> tuple[str, ...]:
@@ -136,6 +145,13 @@ def _by_a_state(model: GreyBoxModel, name: str, rate: Callable[[Any, Any, Any], 
     without = u.replaced(**{name: 0.0 * u[name]})
     here, *moved = (rate(at, u, p) - rate(at, without, p) for at in (x, *(x.replaced(**{n: x[n] + 1.0}) for n in x)))
     return any(not torch.allclose(torch.as_tensor(there), torch.as_tensor(here), rtol=1e-4) for there in moved)
+
+
+def _within_a_turn(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """What a turning body does to a balance by its angle, by itself or to what it does by its speed: what a pump delivers pulsates."""
+    for port in model.ports:
+        for signal, body in turning_elsewhere(model, port).items():
+            yield from ((port, Unknown(signal, knots, factor)) for factor in ("", f"{SPEED}{body.name}"))
 
 
 def _exchanged(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:

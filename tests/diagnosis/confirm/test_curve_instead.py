@@ -54,6 +54,25 @@ def test_the_best_curve_of_the_first_step_stands_if_held_out_experiments_say_so(
         assert state.steps[-1].taken is curves[0] and state.steps[-1].ranked == (curves[0],)
 
 
+@pytest.mark.parametrize(("left", "stands"), [(0.04, True), (0.08, False)])
+def test_beside_a_law_that_lasted_a_curve_has_to_leave_half_of_what_that_leaves(
+    monkeypatch, stub, left, stands
+) -> None:
+    plain, bias = stub(effects=()), stub(effects=(stub(prefix="bath.bias"),))
+    curve = candidate(stub, "bath.unknown", 4.0)
+    step = stub(parent=plain, ranked=(curve,), taken=curve, screened=())
+    monkeypatch.setattr(module, "as_fine_as_pays", lambda study, parent, ranked: ranked)
+    monkeypatch.setattr(module, "sound", lambda study, ranked: True)
+    monkeypatch.setattr(module, "times_noise", lambda *args: 50.0)
+    monkeypatch.setattr(module, "in_order", lambda ranked, settings: ranked)
+    by_it = stub(mismatch=lambda effects: left if effects else 1.0, holds=True, unstable=())
+    monkeypatch.setattr(module, "judged_anew", lambda study, state, *rest: ({"bath.unknown": SURE}, by_it))
+    study = stub(settings=DiagnosisSettings(), problem=None, working_on=lambda text: None)
+    by_bias = stub(mismatch=lambda effects: 0.1 if effects else 1.0)
+    found = curve_instead(study, SearchState(plain, bias, (step,)), stub(), by_bias)
+    assert (found is not None and found[0].current is curve.fitted) is stands
+
+
 def test_no_curve_is_asked_where_none_was_tried_or_there_is_nothing_to_ask(monkeypatch, stub) -> None:
     monkeypatch.setattr(module, "times_noise", lambda *args: 50.0)
     monkeypatch.setattr(module, "sound", lambda study, ranked: True)
