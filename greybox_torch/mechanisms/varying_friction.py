@@ -84,7 +84,10 @@ class PositionDependentFriction(Mechanism):
 
 
 class FrictionWarmup(Mechanism):
-    """−ΔF exp(−t / T) tanh(v / v_0): Coulomb friction that decays (ΔF > 0) or grows with time."""
+    """−ΔF exp(−t / T) tanh(v / v_0): Coulomb friction that decays (ΔF > 0) or grows with time.
+
+    ``with_level``, −F_c tanh(v / v_0) besides: for a body whose model has no dry friction.
+    """
 
     name = "friction_warmup"
     kinds = ("body",)
@@ -95,16 +98,25 @@ class FrictionWarmup(Mechanism):
     source = "A. C. Bittencourt, S. Gunnarsson, J. Dyn. Sys. Meas. Control 134, 2012"
     experiment = "the same motion repeated from cold to warm"
 
+    def __init__(self, with_level: bool = False) -> None:
+        self.with_level = with_level
+        if with_level:
+            self.includes = self.generalises = ("coulomb_friction",)
+            self.stands_for = ("coulomb_friction", "friction_warmup")
+
     def parameters(self, around: Surroundings) -> list[Parameter]:
         total = max(around.ranges["time"].high, around.sample_time)
+        level = Parameter("F_c", 0.0, around.force_unit, lower=0.0, description="level in the end")
         return [
+            *([level] if self.with_level else []),
             Parameter("delta", 0.0, around.force_unit, description="level at the start above the final one"),
             Parameter("T", 0.3 * total, "s", lower=0.02 * total, upper=5 * total, description="time constant"),
             width_parameter(around),
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return -p.delta * torch.exp(-s.time / p.T) * smooth_sign(s.speed, p.v_0)
+        passing = p.delta * torch.exp(-s.time / p.T)
+        return -(p.F_c + passing if self.with_level else passing) * smooth_sign(s.speed, p.v_0)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         total = max(around.ranges["time"].high, around.sample_time)
@@ -116,3 +128,7 @@ class FrictionWarmup(Mechanism):
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return not_a_time_of_the_record("T", values["T"], around)
+
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """With the level that stays."""
+        return () if self.with_level else ((FrictionWarmup(with_level=True), {**values, "F_c": 0.0}),)

@@ -132,6 +132,14 @@ def test_warmup_decays(law) -> None:
     np.testing.assert_allclose(force, [-3.0, -3.0 / np.e, 0.0], atol=1e-9)
 
 
+def test_warmup_with_a_level_ends_at_that(law) -> None:
+    values = {"F_c": 0.5, "delta": 3.0, "T": 2.0, "v_0": 0.1}
+    warm, speed, time = FrictionWarmup(with_level=True), np.array([5.0, -5.0, 5.0]), np.array([0.0, 2.0, 60.0])
+    np.testing.assert_allclose(law(warm, values, speed=speed, time=time), [-3.5, 0.5 + 3.0 / np.e, -0.5], atol=1e-9)
+    ((richer, start),) = FrictionWarmup().richer({"delta": 3.0, "T": 2.0, "v_0": 0.1})
+    assert richer.with_level and start == {**values, "F_c": 0.0} and not richer.richer(values)
+
+
 def test_position_dependence_is_periodic(law) -> None:
     mechanism, values = PositionDependentFriction(3.0), {"a": 0.4, "b": -0.2, "v_0": 0.1}
     angle = np.linspace(0.0, 2.0, 100)

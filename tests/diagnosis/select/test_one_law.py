@@ -9,13 +9,13 @@ import pytest
 
 from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
-from greybox_torch.diagnosis.select.richer import as_one_law, richer_instead, with_richer_form
+from greybox_torch.diagnosis.select.richer import _forms_of_both, as_one_law, richer_instead, with_richer_form
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction
-from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
+from greybox_torch.mechanisms.varying_friction import FrictionWarmup, PositionDependentFriction
 
 from ..conftest import found
 
@@ -43,6 +43,19 @@ def test_dry_friction_and_what_makes_it_uneven_are_one_law(motor_data, motor, be
     values = state.current.values()
     assert values["rotor.coulomb_asymmetry.F_c"] == pytest.approx(level, rel=0.05)
     assert values["rotor.coulomb_asymmetry.delta"] == pytest.approx(difference, rel=0.05)
+
+
+def test_a_level_that_stays_and_one_that_fades_are_asked_as_one_law(motor_data, motor, begun) -> None:
+    """Seen: a centrifuge's bearing, told as friction that warms up and, beside it, Coulomb friction (0.97 each)."""
+    search = begun(motor_data(torque=lambda q, v: -0.1 * np.tanh(v / 0.05)), motor)
+    level, fading = attach(motor, "rotor", CoulombFriction()), attach(motor, "rotor", FrictionWarmup())
+    before = found(search, fading, {f"{fading.prefix}.delta": 0.05})
+    after = before.at(search.refitted((fading, level), before.current))
+    forms = {law.mechanism.stands_for: start for law, start in _forms_of_both(fading, level, before, after)}
+    start = forms[("coulomb_friction", "friction_warmup")]
+    values = after.current.values()
+    assert start["rotor.friction_warmup.F_c"] == values[f"{level.prefix}.F_c"] == pytest.approx(0.1, rel=0.2)
+    assert start["rotor.friction_warmup.delta"] == values[f"{fading.prefix}.delta"]
 
 
 @pytest.mark.parametrize("first", ["level", "varying"])
