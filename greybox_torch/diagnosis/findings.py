@@ -107,7 +107,7 @@ def _curve_is_asked(searched: SearchState, found: Judged) -> bool:
     if not state.effects:
         return True
     lost = searched.prefixes - state.prefixes
-    return bool(lost) and not state.has_curve and judged.left(True)[0] > judged.settings.left_to_doubt_a_curve
+    return bool(lost) and not state.has_curve and judged.left(True)[0] > judged.settings.left_to_ask_for_a_curve
 
 
 def _found_first(study: Study, state: SearchState, judged: Judgement) -> Judged:

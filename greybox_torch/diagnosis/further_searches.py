@@ -64,7 +64,7 @@ def _another(
     Seen: a ferry that heels as it turns. Of what was found with two and with three experiments to choose with, held-out windows bore out
     both; free runs of two were no better, and nothing was told, though those of the other are (7.5 % of the mismatch left).
     """
-    for other in reversed(known.values()):
+    for other in reversed(tuple(known.values())):
         if other.complete and other.state.effects and not isinstance(other, Findings):
             found = judged(other)
             if found.state.effects:

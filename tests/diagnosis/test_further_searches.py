@@ -248,27 +248,3 @@ def test_over_longer_windows_nothing_that_is_left_is_too_little(monkeypatch, stu
     found = further_searches.find_what_is_slow(judged(first, None), stub(), partial(stub), stub())
     assert begun == [{"budget": "longer", "more_is_missing": True}]
     assert not found.complete and found.cut == (further_searches.LONGER,)
-
-
-@pytest.mark.parametrize("second_holds", [True, False])
-def test_where_nothing_lasts_of_what_was_selected_free_runs_judge_the_other_search(
-    monkeypatch, stub, first, more, second_holds
-) -> None:
-    """Seen: a ferry that heels as it turns: free runs were no better with what was selected, and never asked of what was not."""
-    found, again = (replace(first, state=SearchState(stub(effects=()), stub(effects=(stub(),)))) for _ in range(2))
-    nothing = SearchState(stub(effects=()), stub(effects=()))
-
-    def judge(selection: Selection, clock: Any) -> Findings:
-        lasts = second_holds and selection.state is again.state
-        return judged(selection if lasts else replace(selection, state=nothing), clock)
-
-    steps: dict[str, Any] = {
-        "judge": judge,
-        "promote_validation": lambda study, dataset, state, others: more if state is found.state else None,
-        "find": lambda *args, **named: replace(again, dataset=more.dataset),
-        "replaces": lambda *args: False,
-    }
-    for name, step in steps.items():
-        monkeypatch.setattr(further_searches, name, step)
-    best = find_with_more(found, stub(), stub(), stub())
-    assert best.state is (again.state if second_holds else nothing)

@@ -63,6 +63,12 @@ class ConfirmationSettings:
         "The same that a free curve must leave for names that it stood before to be tried in its place.",
         unit="share of the mean squared error of free validation runs beyond the noise",
     )
+    left_to_ask_for_a_curve: float = share(
+        0.1,
+        "The same that names must leave, of which some did not last, for the curve that they stood for to be tried in their place.",
+        unit="share of the mean squared error of free validation runs beyond the noise",
+        chosen_by="what evaporates from a bath: the constant that lasted leaves 0.12",
+    )
     left_if_far_better: float = share(
         0.5,
         "Part of that which must be left at most by either to be told instead.",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -70,3 +71,13 @@ def test_laws_and_curves_as_the_screen_drew_them_are_not_asked(drawn_finely, mot
     law = stub(effects=(attach(motor, "rotor", ConstantBias()),))
     named = SearchState(state.plain, law)
     assert result_of(with_coarser_curve(study, named, None)) is named
+
+
+def test_a_curve_that_was_first_drawn_beside_a_law_is_not_asked(drawn_finely, stub) -> None:
+    """Seen: a stage's dry friction and constant force: the coarse curve beside a law did all that the law did, and left 9 %."""
+    study, state, _ = drawn_finely(0.5)
+    first = state.steps[0].taken
+    beside = stub(effects=(*first.fitted.effects, stub(prefix="rotor.drag")))
+    step = replace(state.steps[0], taken=replace(first, fitted=beside))
+    state = replace(state, steps=(step,))
+    assert result_of(with_coarser_curve(study, state, None)) is state
