@@ -12,6 +12,7 @@ from greybox_torch.checking.points import Points
 from greybox_torch.checking.source import Source
 from greybox_torch.checking.tracing import Traced
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.states_of import inputs_of
 
 
 def without_effect(
@@ -48,8 +49,13 @@ def without_effect(
             )
     for i, signal in enumerate(model.inputs):
         if not influence.moves["input"][i].any():
+            serves = _port_that_reads(model, signal.name)
             found, write = f"input '{signal.name}' moves no output", f"u.{signal.name} in derivative() or output()"
-            yield Finding("warning", "influence", found, write, source.file, source.line_of(f'"{signal.name}"'))
+            if serves:
+                found += f": laws that are attached at port '{serves}' may depend on it, the model does not"
+                write = f"it as it is, if that is meant; else {write}"
+            level = "note" if serves else "warning"
+            yield Finding(level, "influence", found, write, source.file, source.line_of(f'"{signal.name}"'))
     for i, state in enumerate(model.states):
         if not influence.moves["state"][i].any():
             yield Finding(
@@ -84,6 +90,12 @@ def not_finite(model: GreyBoxModel, influence: Influence, points: Points, source
         source.file,
         line,
     )
+
+
+def _port_that_reads(model: GreyBoxModel, name: str) -> str:
+    """The port of which a signal, such as the load that a body carries, depends on an input; "" for none."""
+    functions = ((port.name, s) for port in model.ports for s in port.signals.values() if not isinstance(s, str))
+    return next((port for port, signal in functions if name in inputs_of(model, signal)), "")
 
 
 def _appears(traced: Traced, kind: str, index: int) -> bool:

@@ -179,6 +179,21 @@ def test_what_a_clamp_hides_beyond_small_values_moves_the_output(tmp_path: Path,
     assert not [f for f in found.findings if "moves no output" in f.found]
 
 
+def test_an_input_that_only_a_port_reads_is_a_note(tmp_path: Path, machines: Path) -> None:
+    """Seen: a log's hold-down force and a blade's bending moment, recorded for the friction that grows with them."""
+    carried = ('Body("rotor", speed="speed"', 'Body("rotor", speed="speed", load=lambda x, u, p: 2.0 * u.hold')
+    result, text = examined(
+        tmp_path, machines, carried, ('Input("voltage", "V")', 'Input("voltage", "V"), Input("hold", "N")')
+    )
+    (found,) = result.findings
+    assert (found.level, found.line) == ("note", line_of(text, '"hold"'))
+    assert (
+        found.found
+        == "input 'hold' moves no output: laws that are attached at port 'rotor' may depend on it, the model does not"
+    )
+    assert "it as it is" in found.write and "u.hold in derivative()" in found.write
+
+
 def test_a_state_that_nothing_shows_is_a_note(machines: Path) -> None:
     result = examine(model_class(f"{machines / 'small.py'}:WarmRotor"))
     assert [(f.level, f.topic) for f in result.findings] == [("note", "influence")]
