@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.joined_bodies import bodies_apart
 from greybox_torch.model.ports import Actuator, Balance, Body, Coupling, Port, Signal, driving_body, value_of
@@ -78,14 +80,17 @@ def positions_elsewhere(model: GreyBoxModel, port: Body | Coupling) -> dict[str,
         there = bodies_apart(model, port)
     else:
         there = [b for b in model.ports if isinstance(b, Body) and b is not driving_body(model.ports)]
-    kept = model.carried_states()
-    return {f"{POSITION}{b.name}": b for b in there if b.position is not None and b.position not in kept}
+    return _whose_position_shows(model, there, POSITION)
 
 
 def turning_elsewhere(model: GreyBoxModel, port: Port) -> dict[str, Body]:
     """For a balance, by the name of the body's angle within its turn as a signal, the bodies whose positions recordings show."""
     if not isinstance(port, Balance):
         return {}
+    return _whose_position_shows(model, (q for q in model.ports if isinstance(q, Body)), TURN_OF)
+
+
+def _whose_position_shows(model: GreyBoxModel, bodies: Iterable[Body], beginning: str) -> dict[str, Body]:
+    """By the name of a signal that begins so, those of some bodies whose positions recordings show."""
     kept = model.carried_states()
-    bodies = (q for q in model.ports if isinstance(q, Body))
-    return {f"{TURN_OF}{b.name}": b for b in bodies if b.position is not None and b.position not in kept}
+    return {f"{beginning}{b.name}": b for b in bodies if b.position is not None and b.position not in kept}

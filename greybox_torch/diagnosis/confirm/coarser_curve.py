@@ -15,7 +15,6 @@ from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
-from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulation.side_by_side import side_by_side
 
@@ -40,13 +39,11 @@ def with_coarser_curve(study: Study, state: SearchState, others: HeldOut) -> Sta
 
 def _as_drawn_first(state: SearchState) -> Hypothesis | None:
     """The hypothesis with the curve of the step that took it; None where that has as many knots, or there is more than a curve."""
-    knots = [_knots(effect) for effect in state.effects if isinstance(effect.mechanism, Unknown)]
-    done = state.step_of(state.newest)
-    first = None if done is None else done.taken
-    if first is None or not knots or {len(state.effects), len(first.fitted.effects)} != {1}:
+    if len(state.effects) != 1 or not isinstance(curve := state.effects[0].mechanism, Unknown):
         return None
-    return first.fitted if _knots(first.candidate.attachment) < knots[0] else None
-
-
-def _knots(curve: Attachment) -> int:
-    return getattr(curve.mechanism, "knots", 0)
+    done = state.step_of(state.effects[0].prefix)
+    first = None if done is None or done.taken is None else done.taken.fitted
+    if first is None or len(first.effects) != 1:
+        return None
+    drawn = first.effects[0].mechanism
+    return first if isinstance(drawn, Unknown) and drawn.knots < curve.knots else None
