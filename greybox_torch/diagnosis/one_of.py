@@ -60,7 +60,9 @@ def spoken(mechanism: str) -> str:
     unknown = {
         "unknown": "an unknown effect",
         "unknown_with_memory": "an unknown effect with memory",
+        "unknown_fading": "an unknown effect that fades",
         "unknown_play": "an unknown effect with play",
+        "unknown_rate_limit": "an unknown effect with a limit of the rate",
     }
     return unknown.get(mechanism) or in_words(mechanism)
 

@@ -135,9 +135,10 @@ LEAST_ASYMMETRY = 0.05
 
 
 class CoulombAsymmetry(DryLaw):
-    """−ΔF tanh(v / v_0)²: the Coulomb level is larger in one direction by 2 ΔF; ``with_level``, −F_c tanh(v / v_0) besides.
+    """−ΔF |tanh(v / v_0)|: the Coulomb level is larger in one direction by 2 ΔF; ``with_level``, −F_c tanh(v / v_0) besides.
 
-    The latter is for a body whose model has no dry friction: its levels are F_c + ΔF and F_c − ΔF, neither of which can push.
+    Both levels change their sign over the same width. The latter is for a body whose model has no dry friction: its levels are F_c + ΔF
+    and F_c − ΔF, neither of which can push.
     """
 
     name = "coulomb_asymmetry"
@@ -168,7 +169,7 @@ class CoulombAsymmetry(DryLaw):
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         sign = smooth_sign(s.speed, p.v_0)
-        uneven = self.law(s, p.delta) * sign**2
+        uneven = self.law(s, p.delta) * torch.abs(sign)
         return uneven - p.F_c * sign if self.with_level else uneven
 
     def as_two(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:

@@ -32,7 +32,9 @@ from greybox_torch.mechanisms.stiffness import NonlinearStiffness
 from greybox_torch.mechanisms.transmission import Backlash, HystereticSpring, NonlinearDamping
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.mechanisms.unknown_fading import UnknownFading
 from greybox_torch.mechanisms.unknown_play import UnknownPlay
+from greybox_torch.mechanisms.unknown_rate_limit import UnknownRateLimit
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import FrictionWarmup, LoadDependentFriction, PositionDependentFriction
 
@@ -74,7 +76,17 @@ LIBRARY: dict[str, type[Mechanism]] = {
 }
 
 LEARNED: dict[str, type[Mechanism]] = {
-    learned.name: learned for learned in (Unknown, UnknownWithMemory, UnknownPlay, FrictionNet, ResidualNet, MemoryNet)
+    learned.name: learned
+    for learned in (
+        Unknown,
+        UnknownWithMemory,
+        UnknownFading,
+        UnknownPlay,
+        UnknownRateLimit,
+        FrictionNet,
+        ResidualNet,
+        MemoryNet,
+    )
 }
 """Curves and networks that are learned where no law has a name; never hypotheses of their own."""
 

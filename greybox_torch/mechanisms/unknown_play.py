@@ -7,52 +7,35 @@ from typing import Any
 
 import torch
 
-from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
-from greybox_torch.model import Parameter, Signals, State
-
-FOLLOWS = 0.5
-"""Samples in which what acts comes after the input once the play is used up: as fast as a step per sample integrates well."""
+from greybox_torch.mechanisms.input_follower import InputFollower
+from greybox_torch.mechanisms.mechanism import SHARE, Probe, Surroundings
+from greybox_torch.model import Parameter, Signals
 
 LOOKS = (0.01, 0.03, 0.1)
 """Half widths that the screen looks at, in shares of how far the input moved."""
 
 
-class UnknownPlay(Mechanism):
+class UnknownPlay(InputFollower):
     """What acts stands still until the input has come back by the width 2 h of the play, and then follows it at a distance of h.
 
-    A linkage with play, a valve that sticks in its packing. At first what acts is what the input is.
+    A linkage with play, a valve that sticks in its packing.
     """
 
     name = "unknown_play"
-    kinds = ("actuator",)
-    needs = ("input",)
-    free = True
     essential = ("h",)
     explanation = (
         "What acts stands still until the input has come back by 2 h (a linkage with play, a valve that sticks)."
     )
     source = "M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis, 1989"
     experiment = "slow triangles of the input of several sizes, each several times"
-    signal = "input"
-    modes = 1
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         unit, span = around.units.get("input", ""), around.ranges["input"].span
         return [Parameter("h", 0.03 * span, unit, lower=0.0, upper=0.5 * span, description="half width of the play")]
 
-    def states(self, around: Surroundings) -> list[State]:
-        return [State("acts", around.units.get("input", ""))]
-
-    def starts(self, s: Signals) -> dict[str, Any]:
-        return {"acts": s.input}
-
-    def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
-        ahead = s.input - z.acts
+    def rate(self, ahead: Any, p: Signals, follows: float) -> Any:
         beyond = torch.where(ahead > p.h, ahead - p.h, torch.where(ahead < -p.h, ahead + p.h, 0.0))
-        return {"acts": beyond / (FOLLOWS * s.sample_time)}
-
-    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return z.acts - s.input
+        return beyond / follows
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((SHARE,), {"h": look * around.ranges["input"].span}) for look in LOOKS]

@@ -33,7 +33,9 @@ def mechanisms(kind: str) -> list[Mechanism]:
     learned = {
         "unknown": {"signal": of},
         "unknown_with_memory": {"signal": of},
+        "unknown_fading": {"signal": of},
         "unknown_play": {},
+        "unknown_rate_limit": {},
         "friction_net": {},
         "residual_net": {"inputs": (of,)},
         "memory_net": {"inputs": (of,)},

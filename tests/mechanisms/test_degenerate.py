@@ -13,6 +13,7 @@ from greybox_torch.mechanisms.mechanism import SHARE, Mechanism
 from greybox_torch.mechanisms.surroundings import Surroundings
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.mechanisms.unknown_fading import UnknownFading
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 
@@ -216,7 +217,7 @@ def test_the_shape_of_a_part_that_is_not_needed_may_sit_at_its_end(name: str, sh
 
 @pytest.mark.parametrize("law", [pytest.param(law, id=law.name) for law in (*LIBRARY.values(), *LEARNED.values())])
 def test_every_mechanism_answers(law: type[Mechanism], around: Surroundings) -> None:
-    mechanism = law("speed") if issubclass(law, Unknown | UnknownWithMemory) else law()
+    mechanism = law("speed") if issubclass(law, Unknown | UnknownWithMemory | UnknownFading) else law()
     values = {p.name: p.value for p in mechanism.parameters(around)}
     amplitudes = {n for probe in mechanism.probes(around) for n in probe.directions} - {SHARE}
     tiny = {

@@ -12,9 +12,12 @@ from greybox_torch.diagnosis.effect import Curve
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.input_follower import InputFollower
 from greybox_torch.mechanisms.matching import law_force
 from greybox_torch.mechanisms.surroundings import Surroundings
+from greybox_torch.mechanisms.unknown_fading import UnknownFading
 from greybox_torch.mechanisms.unknown_play import UnknownPlay
+from greybox_torch.mechanisms.unknown_rate_limit import UnknownRateLimit
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 
 FREQUENCIES = 81
@@ -69,26 +72,30 @@ def remembered(attachment: Attachment, around: Surroundings, final: Final, signa
 
 
 def settled_curve(attachment: Attachment, around: Surroundings, final: Final) -> Curve | None:
-    """The force over the signal once all has settled, as the entry `curve` of a free response; of play, the loop that it draws.
+    """The force over the signal once all has settled, as the entry `curve` of a free response or of a gain that fades.
 
-    None for any other effect.
+    Of play the loop that it draws, of a limit of the rate what that lacks over the rate of the input. None for any other effect.
     """
     mechanism = attachment.mechanism
-    if isinstance(mechanism, UnknownPlay):
-        span, lost = around.ranges["input"], _own(attachment, final)[0]["h"]
-        there = np.linspace(span.low, span.high, POINTS)
-        both = np.concatenate([there, there[::-1]])
-        return Curve("input", around.units.get("input", ""), both, np.repeat([-lost, lost], POINTS), around.force_unit)
-    if not isinstance(mechanism, UnknownWithMemory):
+    if not isinstance(mechanism, UnknownWithMemory | UnknownFading | InputFollower):
         return None
     values, _ = _own(attachment, final)
-    span = around.ranges[mechanism.signal]
+    span, unit = around.ranges[mechanism.signal], around.units.get(mechanism.signal, "")
     grid = np.linspace(span.low, span.high, POINTS)
-    if mechanism.in_front is None:
+    if isinstance(mechanism, UnknownPlay):
+        both, lost = np.concatenate([grid, grid[::-1]]), values["h"]
+        return Curve("input", unit, both, np.repeat([-lost, lost], POINTS), around.force_unit)
+    if isinstance(mechanism, UnknownRateLimit):
+        rate = np.linspace(-3.0, 3.0, POINTS) * values["R"]
+        lacks = np.clip(rate, -values["R"], values["R"]) - rate
+        return Curve("rate of the input", f"{unit}/s", rate, lacks, f"{unit}/s")
+    if isinstance(mechanism, UnknownFading):
+        force = mechanism.settled(grid, values)
+    elif mechanism.in_front is None:
         force = float(mechanism.response(values, np.zeros(1))[0].real) * grid
     else:
         force = law_force(mechanism.in_front, around, {mechanism.signal: torch.as_tensor(grid)}, values)
-    return Curve(mechanism.signal, around.units.get(mechanism.signal, ""), grid, force, around.force_unit)
+    return Curve(mechanism.signal, unit, grid, force, around.force_unit)
 
 
 def _own(

@@ -14,7 +14,9 @@ from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
+from greybox_torch.mechanisms.unknown_fading import UnknownFading
 from greybox_torch.mechanisms.unknown_play import UnknownPlay
+from greybox_torch.mechanisms.unknown_rate_limit import UnknownRateLimit
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port
@@ -132,7 +134,8 @@ def _curves(model: GreyBoxModel, port: Port, knots: int) -> Iterable[Unknown]:
 def memory_candidates(
     model: GreyBoxModel, surroundings: Mapping[str, Surroundings], knots: int = 0
 ) -> list[Attachment]:
-    """Residuals with one and two hidden states at every port, of each signal that free curves are tried over, and play at actuators.
+    """Residuals with one and two hidden states at every port, of each signal that free curves are tried over, and gains that fade with
+    that signal; at actuators play and a limit of the rate.
 
     With ``knots``, those of one state with a curve in front.
 
@@ -145,12 +148,11 @@ def memory_candidates(
             if signal in surroundings[port.name].ranges and not (
                 signal == "position" and integrates_position(model.ports, port)
             ):
-                kinds = (
-                    [UnknownWithMemory(signal, 1, knots)] if knots else [UnknownWithMemory(signal, m) for m in (1, 2)]
-                )
+                plain = [make(signal, n) for make in (UnknownWithMemory, UnknownFading) for n in (1, 2)]
+                kinds = [UnknownWithMemory(signal, 1, knots)] if knots else plain
                 found += [attach(model, port.name, mechanism) for mechanism in kinds]
         if isinstance(port, Actuator) and not knots:
-            found.append(attach(model, port.name, UnknownPlay()))
+            found += [attach(model, port.name, mechanism()) for mechanism in (UnknownPlay, UnknownRateLimit)]
     return found
 
 

@@ -152,6 +152,7 @@ def identity_of(attachment: Attachment) -> tuple:
         getattr(mechanism, "signal", ""),
         getattr(mechanism, "factor", ""),
         getattr(mechanism, "modes", 0),
+        getattr(mechanism, "power", 0),
         None if order is None else round(order, 2),
     )
 

@@ -1,0 +1,61 @@
+"""A tank that only adds up what flows in: what acts at its valve can be read from its level."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.mechanism import Mechanism
+from greybox_torch.mechanisms.surroundings import Range, Surroundings
+from greybox_torch.model import Balance, GreyBoxModel, Input, Output, Parameter, State
+from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.simulator import make_stepper
+from greybox_torch.simulation.windows import whole_records
+
+DT = 0.1
+
+
+class Tank(GreyBoxModel):
+    """What flows in fills it; nothing flows out, so that its level adds up what acts."""
+
+    states: ClassVar = [State("level", "m")]
+    inputs: ClassVar = [Input("valve", "m/s")]
+    outputs: ClassVar = [Output("level", "m")]
+    parameters: ClassVar = [Parameter("gain", 1.0)]
+    ports: ClassVar = [Balance("tank", level="level")]
+
+    def derivative(self, x, u, p, port):
+        return {"level": p.gain * u.valve + port.tank}
+
+    def output(self, x, u, p):
+        return {"level": x.level}
+
+
+AROUND = Surroundings(
+    {"input": Range(-1.0, 1.0, 0.7), "time": Range(0.0, 40.0, 20.0), "level": Range(0.0, 1.0, 0.5)},
+    {"input": "m/s"},
+    "m/s",
+    DT,
+)
+
+
+def tank_with(mechanism: Mechanism, **values: float) -> AugmentedModel:
+    """The tank with ``mechanism`` at its valve, its parameters as given."""
+    tank = Tank()
+    model = AugmentedModel(tank, [attach(tank, "actuator", mechanism)], {q.name: AROUND for q in tank.all_ports})
+    model.set_values({f"actuator.{mechanism.name}.{name}": value for name, value in values.items()})
+    return model
+
+
+def levels(model: GreyBoxModel, u: np.ndarray, added: float | None = None) -> np.ndarray:
+    """The tank's level (N,) for what the valve is told (N,); a state that the mechanism adds begins at ``added``, else at the input."""
+    n = len(u)
+    records = Records(u[None], np.zeros((1, n)), np.full(n, DT), np.array([0]), np.array([n - 1]), ("one",), "zoh")
+    now = model.values()
+    values = np.array([now[p.name] for p in model.declared_parameters])
+    start = np.array([[0.0, u[0] if added is None else added][: len(model.states)]])
+    return make_stepper(model, ()).run(records, Pass(whole_records(records), values, start)).y[0].ravel()
