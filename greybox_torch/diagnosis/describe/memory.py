@@ -77,25 +77,34 @@ def settled_curve(attachment: Attachment, around: Surroundings, final: Final) ->
     Of play the loop that it draws, of a limit of the rate what that lacks over the rate of the input. None for any other effect.
     """
     mechanism = attachment.mechanism
-    if not isinstance(mechanism, UnknownWithMemory | UnknownFading | InputFollower):
+    if isinstance(mechanism, InputFollower):
+        return _of_follower(mechanism, around, _own(attachment, final)[0])
+    if not isinstance(mechanism, UnknownWithMemory | UnknownFading):
         return None
     values, _ = _own(attachment, final)
-    span, unit = around.ranges[mechanism.signal], around.units.get(mechanism.signal, "")
+    span = around.ranges[mechanism.signal]
     grid = np.linspace(span.low, span.high, POINTS)
-    if isinstance(mechanism, UnknownPlay):
-        both, lost = np.concatenate([grid, grid[::-1]]), values["h"]
-        return Curve("input", unit, both, np.repeat([-lost, lost], POINTS), around.force_unit)
-    if isinstance(mechanism, UnknownRateLimit):
-        rate = np.linspace(-3.0, 3.0, POINTS) * values["R"]
-        lacks = np.clip(rate, -values["R"], values["R"]) - rate
-        return Curve("rate of the input", f"{unit}/s", rate, lacks, f"{unit}/s")
     if isinstance(mechanism, UnknownFading):
         force = mechanism.settled(grid, values)
     elif mechanism.in_front is None:
         force = float(mechanism.response(values, np.zeros(1))[0].real) * grid
     else:
         force = law_force(mechanism.in_front, around, {mechanism.signal: torch.as_tensor(grid)}, values)
-    return Curve(mechanism.signal, unit, grid, force, around.force_unit)
+    return Curve(mechanism.signal, around.units.get(mechanism.signal, ""), grid, force, around.force_unit)
+
+
+def _of_follower(mechanism: InputFollower, around: Surroundings, values: Mapping[str, float]) -> Curve | None:
+    """The loop that play draws over the input; over the rate of the input, what a limit of it lacks."""
+    unit = around.units.get("input", "")
+    if isinstance(mechanism, UnknownRateLimit):
+        limit = values["R"]
+        rate = np.linspace(-3.0, 3.0, POINTS) * limit
+        return Curve("rate of the input", f"{unit}/s", rate, np.clip(rate, -limit, limit) - rate, f"{unit}/s")
+    if not isinstance(mechanism, UnknownPlay):
+        return None
+    there = np.linspace(around.ranges["input"].low, around.ranges["input"].high, POINTS)
+    both, lost = np.concatenate([there, there[::-1]]), values["h"]
+    return Curve("input", unit, both, np.repeat([-lost, lost], POINTS), around.force_unit)
 
 
 def _own(
