@@ -10,6 +10,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, TimeIsUp, until
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.longer_windows import longer_windows, sentence, stands
+from greybox_torch.diagnosis.confirm.part_of_the_last import promote_part
 from greybox_torch.diagnosis.confirm.promotion import (
     Promotion,
     promote_for_a_curve,
@@ -123,6 +124,7 @@ def _promotion(found: Selection, others: HeldOut) -> Promotion | None:
         or promote_refusing(found.dataset, found.state, others, found.searched, _refused_in(found))
         or promote_for_a_curve(found.dataset, found.state, others, found.searched)
         or promote_validation(*asked)
+        or promote_part(*asked)
         or promote_for_a_rival(*asked, found.gains)
         or promote_to_tell_apart(*asked, found.gains)
     )

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm import promotion
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.promotion import (
@@ -23,25 +22,8 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.friction import QuadraticDrag
 
-from ..conftest import STEP, turned
-
-SLOW, FAST = 0.3, 3.0
-
-
-@pytest.fixture(scope="session")
-def drag_at_speed(data_set):
-    """A motor with quadratic drag, first recorded so slowly that it does not show."""
-
-    def make(levels=(SLOW, FAST, FAST), drag=0.01) -> DataSet:
-        rng, experiments = np.random.default_rng(1), []
-        for level in levels:
-            voltage = np.repeat(rng.uniform(-level, level, 75), 20)
-            speed = turned(voltage, lambda q, v: -drag * v * abs(v))
-            experiments.append({"voltage": voltage, "speed": speed + rng.normal(0, 0.02, len(speed))})
-        roles = ["estimation", *["validation"] * (len(levels) - 1)]
-        return data_set({"voltage": "V", "speed": "rad/s"}, experiments, roles=roles, sample_time=STEP)
-
-    return make
+from ..conftest import STEP
+from .conftest import FAST, SLOW
 
 
 def test_what_only_other_experiments_show_is_found_with_one_of_them(drag_at_speed, motor) -> None:
@@ -162,14 +144,6 @@ def test_what_adds_to_what_was_found_need_not_show_in_the_experiments_that_are_l
         gains = {names: by_more, names[::-1]: better_before}
         monkeypatch.setattr(promotion, "gain", lambda old, new, gains=gains: gains[old, new])
         assert serves(others, stub(**before), stub(**after)) is takes
-
-
-def test_what_only_the_last_experiment_shows_is_said_to_be_missing_without_a_name(drag_at_speed, motor) -> None:
-    """It has to be left to judge, so it cannot say what."""
-    verdict = diagnose(drag_at_speed((SLOW, FAST)), motor).verdict
-    assert verdict.mismatch and not verdict.effects
-    assert verdict.unexplained is not None and verdict.unexplained > 3
-    assert verdict.sentence.startswith("Something is missing")
 
 
 def test_the_noise_of_other_experiments_is_the_unit_of_their_errors(drag_at_speed, motor, begun) -> None:
