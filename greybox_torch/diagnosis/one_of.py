@@ -61,6 +61,7 @@ def spoken(mechanism: str) -> str:
         "unknown": "an unknown effect",
         "unknown_with_memory": "an unknown effect with memory",
         "unknown_fading": "an unknown effect that fades",
+        "unknown_map": "an unknown effect of two signals",
         "unknown_play": "an unknown effect with play",
         "unknown_rate_limit": "an unknown effect with a limit of the rate",
     }

@@ -33,6 +33,7 @@ from greybox_torch.mechanisms.transmission import Backlash, HystereticSpring, No
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.mechanisms.unknown_fading import UnknownFading
+from greybox_torch.mechanisms.unknown_map import UnknownMap
 from greybox_torch.mechanisms.unknown_play import UnknownPlay
 from greybox_torch.mechanisms.unknown_rate_limit import UnknownRateLimit
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
@@ -81,6 +82,7 @@ LEARNED: dict[str, type[Mechanism]] = {
         Unknown,
         UnknownWithMemory,
         UnknownFading,
+        UnknownMap,
         UnknownPlay,
         UnknownRateLimit,
         FrictionNet,

@@ -34,6 +34,7 @@ def mechanisms(kind: str) -> list[Mechanism]:
         "unknown": {"signal": of},
         "unknown_with_memory": {"signal": of},
         "unknown_fading": {"signal": of},
+        "unknown_map": {},
         "unknown_play": {},
         "unknown_rate_limit": {},
         "friction_net": {},

@@ -16,6 +16,7 @@ from greybox_torch.mechanisms.input_follower import InputFollower
 from greybox_torch.mechanisms.matching import law_force
 from greybox_torch.mechanisms.surroundings import Surroundings
 from greybox_torch.mechanisms.unknown_fading import UnknownFading
+from greybox_torch.mechanisms.unknown_map import UnknownMap
 from greybox_torch.mechanisms.unknown_play import UnknownPlay
 from greybox_torch.mechanisms.unknown_rate_limit import UnknownRateLimit
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
@@ -79,6 +80,8 @@ def settled_curve(attachment: Attachment, around: Surroundings, final: Final) ->
     mechanism = attachment.mechanism
     if isinstance(mechanism, InputFollower):
         return _of_follower(mechanism, around, _own(attachment, final)[0])
+    if isinstance(mechanism, UnknownMap):
+        return _of_map(mechanism, around, _own(attachment, final)[0])
     if not isinstance(mechanism, UnknownWithMemory | UnknownFading):
         return None
     values, _ = _own(attachment, final)
@@ -105,6 +108,16 @@ def _of_follower(mechanism: InputFollower, around: Surroundings, values: Mapping
     there = np.linspace(around.ranges["input"].low, around.ranges["input"].high, POINTS)
     both, lost = np.concatenate([there, there[::-1]]), values["h"]
     return Curve("input", unit, both, np.repeat([-lost, lost], POINTS), around.force_unit)
+
+
+def _of_map(mechanism: UnknownMap, around: Surroundings, values: Mapping[str, float]) -> Curve:
+    """The map over its first signal, where the second one is in the middle of its range."""
+    first, second = (around.ranges[signal] for signal in mechanism.needs)
+    grid = np.linspace(first.low, first.high, POINTS)
+    middle = np.full(POINTS, 0.5 * (second.low + second.high))
+    there = {name: torch.as_tensor(v) for name, v in zip(mechanism.needs, (grid, middle), strict=True)}
+    force = law_force(mechanism, around, there, values)
+    return Curve("input", around.units.get("input", ""), grid, force, around.force_unit)
 
 
 def _own(

@@ -15,6 +15,7 @@ from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.mechanisms.unknown_fading import UnknownFading
+from greybox_torch.mechanisms.unknown_map import UnknownMap
 from greybox_torch.mechanisms.unknown_play import UnknownPlay
 from greybox_torch.mechanisms.unknown_rate_limit import UnknownRateLimit
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
@@ -135,7 +136,7 @@ def memory_candidates(
     model: GreyBoxModel, surroundings: Mapping[str, Surroundings], knots: int = 0
 ) -> list[Attachment]:
     """Residuals with one and two hidden states at every port, of each signal that free curves are tried over, and gains that fade with
-    that signal; at actuators play and a limit of the rate.
+    that signal; at actuators play, a limit of the rate, and a map over input and speed.
 
     With ``knots``, those of one state with a curve in front.
 
@@ -152,7 +153,8 @@ def memory_candidates(
                 kinds = [UnknownWithMemory(signal, 1, knots)] if knots else plain
                 found += [attach(model, port.name, mechanism) for mechanism in kinds]
         if isinstance(port, Actuator) and not knots:
-            found += [attach(model, port.name, mechanism()) for mechanism in (UnknownPlay, UnknownRateLimit)]
+            own = (make() for make in (UnknownPlay, UnknownRateLimit, UnknownMap))
+            found += [attach(model, port.name, one) for one in own if one.available(surroundings[port.name])]
     return found
 
 

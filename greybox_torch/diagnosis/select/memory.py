@@ -1,4 +1,4 @@
-"""Where neither laws nor curves reach the noise: whether what is missing depends on the past.
+"""Where neither laws nor curves reach the noise: whether what is missing depends on the past, or on two signals at once.
 
 A residual with one or two hidden states follows any law that is linear, and a little of the others. So it is asked for late, and only where
 more than noise is left. Alone it takes the place of names as a curve does; beside names it has to complete the model. Where much more is
