@@ -104,13 +104,19 @@ class Effect:
     one_of: OneOf | None = None
     """What these recordings cannot tell from it, as one statement; None where it stands alone."""
 
+    law: str = ""
+    """The name that its parameters have in the recommended model, where that is not ``mechanism``: an unknown effect has several forms."""
+
+    form: str = ""
+    """Of an unknown effect that is no curve over one signal: what it is instead, as a noun."""
+
     made_up_for: str = ""
     """Where the recordings do not show it, as the re-estimated model makes up for it: how that is known, in words."""
 
     @property
     def prefix(self) -> str:
         """What the names of its parameters begin with."""
-        return f"{self.port}.{self.mechanism}" + ("" if self.memory is None else "_with_memory")
+        return f"{self.port}.{self.law or self.mechanism}"
 
     @property
     def shown_parameters(self) -> Mapping[str, Mapping[str, Any]]:
@@ -118,17 +124,16 @@ class Effect:
         if self.mechanism != "unknown":
             return self.parameters
         if self.memory is None:
-            return {
-                n: v for n, v in self.parameters.items() if not n.startswith("w_") and n not in ("first", "spacing")
-            }
+            return {n: v for n, v in self.parameters.items() if not n.startswith(("w_", "first", "spacing"))}
         return {n: v for n, v in self.parameters.items() if not self.memory.curved or n == "T"}
 
     @property
     def headline(self) -> str:
         """The finding as a headline has it: the statement of what cannot be told apart, or the law and its place."""
         if self.one_of is None:
-            past = "" if self.memory is None else f", {self.memory.told}"
-            return f"{spoken_at(self.mechanism, self.port)}{past} (probability {self.probability:.2f})"
+            form = f", {self.form}" if self.form else ""
+            form = form if self.memory is None else f", {self.memory.told}"
+            return f"{spoken_at(self.mechanism, self.port)}{form} (probability {self.probability:.2f})"
         return f"{self.one_of.statement} (probability {self.one_of.probability:.2f}, {self.one_of.likeliest})"
 
     @property

@@ -83,7 +83,8 @@ class Mechanism:
     springs: bool = False
     """Whether it is how a coupling's force answers its deflection: a coupling has one such answer, of which two laws are two parts."""
     nature: ClassVar[str] = ""
-    """What it has in common with its look-alikes, as a noun, for a statement about several that cannot be told apart."""
+    """What it has in common with its look-alikes, as a noun, for a statement about several that cannot be told apart; of an unknown effect
+    that is no curve over one signal, what it is."""
     explanation: ClassVar[str] = ""
     source: ClassVar[str] = ""
     experiment: ClassVar[str] = ""

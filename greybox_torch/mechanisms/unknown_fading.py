@@ -30,6 +30,7 @@ class UnknownFading(Mechanism):
     essential = ("change",)
     natural = ("q",)
     modes = 1
+    nature = "a gain that fades as it is used"
     explanation = "A gain changes as the signal is used, and comes back at rest (a battery, a winding that heats up, a paste that thins)."
     source = "M. Chen, G. Rincón-Mora, Accurate electrical battery model, IEEE Trans. Energy Conversion 21, 2006"
     experiment = "the same motion again and again after a rest, and once more after another rest"

@@ -27,6 +27,7 @@ class UnknownMap(Mechanism):
     needs = ("input", "speed")
     free = True
     modes = 1
+    nature = "a map over the input and the speed"
     explanation = "What acts is a map of the input and the speed (an engine, a pump, a propeller)."
     source = "radial basis functions: D. S. Broomhead, D. Lowe, Complex Systems 2, 1988"
     experiment = "steps of the input at several constant speeds"

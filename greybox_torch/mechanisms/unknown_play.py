@@ -23,6 +23,7 @@ class UnknownPlay(InputFollower):
 
     name = "unknown_play"
     essential = ("h",)
+    nature = "play"
     explanation = (
         "What acts stands still until the input has come back by 2 h (a linkage with play, a valve that sticks)."
     )

@@ -23,6 +23,7 @@ class UnknownRateLimit(InputFollower):
 
     name = "unknown_rate_limit"
     essential = ("R",)
+    nature = "a limit of its rate"
     explanation = "What acts follows the input no faster than R (a servo, the ramp of a drive, a valve's motor)."
     source = "R. Hess, S. Snell, Flight control system design with rate saturating actuators, J. Guidance 20, 1997"
     experiment = (

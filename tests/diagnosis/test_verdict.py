@@ -169,3 +169,13 @@ def test_experiments_that_no_free_run_follows_are_named_and_do_not_count() -> No
     assert told.as_json()["unstable"] == ["Run 3"]
     assert told.sentence.endswith("goes from 79.0 % to 89.0 % (without Run 3, which no free run follows).")
     assert "unstable" not in verdict(BACKLASH).as_json()
+
+
+def test_what_an_unknown_effect_is_instead_of_a_curve_is_in_its_headline() -> None:
+    fading = replace(
+        BACKLASH, port="actuator", mechanism="unknown", law="unknown_fading", form="a gain that fades as it is used"
+    )
+    assert fading.headline == "an unknown effect at actuator, a gain that fades as it is used (probability 0.94)"
+    assert fading.prefix == "actuator.unknown_fading" and BACKLASH.prefix == "gear_spring.backlash"
+    mapped = replace(fading, parameters={n: {"value": 1.0} for n in ("w_0_0", "first_input", "spacing_speed", "T")})
+    assert list(mapped.shown_parameters) == ["T"]

@@ -116,6 +116,8 @@ def _effect(
         ceiling=None if taken is None else ceiling_share(taken, state.memory_step),
         timelines=timelines,
         one_of=members,
+        law=mechanism.name,
+        form=mechanism.nature if mechanism.free else "",
     )
 
 
