@@ -13,6 +13,7 @@ from dataclasses import replace
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import negligible
 from greybox_torch.diagnosis.refit.rank import rank
+from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
 from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.forward_step import little_is_left, take_best
@@ -122,14 +123,19 @@ def _step(
     """
     screened = memory_scores(study, state, knots, among)
     found: list[Candidate] = []
-    for modes in (1, 2):
-        of_kind = [[s for s in at if getattr(s.attachment.mechanism, "modes", 0) == modes] for at in screened]
-        found += shortlist(study, of_kind, state.current.fits)
+    for form in dict.fromkeys(_form(score) for at in screened for score in at):
+        found += shortlist(study, [[s for s in at if _form(s) == form] for at in screened], state.current.fits)
     least = study.settings.curve_promise * _share_to_remove(study, state, standing)
     hopeful = [candidate for candidate in found if candidate.explained > least]
     best = sorted(hopeful, key=lambda candidate: -candidate.explained)[: study.budget.finalists]
     ranked = rank(study, state.current, best, standing.current)
     return (yield from take_best(study, state, screened, ranked))
+
+
+def _form(score: ScreenScore) -> tuple[str, int]:
+    """Which form of a residual was screened: each is asked by itself, as those with many parameters explain more in a screen."""
+    mechanism = score.attachment.mechanism
+    return mechanism.name, getattr(mechanism, "modes", 0)
 
 
 def _share_to_remove(study: Study, state: SearchState, standing: SearchState) -> float:
