@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -53,24 +53,8 @@ def find_with_more(
         if not whole:
             return replace(own, complete=False, others=own.others if in_time else None, cut=(*own.cut, AGAIN))
         if own is best or (own.state is best.state and not own.judged.unstable):
-            return own if own.state.effects else _another(known, own, judged)
+            return own
         known[_chosen_with(own.dataset)] = own
-
-
-def _another(
-    known: Mapping[tuple[str, ...], Selection], own: Findings, judged: Callable[[Selection], Findings]
-) -> Findings:
-    """What another search came to that free runs have not judged yet, where nothing lasts of what was selected and they bear that out.
-
-    Seen: a ferry that heels as it turns. Of what was found with two and with three experiments to choose with, held-out windows bore out
-    both; free runs of two were no better, and nothing was told, though those of the other are (7.5 % of the mismatch left).
-    """
-    for other in reversed(tuple(known.values())):
-        if other.complete and other.state.effects and not isinstance(other, Findings):
-            found = judged(other)
-            if found.state.effects:
-                return found
-    return own
 
 
 def _selected(

@@ -28,7 +28,7 @@ def no_unseen_positions(monkeypatch) -> None:
 
 @pytest.fixture(autouse=True)
 def nothing_else_is_asked(monkeypatch) -> None:
-    for asked in ("promote_for_a_curve", "promote_for_a_rival", "promote_to_tell_apart"):
+    for asked in ("promote_part", "promote_for_a_curve", "promote_for_a_rival", "promote_to_tell_apart"):
         monkeypatch.setattr(further_searches, asked, lambda *args: None)
 
 
