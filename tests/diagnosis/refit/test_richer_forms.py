@@ -22,7 +22,7 @@ from greybox_torch.mechanisms.unknown import Unknown
 
 def uneven(q: float, v: float) -> float:
     """Dry friction of 0.09 N m forwards and 0.03 N m backwards."""
-    return -0.06 * np.tanh(v / 0.3) - 0.03 * np.tanh(v / 0.3) ** 2
+    return -0.06 * np.tanh(v / 0.3) - 0.03 * abs(np.tanh(v / 0.3))
 
 
 def also_by_position(q: float, v: float) -> float:
