@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
+
+import numpy as np
 
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.model import Signals, State
 
 FOLLOWS = 0.5
 """Samples in which what acts comes after the input where nothing holds it: as fast as a step per sample integrates well."""
+
+Drawn = tuple[str, str, np.ndarray, np.ndarray, str]
+"""A curve: over which signal, its unit, the signal (N,), what is lacking there (N,), and the unit of that."""
 
 
 class InputFollower(Mechanism):
@@ -34,4 +40,8 @@ class InputFollower(Mechanism):
 
     def rate(self, ahead: Any, p: Signals, follows: float) -> Any:
         """Rate of what acts, in the input's unit per second, where the input is ``ahead`` of it; ``follows`` in s."""
+        raise NotImplementedError
+
+    def drawn(self, around: Surroundings, values: Mapping[str, float], points: int) -> Drawn:
+        """What is lacking of the input, as a curve of about so many points."""
         raise NotImplementedError

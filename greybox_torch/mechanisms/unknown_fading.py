@@ -42,14 +42,15 @@ class UnknownFading(Mechanism):
     def parameters(self, around: Surroundings) -> list[Parameter]:
         unit, step = around.units.get(self.signal, ""), around.sample_time
         gain = "" if self.signal == "input" else around.per(self.signal)
-        reach = max(around.ranges[self.signal].reach, 1e-300)
         return [
             Parameter("change", 0.0, gain, description="change of the gain where z is one"),
             Parameter(
                 "T", 100 * step, "s", lower=2 * step, upper=1e5 * step, description="time in which it comes back"
             ),
             Parameter("q", 0.0, "", lower=0.0, upper=100.0, description="how much faster it is used up"),
-            Parameter("reach", reach, unit, fixed=True, description="largest recorded signal"),
+            Parameter(
+                "reach", around.ranges[self.signal].reach, unit, fixed=True, description="largest recorded signal"
+            ),
         ]
 
     def states(self, around: Surroundings) -> list[State]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import torch
 
-from greybox_torch.mechanisms.input_follower import InputFollower
+from greybox_torch.mechanisms.input_follower import Drawn, InputFollower
 from greybox_torch.mechanisms.mechanism import SHARE, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
 
@@ -37,6 +38,12 @@ class UnknownPlay(InputFollower):
     def rate(self, ahead: Any, p: Signals, follows: float) -> Any:
         beyond = torch.where(ahead > p.h, ahead - p.h, torch.where(ahead < -p.h, ahead + p.h, 0.0))
         return beyond / follows
+
+    def drawn(self, around: Surroundings, values: Mapping[str, float], points: int) -> Drawn:
+        """The loop over the input."""
+        there = np.linspace(around.ranges["input"].low, around.ranges["input"].high, points)
+        both, lacking = np.concatenate([there, there[::-1]]), np.repeat([-values["h"], values["h"]], points)
+        return "input", around.units.get("input", ""), both, lacking, around.force_unit
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe((SHARE,), {"h": look * around.ranges["input"].span}) for look in LOOKS]

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import torch
 
-from greybox_torch.mechanisms.input_follower import InputFollower
+from greybox_torch.mechanisms.input_follower import Drawn, InputFollower
 from greybox_torch.mechanisms.mechanism import SHARE, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
 
@@ -31,7 +32,7 @@ class UnknownRateLimit(InputFollower):
     )
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
-        unit, fastest = around.units.get("input", ""), around.ranges["input"].span / around.sample_time
+        unit, fastest = around.units.get("input", ""), _fastest(around)
         return [
             Parameter(
                 "R",
@@ -46,11 +47,21 @@ class UnknownRateLimit(InputFollower):
     def rate(self, ahead: Any, p: Signals, follows: float) -> Any:
         return torch.maximum(torch.minimum(ahead / follows, p.R), -p.R)
 
+    def drawn(self, around: Surroundings, values: Mapping[str, float], points: int) -> Drawn:
+        """What is lacking of the input's rate, over that rate."""
+        limit = values["R"]
+        rate = np.linspace(-3.0, 3.0, points) * limit
+        unit = f"{around.units.get('input', '')}/s"
+        return "rate of the input", unit, rate, np.clip(rate, -limit, limit) - rate, unit
+
     def probes(self, around: Surroundings) -> Sequence[Probe]:
-        fastest = around.ranges["input"].span / around.sample_time
-        return [Probe((SHARE,), {"R": fastest / look}) for look in LOOKS]
+        return [Probe((SHARE,), {"R": _fastest(around) / look}) for look in LOOKS]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        fastest = around.ranges["input"].span / around.sample_time
         told = f"R = {values['R']:.3g}: what acts would cross the range of the input"
-        return f"{told} within a sample" if values["R"] >= fastest else None
+        return f"{told} within a sample" if values["R"] >= _fastest(around) else None
+
+
+def _fastest(around: Surroundings) -> float:
+    """The rate that crosses the range of the input within a sample."""
+    return around.ranges["input"].span / around.sample_time

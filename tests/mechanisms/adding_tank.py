@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import Any, ClassVar
 
 import numpy as np
 
+from greybox_torch.diagnosis.screen.candidates import memory_candidates
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Mechanism
@@ -59,3 +62,16 @@ def levels(model: GreyBoxModel, u: np.ndarray, added: float | None = None) -> np
     values = np.array([now[p.name] for p in model.declared_parameters])
     start = np.array([[0.0, u[0] if added is None else added][: len(model.states)]])
     return make_stepper(model, ()).run(records, Pass(whole_records(records), values, start)).y[0].ravel()
+
+
+def ports_asked(law: type[Mechanism], knots: int = 0) -> list[str]:
+    """The ports of the tank at which a form of what remembers is asked."""
+    tank = Tank()
+    offered = memory_candidates(tank, {q.name: AROUND for q in tank.all_ports}, knots)
+    return [a.port for a in offered if isinstance(a.mechanism, law)]
+
+
+def fitted(law: str, values: Mapping[str, float]) -> Any:
+    """What a final fit says of a form at the actuator, as far as its curve asks."""
+    own = {f"actuator.{law}.{name}": value for name, value in values.items()}
+    return SimpleNamespace(values=lambda: own, deviations=lambda: {}, uncertainty=None)

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.describe.memory import settled_curve
 from greybox_torch.diagnosis.screen.candidates import memory_candidates
 from greybox_torch.mechanisms.unknown_fading import UnknownFading
-from tests.mechanisms.adding_tank import AROUND, DT, Tank, levels, tank_with
+from tests.mechanisms.adding_tank import AROUND, DT, Tank, fitted, levels, tank_with
 
 CHANGE, TIME, FASTER = -0.4, 3.0, 2.0
 
@@ -51,12 +49,7 @@ def test_it_is_asked_for_over_every_signal_of_a_curve_with_either_power() -> Non
 def test_its_curve_is_the_force_once_it_is_settled(power: int) -> None:
     attachment = tank_with(UnknownFading("input", power)).attachments[0]
     values = {"change": CHANGE, "T": TIME, "q": FASTER, "reach": 1.0}
-    final = SimpleNamespace(
-        values=lambda: {f"actuator.unknown_fading.{n}": v for n, v in values.items()},
-        deviations=lambda: {},
-        uncertainty=None,
-    )
-    curve = settled_curve(attachment, AROUND, final)
+    curve = settled_curve(attachment, AROUND, fitted("unknown_fading", values))
     assert curve is not None
     use = np.abs(curve.values) ** power
     np.testing.assert_allclose(curve.force, CHANGE * use / (1 + FASTER * use) * curve.values)

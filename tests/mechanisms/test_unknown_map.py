@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 import torch
@@ -15,8 +13,7 @@ from greybox_torch.mechanisms.matching import law_force
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
 from greybox_torch.mechanisms.unknown_map import KNOTS, UnknownMap
 from greybox_torch.systems import RobotArm
-from tests.mechanisms.adding_tank import AROUND as WITHOUT_SPEED
-from tests.mechanisms.adding_tank import Tank
+from tests.mechanisms.adding_tank import fitted, ports_asked
 
 AROUND = Surroundings(
     {"input": Range(0.0, 1.0, 0.6), "speed": Range(-100.0, 300.0, 150.0)},
@@ -60,21 +57,15 @@ def test_beyond_where_the_signals_moved_it_stays_level() -> None:
 
 
 def test_it_is_asked_for_at_actuators_that_drive_a_body() -> None:
-    arm, tank = RobotArm(), Tank()
+    arm = RobotArm()
     around = {q.name: AROUND for q in arm.all_ports}
     assert [a.port for a in memory_candidates(arm, around) if isinstance(a.mechanism, UnknownMap)] == ["actuator"]
-    around = {q.name: WITHOUT_SPEED for q in tank.all_ports}
-    assert not [a for a in memory_candidates(tank, around) if isinstance(a.mechanism, UnknownMap)]
+    assert not ports_asked(UnknownMap), "the tank has no speed"
 
 
 def test_its_curve_is_a_cut_through_the_middle() -> None:
     values = values_of(np.random.default_rng(2).normal(size=(KNOTS, KNOTS)))
-    final = SimpleNamespace(
-        values=lambda: {f"actuator.unknown_map.{n}": v for n, v in values.items()},
-        deviations=lambda: {},
-        uncertainty=None,
-    )
-    curve = settled_curve(attach(RobotArm(), "actuator", UnknownMap()), AROUND, final)
+    curve = settled_curve(attach(RobotArm(), "actuator", UnknownMap()), AROUND, fitted("unknown_map", values))
     assert curve is not None and (curve.signal, curve.unit, curve.force_unit) == ("input", "V", "N m")
     np.testing.assert_allclose(curve.force, mapped(values, curve.values, np.full(len(curve.values), 100.0)))
     assert curve.values[[0, -1]] == pytest.approx([0.0, 1.0])

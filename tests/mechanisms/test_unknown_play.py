@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.describe.memory import settled_curve
-from greybox_torch.diagnosis.screen.candidates import memory_candidates
 from greybox_torch.mechanisms.unknown_play import UnknownPlay
-from tests.mechanisms.adding_tank import AROUND, DT, Tank, levels, tank_with
+from tests.mechanisms.adding_tank import AROUND, DT, fitted, levels, ports_asked, tank_with
 
 HALF = 0.2
 
@@ -38,17 +35,13 @@ def test_what_acts_is_what_the_play_operator_gives(seed: int) -> None:
 
 
 def test_it_is_asked_for_at_actuators_among_what_remembers() -> None:
-    tank = Tank()
-    around = {q.name: AROUND for q in tank.all_ports}
-    found = [a.port for a in memory_candidates(tank, around) if isinstance(a.mechanism, UnknownPlay)]
-    assert found == ["actuator"]
-    assert not [a for a in memory_candidates(tank, around, 14) if isinstance(a.mechanism, UnknownPlay)]
+    assert ports_asked(UnknownPlay) == ["actuator"]
+    assert not ports_asked(UnknownPlay, 14)
 
 
 def test_its_curve_is_the_loop_that_it_draws() -> None:
     attachment = tank_with(UnknownPlay(), h=HALF).attachments[0]
-    final = SimpleNamespace(values=lambda: {"actuator.unknown_play.h": HALF}, deviations=lambda: {}, uncertainty=None)
-    curve = settled_curve(attachment, AROUND, final)
+    curve = settled_curve(attachment, AROUND, fitted("unknown_play", {"h": HALF}))
     assert curve is not None and curve.signal == "input" and curve.force_unit == "m/s"
     rising = np.diff(curve.values) > 0
     np.testing.assert_allclose(curve.force[:-1][rising], -HALF)

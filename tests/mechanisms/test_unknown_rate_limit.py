@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.describe.memory import settled_curve
-from greybox_torch.diagnosis.screen.candidates import memory_candidates
 from greybox_torch.mechanisms.unknown_rate_limit import UnknownRateLimit
-from tests.mechanisms.adding_tank import AROUND, DT, Tank, levels, tank_with
+from tests.mechanisms.adding_tank import AROUND, DT, fitted, levels, ports_asked, tank_with
 
 LIMIT = 0.5
 
@@ -36,18 +33,12 @@ def test_what_acts_runs_towards_the_input_at_the_limit(seed: int) -> None:
 
 
 def test_it_is_asked_for_at_actuators_among_what_remembers() -> None:
-    tank = Tank()
-    around = {q.name: AROUND for q in tank.all_ports}
-    found = [a.port for a in memory_candidates(tank, around) if isinstance(a.mechanism, UnknownRateLimit)]
-    assert found == ["actuator"]
+    assert ports_asked(UnknownRateLimit) == ["actuator"]
 
 
 def test_its_curve_is_what_the_limit_lacks_over_the_rate_of_the_input() -> None:
     attachment = tank_with(UnknownRateLimit(), R=LIMIT).attachments[0]
-    values = {"actuator.unknown_rate_limit.R": LIMIT}
-    curve = settled_curve(
-        attachment, AROUND, SimpleNamespace(values=lambda: values, deviations=lambda: {}, uncertainty=None)
-    )
+    curve = settled_curve(attachment, AROUND, fitted("unknown_rate_limit", {"R": LIMIT}))
     assert curve is not None and curve.signal == "rate of the input" and curve.unit == curve.force_unit == "m/s/s"
     np.testing.assert_allclose(curve.force, np.sign(curve.values) * np.minimum(LIMIT - np.abs(curve.values), 0.0))
 

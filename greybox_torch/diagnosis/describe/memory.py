@@ -17,8 +17,6 @@ from greybox_torch.mechanisms.matching import law_force
 from greybox_torch.mechanisms.surroundings import Surroundings
 from greybox_torch.mechanisms.unknown_fading import UnknownFading
 from greybox_torch.mechanisms.unknown_map import UnknownMap
-from greybox_torch.mechanisms.unknown_play import UnknownPlay
-from greybox_torch.mechanisms.unknown_rate_limit import UnknownRateLimit
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 
 FREQUENCIES = 81
@@ -79,7 +77,7 @@ def settled_curve(attachment: Attachment, around: Surroundings, final: Final) ->
     """
     mechanism = attachment.mechanism
     if isinstance(mechanism, InputFollower):
-        return _of_follower(mechanism, around, _own(attachment, final)[0])
+        return Curve(*mechanism.drawn(around, _own(attachment, final)[0], POINTS))
     if isinstance(mechanism, UnknownMap):
         return _of_map(mechanism, around, _own(attachment, final)[0])
     if not isinstance(mechanism, UnknownWithMemory | UnknownFading):
@@ -94,20 +92,6 @@ def settled_curve(attachment: Attachment, around: Surroundings, final: Final) ->
     else:
         force = law_force(mechanism.in_front, around, {mechanism.signal: torch.as_tensor(grid)}, values)
     return Curve(mechanism.signal, around.units.get(mechanism.signal, ""), grid, force, around.force_unit)
-
-
-def _of_follower(mechanism: InputFollower, around: Surroundings, values: Mapping[str, float]) -> Curve | None:
-    """The loop that play draws over the input; over the rate of the input, what a limit of it lacks."""
-    unit = around.units.get("input", "")
-    if isinstance(mechanism, UnknownRateLimit):
-        limit = values["R"]
-        rate = np.linspace(-3.0, 3.0, POINTS) * limit
-        return Curve("rate of the input", f"{unit}/s", rate, np.clip(rate, -limit, limit) - rate, f"{unit}/s")
-    if not isinstance(mechanism, UnknownPlay):
-        return None
-    there = np.linspace(around.ranges["input"].low, around.ranges["input"].high, POINTS)
-    both, lost = np.concatenate([there, there[::-1]]), values["h"]
-    return Curve("input", unit, both, np.repeat([-lost, lost], POINTS), around.force_unit)
 
 
 def _of_map(mechanism: UnknownMap, around: Surroundings, values: Mapping[str, float]) -> Curve:
