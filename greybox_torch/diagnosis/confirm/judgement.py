@@ -11,6 +11,7 @@ import numpy as np
 
 from greybox_torch.data import Recording
 from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
+from greybox_torch.diagnosis.confirm.unstable import followed
 from greybox_torch.diagnosis.contradictions import worse_than_refit
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.hypothesis.noise import output_floors
@@ -99,9 +100,11 @@ class Judgement:
     def unstable(self) -> frozenset[str]:
         """Validation experiments that do not count, as no free run of the model with effects follows them, and it comes out worse there.
 
-        None where they were more than half of all: what is left would say too little. That does not hold of those that are ``lost``.
+        Not one that both models follow. None where they were more than half of all: what is left would say too little. That does not
+        hold of those that are ``lost``.
         """
-        parted = self.free_runs.parted(self.augmented, self.with_effects, self._worse)
+        both = followed(self.refit, self.settings) & followed(self.with_effects, self.settings)
+        parted = self.free_runs.parted(self.augmented, self.with_effects, self._worse - both)
         found = frozenset(name for name, share in parted.items() if share >= self.settings.least_parted)
         return self.lost | (found if 2 * len(found) <= len(self.judges) else frozenset())
 
@@ -123,12 +126,12 @@ class Judgement:
 
     @cached_property
     def _worse(self) -> frozenset[str]:
-        return frozenset(name for name in self.judges if worse_than_refit(self._rows, self.judges - {name}))
+        return frozenset(n for n in self.judges if worse_than_refit(self._rows, self.judges - {n}))
 
     def _times_the_refit(self, experiment: str) -> float:
         """How many times the refit's squared error in an experiment is left with effects."""
         but = frozenset(self.judges - {experiment})
-        before, after = (self._energy(comparison, but) for comparison in (self.refit, self.with_effects))
+        before, after = (self._energy(c, but) for c in (self.refit, self.with_effects))
         return after / max(before, 1e-300)
 
     def _no_worse(self, but: frozenset[str]) -> bool:
@@ -141,8 +144,7 @@ class Judgement:
             return self.judges <= but
         before, after = (mean_fit(self._judged(c, but).scores) for c in (self.refit, self.with_effects))
         refit, with_effects = (self._energy(c, but) for c in (self.refit, self.with_effects))
-        least = self.settings.unexercised
-        return with_effects <= (1 + least) * refit and after >= before - 100 * least
+        return with_effects <= (1 + (least := self.settings.unexercised)) * refit and after >= before - 100 * least
 
     @property
     def _rows(self) -> list[dict[str, Any]]:

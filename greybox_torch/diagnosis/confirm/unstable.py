@@ -13,6 +13,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.noise import output_floors
 from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.estimate.comparison import Comparison, mean_fit
 from greybox_torch.estimate.initial import FRACTION
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.simulation.passes import Pass
@@ -50,6 +51,17 @@ def lost(
     rows = [e for e, name in enumerate(problem.records.names) if name in asked]
     beside = ((problem.records.names[e], _beside(problem, simulator, e, settings)) for e in rows)
     return {name: not runs.finite or bool(runs.grown) for name, runs in beside if not runs.near}
+
+
+def followed(comparison: Comparison, settings: DiagnosisSettings) -> frozenset[str]:
+    """The experiments that a model's free runs do follow (``settings.followed``). Models that both do can be compared there.
+
+    Seen: waves in a spring, told as a curve whose own slopes made free runs part: that left out an experiment which it made worse, of
+    95.4 % to 94.6 %.
+    """
+    names = {s.experiment for s in comparison.scores}
+    of = {name: mean_fit([s for s in comparison.scores if s.experiment == name]) for name in names}
+    return frozenset(name for name, fit in of.items() if fit >= 100 * settings.followed)
 
 
 def no_free_run_follows(

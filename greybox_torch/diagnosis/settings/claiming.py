@@ -108,6 +108,12 @@ class ConfirmationSettings:
         unit="share of the free run's error (root mean square)",
         chosen_by="orders of magnitude: beside an error of 1 % of the travel, changes have grown a hundredfold",
     )
+    followed: float = share(
+        0.9,
+        "Fit from which a model's free runs follow an experiment: where those of two models do, it can compare them.",
+        unit="mean fit of the outputs",
+        chosen_by="convention",
+    )
     least_growth: float = ratio(
         100.0,
         "How much larger it has to be over the record than over its first tenth.",
