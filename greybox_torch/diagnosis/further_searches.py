@@ -21,7 +21,7 @@ from greybox_torch.diagnosis.confirm.promotion import (
     replaces,
 )
 from greybox_torch.diagnosis.confirm.telling_apart import promote_to_tell_apart
-from greybox_torch.diagnosis.findings import Findings, judge
+from greybox_torch.diagnosis.findings import Findings, judge, without_refinements_alone
 from greybox_torch.diagnosis.hypothesis.start_positions import places_in
 from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.selection import MakeStudy, Selection, find
@@ -147,8 +147,9 @@ def find_what_is_slow(
     Args:
         end: when all of it has to be known.
     """
+    told = without_refinements_alone(first)
     asked = first.complete and first.others is not None
-    budget = longer_windows(first.study, first.state, first.judged, first.searched) if asked else None
+    budget = longer_windows(first.study, told.state, told.judged, first.searched) if asked else None
     if budget is None:
         return first
     try:
@@ -156,12 +157,12 @@ def find_what_is_slow(
             first.study.working_on("searching again over longer windows for what acts slowly")
             longer = partial(make_study, budget=budget, more_is_missing=True)
             last = find_with_more(find(first.dataset, model, longer, clock, end), model, longer, clock, end)
-            found = stands(last.study, *((f.state, f.gains, f.judged) for f in (first, last)))
+            found = stands(last.study, *((f.state, f.gains, f.judged) for f in (told, last)))
     except (TimeIsUp, KeyboardInterrupt):
         return replace(first, complete=False, others=None, cut=(*first.cut, LONGER))
-    told = sentence(first.judged, first.state, first.searched, last.state)
+    why = sentence(told.judged, told.state, first.searched, last.state)
     if found:
-        return replace(last, more=(*first.more, *last.more, told))
+        return replace(last, more=(*first.more, *last.more, why))
     if not last.complete:
         return replace(first, complete=False, cut=(LONGER,))
-    return replace(first, more=(*first.more, told))
+    return replace(first, more=(*first.more, why))

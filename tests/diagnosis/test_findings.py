@@ -138,3 +138,26 @@ def test_a_curve_is_asked_where_little_of_the_names_lasted(
     before, state = (stub(effects=names, prefixes=set(names), has_curve=has_curve) for names in (searched, lasted))
     judged = stub(left=lambda effects: (share_left, 28.0), settings=DiagnosisSettings())
     assert findings._curve_is_asked(before, (state, {}, judged, (), True)) is asked
+
+
+@pytest.mark.parametrize(
+    ("told", "shown", "kept"), [(["curve"], set(), True), ([], {"curve"}, True), ([], set(), False)]
+)
+def test_refinements_alone_leave_the_model_as_it_stands(monkeypatch, stub, told, shown, kept) -> None:
+    """Seen: uptake of glucose that saturates: over longer windows the same curve was a finding, and gave way to itself as a refinement."""
+    monkeypatch.setattr(findings, "findings", lambda *_: told)
+    monkeypatch.setattr(findings, "shown_by_free_runs", lambda *_: shown)
+    plain, curve = stub(effects=()), stub(effects=(stub(prefix="pool.curve"),))
+    without = stub()
+    found = _found(stub, SearchState(plain, curve), stub(without_effects=lambda: without))
+    asked = findings.without_refinements_alone(found)
+    assert (asked is found) is kept
+    if not kept:
+        assert asked.state.current is plain and asked.judged is without and asked.gains == {}
+    nothing = _found(stub, SearchState(plain, plain), stub())
+    assert findings.without_refinements_alone(nothing) is nothing
+
+
+def _found(stub, state: SearchState, judged: Any) -> findings.Findings:
+    named: dict[str, Any] = dict.fromkeys(("dataset", "study", "others", "free_runs", "schedule"), stub())
+    return findings.Findings(**named, state=state, searched=state.current, gains={"pool.curve": stub()}, judged=judged)

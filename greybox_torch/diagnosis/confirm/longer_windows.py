@@ -40,9 +40,10 @@ def longer_windows(study: Study, state: SearchState, judged: Judgement, searched
     by_windows = (times_noise(study.problem, h, settings) for h in (state.current, searched))
     if min(by_windows) > settings.above_noise:
         return None
-    longer = replace(budget, window_factors=(*budget.window_factors, 2 * budget.window_factors[-1]))
-    more = len(window_lengths(study.problem, longer)) > len(window_lengths(study.problem, budget))
-    return longer if more else None
+    lengths = window_lengths(study.problem, budget)
+    factors = budget.window_factors[: len(lengths)]  # short records have no windows of the others
+    longer = replace(budget, window_factors=(*factors, 2 * factors[-1]))
+    return longer if len(window_lengths(study.problem, longer)) > len(lengths) else None
 
 
 def stands(study: Study, before: Judged, after: Judged) -> bool:

@@ -74,13 +74,28 @@ def test_longer_windows_are_searched_where_free_runs_alone_show_more_than_noise(
 ) -> None:
     """``before``: of what the search came to. Seen: a delay, right and alone at the noise, taken back for a slow weight beside it."""
     budget = SearchBudget()
-    lengths_of = {budget.window_factors: [10], (*budget.window_factors, 32): [10, 20][:lengths]}
+    three = [10, 40, 160]
+    lengths_of = {budget.window_factors: three, (*budget.window_factors, 32): [*three, 320][: 2 + lengths]}
     monkeypatch.setattr(module, "window_lengths", lambda problem, budget: lengths_of[budget.window_factors])
     monkeypatch.setattr(module, "times_noise", lambda problem, fitted, settings: fitted)
     study = stub(settings=SETTINGS, budget=budget, problem=stub())
     longer = longer_windows(study, stub(effects=(), current=by_windows), judgement(stub, share, times), before)
     assert (longer is not None) is searched
     assert longer is None or longer.window_factors == (1, 4, 16, 32)
+
+
+def test_short_records_have_longer_windows_too(monkeypatch, stub) -> None:
+    """Of 601 samples: 20 and 80, not 320; then 160. Seen: a clamp's uptake of glucose that saturates, of which 80 show too little."""
+    monkeypatch.setattr(module, "times_noise", lambda problem, fitted, settings: 1.1)
+
+    def factors(samples: int) -> tuple[int, ...] | None:
+        problem = stub(records=stub(lengths=np.array([samples])))
+        study, fitted = stub(settings=SETTINGS, budget=SearchBudget(), problem=problem), stub()
+        longer = longer_windows(study, stub(effects=(), current=fitted), judgement(stub), fitted)
+        return None if longer is None else longer.window_factors
+
+    assert factors(601) == (1, 4, 8) and factors(4096) == (1, 4, 16, 32)
+    assert factors(300) is None, "nothing is longer than 80 and as long as half of it"
 
 
 def test_what_longer_windows_find_has_to_explain_most_where_it_had_no_part_in_choosing(stub) -> None:
