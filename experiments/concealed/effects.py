@@ -47,6 +47,11 @@ class Effect:
     sharp: bool = False
     """Physics with an edge, or richer than the library's law, in place of the law that the standard set has; for the proof alone."""
 
+    @property
+    def own(self) -> Pair:
+        """Where it acts and the library's name for it there, `unknown` where it has none; the other right answers are look-alikes."""
+        return next((pair for pair in self.accept if pair[0] == self.port), self.accept[0])
+
 
 def sign(rng: Generator) -> float:
     """-1 or 1."""

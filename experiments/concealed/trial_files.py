@@ -66,6 +66,7 @@ def key(trial: Trial) -> dict[str, Any]:
             for name, value in switches.items()
         },
         "accept": [_pairs(e.accept, e.alone if len(effects) == 1 else ()) for e in effects] or [[]],
+        "own": [list(e.own) for e in effects],
         "near": [_pairs(e.near, e.alone if len(effects) > 1 else ()) for e in effects] or [[]],
         "ports": [list(effect.ports) for effect in effects] or [[]],
         "outside": [effect.outside for effect in effects],

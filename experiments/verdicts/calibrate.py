@@ -2,8 +2,9 @@
 
     python -m experiments.verdicts.calibrate OUT CASES VERDICTS [CASES VERDICTS …] [--page FILE --about TEXT]
 
-Of names, of answers (names that the key accepts are one), and of statements: the whole class (``one_of``) that a finding is told as, its
-own name where it stands alone. The map p' = 1 / (1 + exp(−(a + b·logit p))) is fitted on all pairs of folders but the last, and tried on
+Of names, of exact names (right where they are what was concealed itself, and no look-alike that the key accepts as well), of answers
+(names that the key accepts are one), and of statements: the whole class (``one_of``) that a finding is told as, its own name where it
+stands alone. The map p' = 1 / (1 + exp(−(a + b·logit p))) is fitted on all pairs of folders but the last, and tried on
 the last (where there is one pair only, it is fitted on every other finding and tried on the rest). Writes OUT/calibration.json and
 OUT/calibration.png, and with --page a page of what the last pair shows, with its figure beside it.
 
@@ -27,11 +28,11 @@ from experiments.verdicts.scoring import Finding, score_all
 
 EDGES = (0.0, 0.3, 0.5, 0.7, 0.9, 1.0)
 STEPS = 100
-NAMES, ANSWERS, CLASSES = "names", "answers", "classes"
+NAMES, EXACT, ANSWERS, CLASSES = "names", "exact names", "answers", "classes"
 
 
 def collect(folders: Sequence[Path], what: str = NAMES) -> tuple[np.ndarray, np.ndarray]:
-    """Claimed probabilities (n,) of names, answers or classes, over all pairs of folders, and whether each came true (n,)."""
+    """Claimed probabilities (n,) of one of these kinds, over all pairs of folders, and whether each came true (n,)."""
     findings = [f for cases, verdicts in pairs_of(folders) for s in score_all(cases, verdicts) for f in s.findings]
     told = [claim for f in findings for claim in _claims(f, what)]
     return np.array([p for p, _ in told], dtype=float), np.array([right for _, right in told], dtype=float)
@@ -42,7 +43,7 @@ def _claims(finding: Finding, what: str) -> Sequence[Claim]:
         return finding.answers
     if what == CLASSES:
         return [(finding.class_probability, finding.class_right)]
-    return [(finding.probability, finding.right)]
+    return [(finding.probability, finding.exact if what == EXACT else finding.right)]
 
 
 def pairs_of(folders: Sequence[Path]) -> list[tuple[Path, Path]]:
@@ -118,7 +119,7 @@ def scored(folders: Sequence[Path], what: str) -> dict[str, Any]:
 def main(out: Path, folders: Sequence[Path], page: Path | None = None, about: str = "") -> None:
     from experiments.verdicts.calibration_page import draw, panels_of, write_page
 
-    result = {what: scored(folders, what) for what in (NAMES, ANSWERS, CLASSES)}
+    result = {what: scored(folders, what) for what in (NAMES, EXACT, ANSWERS, CLASSES)}
     out.mkdir(parents=True, exist_ok=True)
     (out / "calibration.json").write_text(json.dumps(result, indent=1) + "\n")
     draw(panels_of(result), out / "calibration.png")

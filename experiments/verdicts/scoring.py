@@ -35,14 +35,16 @@ STEPS = (("accept", True), ("near", False), ("ports", False))
 class Finding:
     """One effect of a verdict: what it said, with which probability, and whether it is right, at the right place, or neither.
 
-    ``class_probability`` and ``class_right`` are those of the whole class (``one_of``), its own where it has none; ``answers`` what it
-    claims of each answer, of which names that the key accepts are one.
+    ``exact`` says whether it is the name of what was concealed itself, and not of a look-alike that the key takes as well (``own`` of the
+    key; as ``right`` where that does not say). ``class_probability`` and ``class_right`` are those of the whole class (``one_of``), its
+    own where it has none; ``answers`` what it claims of each answer, of which names that the key accepts are one.
     """
 
     port: str
     mechanism: str
     probability: float
     right: bool
+    exact: bool
     located: bool
     spurious: bool
     class_probability: float
@@ -182,6 +184,7 @@ def _findings(effects: Sequence[Mapping[str, Any]], key: Mapping[str, Any]) -> t
                 effect["mechanism"],
                 float(effect["probability"]),
                 right=right,
+                exact=right and _among(effect, [key["own"][hit]] if "own" in key else key["accept"][hit]),
                 located=hit >= 0 and effect["port"] in key["ports"][hit],
                 spurious=hit < 0,
                 class_probability=float(whole.get("probability", effect["probability"])),

@@ -65,6 +65,11 @@ def brier_of(findings: Sequence[Finding]) -> float:
     return brier(np.array([f.probability for f in findings]), np.array([float(f.right) for f in findings]))
 
 
+def brier_of_exact_names(findings: Sequence[Finding]) -> float:
+    """The same of the names, each right where it is what was concealed itself."""
+    return brier(np.array([f.probability for f in findings]), np.array([float(f.exact) for f in findings]))
+
+
 def brier_of_classes(findings: Sequence[Finding]) -> float:
     """The same of the classes, each right where any of its members is."""
     return brier(np.array([f.class_probability for f in findings]), np.array([float(f.class_right) for f in findings]))

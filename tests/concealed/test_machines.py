@@ -184,6 +184,8 @@ def test_twins_that_are_twins_alone_are_near_beside_another_effect():
     assert key(single)["accept"][0] == [["actuator", "input_lag"], ["sensor", "sensor_lag"]]
     assert key(pair)["accept"][0] == [["actuator", "input_lag"]]
     assert ["sensor", "sensor_lag"] in key(pair)["near"][0]
+    assert key(single)["own"] == [["actuator", "input_lag"]], "what was concealed, of the names that are right"
+    assert key(pair)["own"] == [["actuator", "input_lag"], ["carriage", "coulomb_friction"]]
 
 
 def test_effects_that_overflow_are_halved_until_they_do_not(monkeypatch: pytest.MonkeyPatch):

@@ -48,6 +48,16 @@ def test_a_wrong_headline_takes_the_effect_that_a_later_finding_names() -> None:
     assert [(f.right, f.located, f.spurious) for f in found.findings] == [(False, True, False), (False, False, True)]
 
 
+def test_an_exact_name_is_what_was_concealed_and_no_look_alike() -> None:
+    key = {**KEY, "own": [["actuator", "input_bias"], ["motor", "coulomb_friction"]]}
+    for named, exact in ((("motor", "constant_bias"), False), (("actuator", "input_bias"), True)):
+        said = verdict((*named, 0.5), ("motor", "coulomb_friction", 0.8))
+        assert [(f.right, f.exact) for f in score("c", said, key).findings] == [(True, exact), (True, True)]
+        assert [f.exact for f in score("c", said, KEY).findings] == [True, True], "a key that does not say"
+    near, spurious = score("c", verdict(("motor", "coulomb_asymmetry", 0.5), ("arm", "gravity", 0.5)), key).findings
+    assert not near.exact and not spurious.exact
+
+
 def test_a_class_is_right_where_any_member_is() -> None:
     said = verdict(("arm", "gravity", 0.4))
     members = [
@@ -168,6 +178,7 @@ def test_the_whole_script(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     printed = json.loads(capsys.readouterr().out)
     assert printed == json.loads((tmp_path / "out" / "calibration.json").read_text())
     named = printed["names"]
+    assert named == printed["exact names"], "the keys do not say which of the names they accept was concealed"
     assert named["fitted on"]["findings"] == named["tested on"]["findings"] == 6
     of_classes = printed["classes"]["tested on"]
     assert of_classes["brier"] == pytest.approx(0.03**2) and of_classes["right"] == 1.0

@@ -149,6 +149,7 @@ def _reliability(found: Sequence[Scored], file: Path) -> bool:
         return False
     told = {
         "names": [(f.probability, f.right) for f in findings],
+        "exact names": [(f.probability, f.exact) for f in findings],
         "answers": [claim for f in findings for claim in f.answers],
         "classes": [(f.class_probability, f.class_right) for f in findings],
     }

@@ -23,7 +23,8 @@ CAPTIONS = {
     "diagonal, whichever of its twins it names.",
     "strength.png": "Detected, located and named against how visible the effect is. Ticks: the cases.",
     "closure.png": "How many cases have at least so much of their validation error closed.",
-    "reliability.png": "What came true of what was claimed (95 %): names; answers, those that the key accepts being one; classes.",
+    "reliability.png": "What came true of what was claimed (95 %): names; exact names, without look-alikes; answers, of which names that "
+    "the key accepts are one; classes.",
 }
 BESIDE = (
     (

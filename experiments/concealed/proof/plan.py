@@ -49,7 +49,7 @@ USUAL_WORDS = ("weak", "moderate", "dominant")
 
 def mechanism(effect: Effect) -> str:
     """The library's name for an effect, `unknown` where it has none."""
-    return next((name for port, name in effect.accept if port == effect.port), effect.accept[0][1])
+    return effect.own[1]
 
 
 def by_mechanism(machines: Mapping[str, Machine] = OWN) -> dict[str, list[tuple[str, str]]]:
