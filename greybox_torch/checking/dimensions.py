@@ -30,6 +30,7 @@ _NAMED = (
     "N m s/rad",
     "N s/m",
     "N/m",
+    "kg m^2",
     "V/s",
     "A/s",
     "K/s",

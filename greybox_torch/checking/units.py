@@ -9,7 +9,7 @@ from greybox_torch.checking.expression_text import Names, shown
 from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.source import Source
 from greybox_torch.checking.tracing import Traced
-from greybox_torch.checking.unit_walk import dimensions
+from greybox_torch.checking.unit_walk import Known, dimensions
 from greybox_torch.model import Body, Coupling, GreyBoxModel
 
 REMEDY = "what makes units fit: a number in the equation that has a unit is a parameter with that unit and fixed=True"
@@ -48,7 +48,9 @@ def misfits(model: GreyBoxModel, traced: Traced, source: Source) -> Iterator[Fin
     roots = [*traced.rates.values(), *traced.outputs.values()]
     known = dimensions(graph, roots, leaves, text, found.setdefault)
     for node, what in found.items():
-        write = f"{REMEDY}; the units are {_used(traced, node, names, units)}"
+        write = (
+            _per_unit_of(traced, node, known, names) or f"{REMEDY}; the units are {_used(traced, node, names, units)}"
+        )
         yield Finding("warning", "units", what, write, source.file, graph.lines.get(node))
     for name, node in traced.rates.items():
         unit = next(s.unit for s in model.states if s.name == name)
@@ -113,6 +115,22 @@ def _force(port: object, of_signal: dict[tuple[str, str], Dimension | None]) -> 
         deflection = of_signal[port.name, "deflection"]
         return None if deflection is None else WATT.times(SECOND).times(deflection, -1)
     return None
+
+
+def _per_unit_of(traced: Traced, node: int, known: Known, names: Names) -> str | None:
+    """What to write where a port's force is added to an equation that is divided by a mass or the like; None elsewhere."""
+    graph = traced.graph
+    ports = [
+        a for a in graph.nodes[node].arguments if graph.nodes[a].operation == "leaf" and graph.nodes[a].leaf == "f"
+    ]
+    others = [known[a] for a in graph.nodes[node].arguments if a not in ports]
+    if len(ports) != 1 or len(others) != 1 or others[0] is None or (force := known[ports[0]]) is None:
+        return None
+    port = names.of("f", int(graph.nodes[ports[0]].value))
+    return (
+        f"`{port}` divided by the parameter in {force.times(others[0], -1)} that the equation is divided by; where the model has none, by "
+        "one of value 1 with fixed=True"
+    )
 
 
 def _used(traced: Traced, node: int, names: Names, units: dict[str, str]) -> str:

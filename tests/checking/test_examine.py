@@ -112,7 +112,8 @@ FAULTS = {
         "warning", "output 'speed' is in N m", "rad/s", "x.speed * p.b",
     ),
     "port not as a force": (
-        rate(" + port.rotor) / p.J", ") / p.J + port.rotor"), "warning", "`port.rotor`, in N m", "port.rotor [N m]", "return {",
+        rate(" + port.rotor) / p.J", ") / p.J + port.rotor"), "warning", "`port.rotor`, in N m",
+        "`port.rotor` divided by the parameter in kg m^2", "return {",
     ),
     "unit that is none": ((B, B.replace("N m s/rad", "Nmsrad")), "warning", '"Nmsrad" is not a unit', "rad/s", '"b"'),
     "parameter without effect": (
