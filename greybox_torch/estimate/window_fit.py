@@ -15,6 +15,7 @@ import numpy as np
 
 from greybox_torch.estimate.integrated_speeds import integrated_speeds
 from greybox_torch.estimate.levenberg_marquardt import ROUGH, Settings
+from greybox_torch.estimate.open_starts import begun_with, open_starts
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.rival import Rival
 from greybox_torch.estimate.rough_starts import rough_starts
@@ -121,6 +122,7 @@ def fit_windows(
                 states, here, damping = along, again, min(damping, FIRST_DAMPING)
         if still:
             break
+    problem = begun_with(problem, windows, states)
     return WindowFit(problem, windows, states, here.mean_square, here.energies, evaluations, along, damping)
 
 
@@ -214,12 +216,9 @@ def evaluate(
     hold: Hold | None = None,
 ) -> WindowModel | None:
     """One pass over windows from start ``states`` (W, n_x); None where it overflows."""
-    count, n_x = states.shape
-    n_p = int(problem.free.sum())
-    open_states = np.flatnonzero(~problem.carried)
-    eye = np.broadcast_to(np.eye(n_x)[open_states], (count, len(open_states), n_x))
-    records = problem.window_records
-    asked = Pass(windows, problem.values, states, tangents=n_p > 0, start_directions=eye, weights=problem.weights)
+    n_p, records, begun = int(problem.free.sum()), problem.window_records, open_starts(problem, windows)
+    tangents = {"tangents": n_p > 0, "start_directions": begun.directions}
+    asked = Pass(windows, problem.values, states, **tangents, weights=problem.weights)
     run = simulator.run(records, asked)
     assert run.normal is not None
     if not np.isfinite(run.normal).all():
@@ -230,13 +229,14 @@ def evaluate(
         cost=0.5 * float(energies.sum()),
         hpp=h[:, :n_p, :n_p].sum(0),
         gp=g[:, :n_p].sum(0),
-        hss=h[:, n_p:, n_p:],
+        hss=begun.without_bound(h[:, n_p:, n_p:]),
         hsp=h[:, n_p:, :n_p],
         gs=g[:, n_p:],
         mean_square=float(energies.sum()) / max(_weighted_samples(records, windows), 1),
         energies=energies,
-        open_states=open_states,
-        away=states[:, open_states],
+        open_states=begun.states,
+        away=states[:, begun.states],
+        bound=begun.bound,
         moved=problem.values[problem.free],
     )
     return found if hold is None else held(found, hold)

@@ -24,7 +24,8 @@ class Hold:
 @dataclass(frozen=True)
 class WindowModel:
     """Cost, gradient and Gauss-Newton Hessian over windows: of the parameters (``gp``, ``hpp``), of each window's open start states
-    (``gs``, ``hss``) and between the two (``hsp``); the mean squared error, the energy of every window (W,), and where the unknowns are.
+    (``gs``, ``hss``) and between the two (``hsp``); the mean squared error, the energy of every window (W,), and where the unknowns are;
+    ``bound`` (W, n_s) marks start states that follow from the window before.
     """
 
     cost: float
@@ -37,13 +38,15 @@ class WindowModel:
     energies: np.ndarray
     open_states: np.ndarray
     away: np.ndarray
+    bound: np.ndarray
     moved: np.ndarray
 
 
 def held(found: WindowModel, hold: Hold) -> WindowModel:
     """The pass with the weak holds added to cost, gradient and Hessian."""
     weights = hold.weights[found.open_states]
-    away, moved = found.away - hold.starts[:, found.open_states], found.moved - hold.values
+    away = np.where(found.bound, 0.0, found.away - hold.starts[:, found.open_states])
+    moved = found.moved - hold.values
     cost = float((weights * away**2).sum() + (hold.value_weights * moved**2).sum())
     return replace(
         found,

@@ -183,6 +183,11 @@ class AugmentedModel(GreyBoxModel):
         own = [s.name for s in self.states[len(self.base.states) :]]
         return (*self.base.carried_states(), *(n for n in own if not n.startswith(fading)))
 
+    def remembered_states(self) -> tuple[str, ...]:
+        """Those of the base model, and of memories that last from before a record."""
+        own = [f"{a.prefix}.{name}" for a in self.attachments for name in a.mechanism.lasting]
+        return (*self.base.remembered_states(), *own)
+
     def start_trials(self, values: Any) -> list[dict[str, float]]:
         """Positions at which a record may begin: those of bodies that no sensor sees."""
         if not self.local.unseen_positions():

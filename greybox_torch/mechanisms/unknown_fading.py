@@ -20,7 +20,8 @@ class UnknownFading(Mechanism):
     """change z s: a gain on the local signal s that changes with a memory z of it, T dz/dt = |σ|ⁿ (1 − q z) − z, σ = s / reach.
 
     A battery that sags under load and recovers, a torque constant of a winding that heats up, a paste that thins as it is stirred, rubber
-    that softens. It begins rested, with z = 0, and ``reach`` is the largest |s| that was recorded. The power n is 2 (heat) or 1 (shear).
+    that softens. What z begins with is estimated for every experiment; ``reach`` is the largest |s| that was recorded. The power n is 2
+    (heat) or 1 (shear).
     With q above zero it is used up faster than it comes back, by 1 + q times where |s| stays at ``reach``.
     """
 
@@ -29,6 +30,7 @@ class UnknownFading(Mechanism):
     free = True
     essential = ("change",)
     natural = ("q",)
+    lasting = ("used",)
     modes = 1
     nature = "a gain that fades as it is used"
     explanation = "A gain changes as the signal is used, and comes back at rest (a battery, a winding that heats up, a paste that thins)."

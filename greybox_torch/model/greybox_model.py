@@ -77,11 +77,9 @@ class GreyBoxModel(torch.nn.Module):
 
     def outputs_with(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
         """Outputs by name, with forces at the ports where :meth:`output` asks for them or shows accelerations."""
-        return (
-            self.output(x, u, p, port)
-            if self.asks_for_forces
-            else with_shown_rates(self, self.output(x, u, p), x, u, p, port)
-        )
+        if self.asks_for_forces:
+            return self.output(x, u, p, port)
+        return with_shown_rates(self, self.output(x, u, p), x, u, p, port)
 
     @property
     def shows_forces(self) -> bool:
@@ -99,6 +97,10 @@ class GreyBoxModel(torch.nn.Module):
     def settled(self, records: Any, values: Any) -> Any:
         """The records without what outputs show that was before their beginning: that tells nothing of a window that begins there."""
         return records
+
+    def remembered_states(self) -> tuple[str, ...]:
+        """States that hold what went on before: carried from window to window, and estimated where a record begins."""
+        return ()
 
     def start_trials(self, values: Any) -> list[dict[str, float]]:
         """Start states to be tried one by one, where the data determine them only up to several possibilities."""
@@ -165,9 +167,8 @@ class GreyBoxModel(torch.nn.Module):
                 raise UserError(f"model {self.title} has no parameter '{name}' (it has: {', '.join(declared)})")
             low, high = declared[name].bounds
             if not low <= value <= high:
-                raise UserError(
-                    f"parameter '{name}' of model {self.title}: {value:g} lies outside its bounds [{low:g}, {high:g}]"
-                )
+                where = f"lies outside its bounds [{low:g}, {high:g}]"
+                raise UserError(f"parameter '{name}' of model {self.title}: {value:g} {where}")
             with torch.no_grad():
                 self.raw[_key(name)].fill_(value / self._scales[name])
         self._set_by_name |= frozenset(values)
@@ -213,9 +214,8 @@ class GreyBoxModel(torch.nn.Module):
             names = [item.name for item in getattr(self, kind)]
             twice = sorted({n for n in names if names.count(n) > 1})
             if twice:
-                raise UserError(
-                    f"model {self.title}: '{kind.removeprefix('declared_')}' names {', '.join(twice)} twice"
-                )
+                what = kind.removeprefix("declared_")
+                raise UserError(f"model {self.title}: '{what}' names {', '.join(twice)} twice")
 
 
 def _key(name: str) -> str:
