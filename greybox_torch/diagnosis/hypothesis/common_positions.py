@@ -58,6 +58,37 @@ def with_common_positions(
     return [_begun(p, fit, names) for p in problems], [_begun(p, fit, names) for p in early]
 
 
+def begun_as(problem: Problem, shorter: WindowFit | None) -> WindowFit | None:
+    """A fit that start states are taken from, its positions moved along with where ``problem`` has every experiment begin.
+
+    Seen: the teeth of a winder's motor. The second of two experiments was placed rightly by every refit, and begun where the first one,
+    before the law was known, had it.
+    """
+    names = _placed_names(problem)
+    if shorter is None or not names or not _has(shorter, names, len(problem.initial)):
+        return shorter
+    there, starts = _columns(shorter.problem, names), shorter.starts.copy()
+    experiments = problem.records.experiments(shorter.windows.start)
+    first = np.searchsorted(experiments, np.arange(len(problem.initial)))
+    away = problem.initial[:, _columns(problem, names)] - starts[first][:, there]
+    starts[:, there] += away[experiments]
+    return replace(shorter, starts=starts, along=None)
+
+
+def placed_alike(one: Problem, other: Problem) -> bool:
+    """Whether two problems of one model have every experiment begin at the same positions, where no sensor shows those."""
+    names = _placed_names(one)
+    if not names:
+        return True
+    return np.allclose(*(p.initial[:, _columns(p, names)] for p in (one, other)), rtol=0, atol=1e-3)
+
+
+def _placed_names(problem: Problem) -> list[str]:
+    """The states that are placed beside one another: none, of a single experiment."""
+    trials = problem.model.start_trials(problem.values) if len(problem.records.first) > 1 else []
+    return list(trials[0]) if trials else []
+
+
 def _begun(problem: Problem, fit: WindowFit, names: Sequence[str]) -> Problem:
     """``problem`` with the states ``names`` beginning where they do in ``fit``."""
     return _placed_at(problem, fit.problem.initial[:, _columns(fit.problem, names)], names)

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from greybox_torch.diagnosis.hypothesis.common_positions import with_common_positions
+from greybox_torch.diagnosis.hypothesis.common_positions import begun_as, placed_alike, with_common_positions
 from greybox_torch.diagnosis.hypothesis.continued import continued
 from greybox_torch.diagnosis.hypothesis.local_minima import no_worse_than_longer
 from greybox_torch.diagnosis.hypothesis.noise import at_floor, floor_known, reaches_noise
@@ -121,6 +121,7 @@ def hypothesis(
     at = at or window_lengths(base, budget)
     known_places = [*(() if before is None else before.fits[:1]), *(() if shorter is None else (shorter,))]
     problems, first = with_common_positions(problems, first, simulator, at[0], known_places, budget, rough, places)
+    shorter = begun_as(problems[0], shorter)
     for length in at:
         known = None if before is None else _over(cut(base.records, length), before.fits)
         trials = _distinct([f.problem for f in fits[-1:]] + problems + ([] if fits else first), known)
@@ -222,6 +223,10 @@ def _distinct(problems: Sequence[Problem], known: WindowFit | None) -> list[Prob
     """Those that are admissible and begin where no other does, nor ``known`` has led."""
     kept: list[Problem] = [] if known is None else [known.problem]
     for p in problems:
-        if p.admissible(p.values) and not any(np.allclose(p.values, q.values, rtol=1e-3, atol=0) for q in kept):
+        if p.admissible(p.values) and not any(_begin_alike(p, q) for q in kept):
             kept.append(p)
     return kept if known is None else kept[1:]
+
+
+def _begin_alike(one: Problem, other: Problem) -> bool:
+    return np.allclose(one.values, other.values, rtol=1e-3, atol=0) and placed_alike(one, other)

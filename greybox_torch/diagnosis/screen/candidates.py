@@ -104,11 +104,12 @@ def periodic_candidates(
     surroundings: Mapping[str, Surroundings],
     orders: Iterable[float],
     least_ripple_order: float = DiagnosisSettings().least_ripple_order,
+    at: str | None = None,
 ) -> list[Attachment]:
-    """Periodic mechanisms at every port that they fit, at the given orders (gravity, order one, stands by itself)."""
+    """Periodic mechanisms at every port that they fit, or ``at`` one alone, at the given orders (gravity, order one, stands by itself)."""
     found = []
     for order in orders:
-        for port in model.ports:
+        for port in model.ports if at is None else (p for p in model.ports if p.name == at):
             if isinstance(port, Body):
                 found.append(attach(model, port.name, PositionDependentFriction(order)))
                 if order > least_ripple_order or not _is_angle(surroundings[port.name]):

@@ -20,7 +20,7 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
-from greybox_torch.model.ports import driving_body
+from greybox_torch.model import Body
 from greybox_torch.simulation.side_by_side import side_by_side
 
 BATCH = 32
@@ -32,15 +32,34 @@ FAMILIES: tuple[type[Mechanism], ...] = (TorqueRipple, PositionDependentFriction
 
 def scan_orders(
     study: Study, accepted: Sequence[Attachment], free_names: Sequence[str], fits: Sequence[WindowFit]
-) -> list[float]:
-    """The most promising orders (periods per unit of position) of a periodic effect at the first body.
+) -> dict[str, list[float]]:
+    """By body, the most promising orders (periods per unit of position) of a periodic effect: at the first body, and at those that move
+    otherwise, as the second joint of an arm or the other drum of a winder.
 
     Of every fit (they differ in window length), the two that explain most, best first.
     """
+    bodies = _moving_otherwise(study)
+    return {body.name: _orders_at(study, body, accepted, free_names, fits) for body in bodies}
+
+
+def _moving_otherwise(study: Study) -> list[Body]:
+    """The first body, and those of which none before them has the same travel: what turns as another does repeats at the same orders.
+
+    Seen: the teeth of a winder's motor, looked for at the orders of the other drum alone, and told as the sheet's and that drum's.
+    """
+    differ, kept = study.settings.orders_differ, dict[float, Body]()
+    for body in (port for port in study.problem.model.ports if isinstance(port, Body)):
+        position = study.surroundings[body.name].ranges["position"]
+        travel = position.high - position.low
+        if all(abs(travel - other) > differ * max(travel, other) for other in kept):
+            kept[travel] = body
+    return list(kept.values())
+
+
+def _orders_at(
+    study: Study, body: Body, accepted: Sequence[Attachment], free_names: Sequence[str], fits: Sequence[WindowFit]
+) -> list[float]:
     base, settings, budget = study.problem.model, study.settings, study.budget
-    body = driving_body(base.ports)
-    if body is None:
-        return []
 
     def screen(family: type[Mechanism]) -> Screen:
         attachments = [Attachment(body.name, family(), position=body.name)] * BATCH

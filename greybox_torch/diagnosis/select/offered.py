@@ -148,10 +148,15 @@ def _offered(study: Study, state: SearchState, curves: bool) -> list[Attachment]
     model, at = study.problem.model, state.current
     over = [f for f in at.fits if f.mean_square > noise_floor(study.problem, study.settings)] or at.fits
     scanned = scan_orders(study, at.effects, at.problem.free_names, over[:2])
-    orders = distinct_orders([*scanned, *orders_before(study, state)], study.settings.orders_differ)
+    first, *further = scanned or [""]
+    known = [*scanned.get(first, ()), *orders_before(study, state)]
+    orders = distinct_orders(known, study.settings.orders_differ)
+    periodic = partial(periodic_candidates, model, study.shifts, study.surroundings)
+    least = study.settings.least_ripple_order
     return [
         *candidates(model, study.shifts, study.surroundings, flexible=False),
-        *periodic_candidates(model, study.shifts, study.surroundings, orders, study.settings.least_ripple_order),
+        *periodic(orders, least),
+        *(candidate for name in further for candidate in periodic(scanned[name], least, at=name)),
         *(
             candidates(model, study.shifts, study.surroundings, flexible=True, knots=study.budget.knots)
             if curves
