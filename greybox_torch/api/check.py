@@ -10,6 +10,7 @@ from greybox_torch.api.check_result import CheckResult
 from greybox_torch.checking.examine import examine
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.data import DataSet
+from greybox_torch.drafting.contradicted import contradictions
 from greybox_torch.errors import ArgumentError, Kind, UserError
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel
@@ -46,6 +47,8 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
     with users_code(_file(given), f"model {name}", "checking it"):
         examined = examine(given)
     findings, values = list(examined.findings), dict[str, float]()
+    if data is not None:
+        findings += [Finding("warning", "card", c.found, c.write, data.path) for c in contradictions(data.path)]
     if data is not None and examined.model is not None and not any(f.level == "error" for f in findings):
         more, values = _with_data(data, examined.model)
         findings += more

@@ -12,6 +12,7 @@ from rich.text import Text
 
 from greybox_torch.api.result import HELD_OUT, Result
 from greybox_torch.data import DataSet
+from greybox_torch.drafting.contradicted import contradictions
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
 
@@ -60,6 +61,7 @@ class InspectionResult(Result):
                 for recording in self.data.recordings
             ],
             "model": self.model,
+            "warnings": [str(found) for found in contradictions(self.data.path)],
             "figure": str(folder / FIGURE),
         }
 
@@ -112,6 +114,7 @@ class InspectionResult(Result):
 
     def _notes(self) -> list[str]:
         notes = [f"{recording.name}: {note}." for recording in self.data.recordings for note in recording.notes]
+        notes += [f"warning: {self.data.place()}: {found}" for found in contradictions(self.data.path)]
         notes += [HELD_OUT] if self.data.held_out_by_default else []
         if self.model is not None:
             notes.append(f"Channels, parameters and start states fit the model {self.model}.")

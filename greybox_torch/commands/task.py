@@ -6,10 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import torch
+from rich.console import Console
+from rich.text import Text
 
 from greybox_torch.api.arguments import check_device, check_precision, named_model
 from greybox_torch.commands.options import Options
 from greybox_torch.data import DataSet, load_dataset
+from greybox_torch.drafting.contradicted import contradictions
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel
@@ -40,6 +43,9 @@ def load_task(dataset: Path, options: Options) -> Task:
     torch.manual_seed(options.seed)
     model = named_model(dataset, data, options.model)
     make_problem(data, model, data.recordings)  # card and model fit together, whatever the command then takes of it
+    log = Console(stderr=True, highlight=False)
+    for found in contradictions(data.path):
+        log.print(Text(f"warning: {dataset}: {found}", style="yellow"), soft_wrap=True)
     return Task(data, model, device, folder, precision)
 
 

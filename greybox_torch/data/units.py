@@ -64,9 +64,14 @@ def dimensionality(unit: str) -> dict[str, float]:
         raise ValueError(f'"{unit:.40}" is not a unit') from error
 
 
+def per_minute(unit: str) -> bool:
+    """Whether a unit may be turns per minute, as data loggers write it."""
+    return bool(_TURNS.fullmatch(unit.strip("[]() ")))
+
+
 def _turns(unit: str, other: str) -> str:
     """Turns per minute where that is meant: "1/min" beside an angle."""
-    return "rpm" if _TURNS.fullmatch(unit.strip("[]() ")) and _ANGLE.search(other) else unit
+    return "rpm" if per_minute(unit) and _ANGLE.search(other) else unit
 
 
 def _written(unit: str) -> str:

@@ -1,0 +1,143 @@
+"""Units on a card that the names of its columns contradict: `time_s` in ms, `n_motor_rpm` in rad/s without a conversion."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from greybox_torch.data.card import TIME, Card, read_card
+from greybox_torch.data.card_channels import ChannelEntry
+from greybox_torch.data.units import conversion, dimensionality, per_minute
+from greybox_torch.drafting.column_units import unit_in
+from greybox_torch.errors import UserError
+
+_KNOWN = re.compile(
+    "s|ms|us|µs|ns|h|m|mm|cm|km|um|µm|kg|N|kN|mN|Nm|kNm|mNm|rad|mrad|deg|degrees|degC|V|mV|kV|A|mA|W|kW|MW|mW|J|kJ|Pa|hPa|kPa|MPa|bar|mbar|psi|"
+    "Hz|kHz|rpm|rev|Ohm|l|ml"
+)
+"""What is a unit in a name, and nothing else: [t], (k), (in), (est) are units as well, and hardly ever meant as such."""
+
+_TIMES = {
+    **dict.fromkeys(("s", "sec", "secs", "seconds"), "s"),
+    **dict.fromkeys(("ms", "msec", "millis", "milliseconds"), "ms"),
+    **dict.fromkeys(("us", "µs", "usec", "micros", "microseconds"), "us"),
+    **dict.fromkeys(("ns", "nsec", "nanos", "nanoseconds"), "ns"),
+    **dict.fromkeys(("min", "minutes"), "min"),
+    **dict.fromkeys(("h", "hours"), "h"),
+}
+_SURE = frozenset(("rpm", "deg/s", "rad/s", "mN m", "mm", "degC"))
+"""Endings that are units whatever the card says. Of others, such as x_bar and heat_rad, only another scale is told."""
+_AS_WRITTEN = {"Nm": "N m", "mA": "mA", "mV": "mV", "kW": "kW"}
+"""Sure only if written so: speed_ma is a moving average, u_mv a manipulated variable."""
+_OF_QUANTITY = {
+    "A": re.compile(r"(i|i[dq]|curr?|currents?|amps?|strom)([\W_\d]|$)", re.IGNORECASE),
+    "V": re.compile(r"(u|v|u[dq]|volts?|voltages?|spannung)([\W_\d]|$)", re.IGNORECASE),
+}
+"""What a name begins with where a letter at its end is a unit, and no phase."""
+
+
+@dataclass(frozen=True)
+class Contradiction:
+    """``place`` is `time`, or `channel "speed"`, and its experiment where that alone has the column; ``write`` what to write instead."""
+
+    place: str
+    column: str
+    told: str
+    said: str
+    write: str
+
+    @property
+    def found(self) -> str:
+        return f'{self.place}: column "{self.column}" is in {self.told} by its name, but the card says {self.said}'
+
+    def __str__(self) -> str:
+        return f"{self.found}; expected {self.write}"
+
+
+def contradictions(card: Path | None) -> list[Contradiction]:
+    """Those of the card at a path; none where data are from memory."""
+    if card is None or not card.is_file():
+        return []
+    return list(dict.fromkeys(_found(read_card(card))))
+
+
+def _found(card: Card) -> Iterator[Contradiction]:
+    named = [("", {TIME: card.time.column if card.time else None} | {n: e.column for n, e in card.channels.items()})]
+    named += [(f'[[experiment]] "{e.name}", ', dict(e.columns)) for e in card.experiment]
+    columns = {column for _, of in named for column in of.values() if column}
+    for where, of in named:
+        for name, column in of.items():
+            if column is None:
+                continue
+            if name == TIME and card.time is not None:
+                told = _time_in(column)
+                if told and _differ(told, card.time.unit):
+                    yield Contradiction(f"{where}{TIME}", column, told, card.time.unit, f'unit = "{told}"')
+            elif name in card.channels:
+                yield from _of_channel(f'{where}channel "{name}"', column, card.channels[name], columns)
+
+
+def _of_channel(place: str, column: str, entry: ChannelEntry, columns: set[str]) -> Iterator[Contradiction]:
+    if "scale" in entry.model_fields_set:  # whoever gives a factor has thought of the unit
+        return
+    said = entry.file_unit or entry.unit
+    rate = "" if entry.derivative is None or entry.file_unit else "/s"
+    told, sure = _unit_of(column, columns)
+    if not (told and said and _differ(told + rate, said)):
+        return
+    if sure or _dimension(told + rate) == _dimension(said):
+        write = (
+            f'file_unit = "{told}"' if _converts(told + rate, entry.unit) else f"another column, or a unit like {told}"
+        )
+        yield Contradiction(place, column, told, said, f"{write}; or, if the name is wrong, scale = 1.0")
+
+
+def _unit_of(column: str, columns: set[str]) -> tuple[str, bool]:
+    """The unit that a name tells, and whether it can mean nothing else."""
+    told, bracketed = unit_in(column), column.rstrip().endswith(("]", ")"))
+    if bracketed:
+        known = all(_KNOWN.fullmatch(word) for word in re.findall(r"[^\W\d_]+", told.replace("min", "")))
+        alone = told in ("deg", "°", "min", "degrees")  # of a temperature, or the least
+        return (told, not alone) if known else ("", False)
+    stem, _, last = column.rpartition("_")
+    if last in _OF_QUANTITY and _OF_QUANTITY[last].match(stem):
+        phases = {other for other in columns if re.fullmatch(re.escape(stem) + "_[A-Za-z]", other)}
+        return (last, True) if len(phases) == 1 else ("", False)
+    return told, told in _SURE or last in _AS_WRITTEN
+
+
+def _time_in(column: str) -> str:
+    """The unit that the name of a column of time stamps tells."""
+    bracketed = re.search(r"[\[(]\s*([^\W\d_]+)\s*[\])]\s*$", column)
+    if bracketed:
+        return _TIMES.get(bracketed[1].lower(), "")
+    last = re.split(r"[\W_]", column.strip())[-1].lower()
+    return _TIMES.get(last, "") if last != column.lower() or len(last) > 3 else ""
+
+
+def _differ(told: str, said: str) -> bool:
+    """Whether two units differ in scale or dimension; False where the card's is unknown."""
+    if told == said or _dimension(said) is None or (told == "rpm" and per_minute(said)):
+        return False
+    try:
+        factor, offset = conversion(told, said, "")
+    except UserError:
+        return True
+    return abs(factor - 1.0) > 1e-9 or offset != 0.0
+
+
+def _converts(told: str, unit: str) -> bool:
+    try:
+        conversion(told, unit, "")
+    except UserError:
+        return False
+    return True
+
+
+def _dimension(unit: str) -> dict[str, float] | None:
+    try:
+        return dimensionality(unit)
+    except ValueError:
+        return None

@@ -1,0 +1,129 @@
+"""Units that the name of a column contradicts: which are told, and how the commands tell them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import greybox_torch as gt
+from greybox_torch.cli import app
+from greybox_torch.drafting.contradicted import contradictions
+from tests.documentation.pages import ROOT
+
+CARD = """
+{time}
+[channels]
+{channels}
+[[experiment]]
+name = "run"
+file = "run.csv"
+"""
+TOLD = {
+    'time = { column = "time_s", unit = "ms" }': ("s", "ms"),
+    'time = { column = "t [s]", unit = "ms" }': ("s", "ms"),
+    'time = { column = "t(s)", unit = "us" }': ("s", "us"),
+    'time = "millis"': ("ms", "s"),
+    'a = { column = "n_motor_rpm", unit = "rad/s" }': ("rpm", "rad/s"),
+    'a = { column = "n_rpm", unit = "rad/s", file_unit = "deg/s" }': ("rpm", "deg/s"),
+    'a = { column = "n_rpm", unit = "rev" }': ("rpm", "rev"),
+    'a = { column = "angle (deg)", unit = "rad" }': ("deg", "rad"),
+    'a = { column = "q_deg", unit = "rad/s", derivative = 5.0 }': ("deg", "rad/s"),
+    'a = { column = "i_A", unit = "V" }': ("A", "V"),
+    'a = { column = "torque_Nm", unit = "rad" }': ("N m", "rad"),
+    'a = { column = "T [degC]", unit = "K" }': ("degC", "K"),
+}
+SILENT = [
+    'time = { column = "t_ms", unit = "ms" }',
+    'time = { column = "time_us", unit = "µs" }',
+    'time = { column = "s", unit = "ms" }',  # a name of one letter is no unit
+    'a = { column = "n_rpm", unit = "rad/s", file_unit = "rpm" }',
+    'a = { column = "n_rpm", unit = "rad/s", scale = 0.10472 }',
+    'a = { column = "n_rpm", unit = "1/min" }',
+    'a = { column = "n_rpm" }',
+    'a = { column = "u(t)", unit = "V" }',
+    'a = { column = "flow (in)", unit = "m^3/s" }',
+    'a = { column = "temp (min)", unit = "degC" }',
+    'a = { column = "x_bar", unit = "m" }',
+    'a = { column = "heat_rad", unit = "W" }',
+    'a = { column = "speed_ma", unit = "rad/s" }',
+    'a = { column = "temp_deg", unit = "degC" }',
+    'a = { column = "phase_V", unit = "A" }',
+    'a = { column = "current_A", unit = "mA" }\nb = { column = "current_B", unit = "mA" }',
+    'a = { column = "moment_Nm", unit = "J" }',
+    'a = { expr = "0.10472 * n_rpm", unit = "rad/s" }',
+]
+
+
+def written(folder: Path, line: str) -> Path:
+    time, channels = (
+        (line, 'a = { column = "x", unit = "m" }') if line.startswith("time") else ("sample_time = 1.0", line)
+    )
+    (folder / "dataset.toml").write_text(CARD.format(time=time, channels=channels))
+    return folder / "dataset.toml"
+
+
+@pytest.mark.parametrize("line", TOLD)
+def test_told(tmp_path: Path, line: str) -> None:
+    (found,) = contradictions(written(tmp_path, line))
+    assert (found.told, found.said) == TOLD[line]
+    assert f'column "{line.split(chr(34))[1]}" is in {found.told} by its name, but the card says {found.said}' in str(
+        found
+    )
+    assert found.place == ("time" if line.startswith("time") else 'channel "a"')
+
+
+@pytest.mark.parametrize("line", SILENT)
+def test_not_told(tmp_path: Path, line: str) -> None:
+    assert contradictions(written(tmp_path, line)) == []
+
+
+def test_of_an_experiments_own_column(tmp_path: Path) -> None:
+    card = written(tmp_path, 'a = { column = "x", unit = "rad/s" }')
+    card.write_text(card.read_text() + 'columns = { a = "n_rpm" }\n')
+    assert [c.place for c in contradictions(card)] == ['[[experiment]] "run", channel "a"']
+
+
+def test_no_false_alarm_on_any_card_here() -> None:
+    shared = ROOT / "../shared"
+    cards = [card for root in (ROOT, shared) for card in root.glob("**/*.toml") if "\n[channels]" in card.read_text()]
+    assert len(cards) > 15
+    assert {card: found for card in cards if (found := contradictions(card))} == {}
+
+
+@pytest.fixture
+def contradicted(motor_folder: Callable[..., Path]) -> Path:
+    """A card whose speed is in rad/s, from a column called `w_rpm`."""
+    card = motor_folder() / "dataset.toml"
+    for file in card.parent.glob("*.csv"):
+        file.write_text(file.read_text().replace("v,w", "v,w_rpm", 1))
+    card.write_text(card.read_text().replace('column = "w"', 'column = "w_rpm"'))
+    return card
+
+
+FOUND = 'channel "speed": column "w_rpm" is in rpm by its name, but the card says rad/s'
+
+
+@pytest.mark.parametrize("command", ["check", "inspect"])
+def test_before_anything_is_estimated(contradicted: Path, tmp_path: Path, command: str) -> None:
+    out = ["--out", str(tmp_path / "out")] if command == "inspect" else []
+    done = CliRunner().invoke(app, [command, str(contradicted), *out])
+    assert done.exit_code == 0, done.output
+    assert "warning: " in done.stdout and f"dataset.toml: {FOUND}" in done.stdout
+    assert 'file_unit = "rpm"' in done.stdout
+
+
+def test_in_json(contradicted: Path, tmp_path: Path) -> None:
+    done = CliRunner().invoke(app, ["inspect", str(contradicted), "--json", "--out", str(tmp_path / "out")])
+    assert json.loads(done.stdout)["warnings"][0].startswith(FOUND)
+    assert gt.check(gt.load_dataset(contradicted).model or "", gt.load_dataset(contradicted)).findings[0].found == FOUND
+
+
+def test_a_command_that_estimates_warns(contradicted: Path, tmp_path: Path) -> None:
+    """Where `fit` and `diagnose` read what they are given."""
+    done = CliRunner().invoke(app, ["simulate", str(contradicted), "--out", str(tmp_path / "out")])
+    assert done.exit_code == 0, done.output
+    assert f"warning: {contradicted}: {FOUND}" in done.stderr
