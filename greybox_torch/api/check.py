@@ -9,6 +9,8 @@ from typing import Any
 from greybox_torch.api.check_result import CheckResult
 from greybox_torch.checking.examine import examine
 from greybox_torch.checking.finding import Finding, in_order
+from greybox_torch.checking.not_finite import not_finite_at_start
+from greybox_torch.checking.source import source_of
 from greybox_torch.data import DataSet
 from greybox_torch.drafting.contradicted import contradictions
 from greybox_torch.errors import ArgumentError, Kind, UserError
@@ -68,8 +70,6 @@ def _given(model: Any) -> tuple[str, GreyBoxModel | type[GreyBoxModel]]:
 
 def _file(given: GreyBoxModel | type[GreyBoxModel]) -> Path:
     """Where the class stands, for messages."""
-    from greybox_torch.checking.source import source_of
-
     return source_of(given if isinstance(given, type) else type(given)).file or Path("model")
 
 
@@ -80,4 +80,5 @@ def _with_data(data: DataSet, model: GreyBoxModel) -> tuple[list[Finding], dict[
     except UserError as error:
         found, _, write = str(error).removeprefix(f"{data.path}: ").partition("; expected ")
         return [Finding("error", "card", found, write or "the names that the model declares", data.path)], {}
-    return [], problem.values_by_name
+    values = problem.values_by_name
+    return list(not_finite_at_start(model, source_of(type(model)), values)), values

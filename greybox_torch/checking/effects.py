@@ -1,14 +1,11 @@
-"""Parameters, ports, inputs and states that no output depends on, and points where the equations are no numbers."""
+"""Parameters, ports, inputs and states that no output depends on."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.influence import Influence
-from greybox_torch.checking.points import Points
 from greybox_torch.checking.source import Source
 from greybox_torch.checking.tracing import Traced
 from greybox_torch.model import GreyBoxModel
@@ -70,26 +67,6 @@ def without_effect(
         if not any(moved[:, k].any() for kind, moved in influence.moves.items() if kind in ("state", "input")):
             found, write = f"output '{output.name}' depends on no state and no input", "what the sensor measures"
             yield Finding("warning", "influence", found, write, source.file, source.line_of(f'"{output.name}"'))
-
-
-def not_finite(model: GreyBoxModel, influence: Influence, points: Points, source: Source) -> Iterator[Finding]:
-    """A finding where the equations give no number at some of the points, with the smallest of them."""
-    lost = np.flatnonzero(~influence.finite)
-    if not lost.size:
-        return
-    x, u = points.x.detach().numpy(), points.u.detach().numpy()
-    size = np.abs(np.vstack([x, u])).max(axis=0)
-    at = lost[np.argmin(size[lost])]
-    shown = [f"{s.name} = {v:.3g}" for s, v in zip((*model.states, *model.inputs), (*x[:, at], *u[:, at]), strict=True)]
-    line = next((m.tree.lineno for m in source.methods), source.line)
-    yield Finding(
-        "warning",
-        "numbers",
-        f"the equations are no numbers at {lost.size} of {len(influence.finite)} random points, such as {', '.join(shown[:6])}",
-        "torch.sqrt(a.clamp(min=1e-9)), torch.log(a.clamp(min=…)), a denominator that stays away from zero",
-        source.file,
-        line,
-    )
 
 
 def _port_that_reads(model: GreyBoxModel, name: str) -> str:

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 from greybox_torch.checking.code import untraceable
 from greybox_torch.checking.declarations import missing_methods, no_ports, port_signals, unusable_names
-from greybox_torch.checking.effects import not_finite, without_effect
+from greybox_torch.checking.effects import without_effect
 from greybox_torch.checking.equations import compiled, fails
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.checking.influence import Influence, influence
 from greybox_torch.checking.names import declared_names, left_out, unknown_names
+from greybox_torch.checking.not_finite import not_finite, not_finite_at_start
 from greybox_torch.checking.points import points_of
 from greybox_torch.checking.source import Source, source_of
 from greybox_torch.checking.units import misfits, unreadable_units
@@ -85,4 +86,5 @@ def _run(
         )
         return Examination(made, model, in_order(found), None, graph is not None)
     found += [*without_effect(model, moved, graph, source), *not_finite(model, moved, points, source)]
+    found += not_finite_at_start(model, source)
     return Examination(made, model, in_order(found), moved, graph is not None)

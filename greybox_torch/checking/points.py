@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,6 +56,18 @@ def points_of(model: GreyBoxModel) -> Points:
     ]
     p = np.array(rows) if rows else np.zeros((0, len(sizes)))
     return Points(*(torch.tensor(a, dtype=torch.float64, requires_grad=True) for a in (x, u, p, f)))
+
+
+def start_of(model: GreyBoxModel, values: Mapping[str, float]) -> Points:
+    """One point: states where they are declared to start, inputs, forces and measured starts zero, and parameters as declared.
+
+    Args:
+        values: of parameters that have others; those without any value are one.
+    """
+    x = [0.0 if s.initial == "measured" else float(s.initial) for s in model.states]
+    p = [values.get(q.name, q.value) for q in model.declared_parameters]
+    rows = (x, [0.0] * len(model.inputs), [v if v == v else 1.0 for v in p], [0.0] * len(model.ports))
+    return Points(*(torch.tensor(row, dtype=torch.float64).reshape(-1, 1) for row in rows))
 
 
 def _around(value: float, low: float, high: float, normal: np.ndarray, uniform: np.ndarray) -> np.ndarray:

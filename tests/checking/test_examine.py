@@ -14,6 +14,7 @@ RETURN = f"return {RATE}"
 OUTPUT = 'return {"speed": x.speed}'
 STATES = 'states = [State("speed", "rad/s")]'
 TORCH = "from greybox_torch import Body"
+J = 'Parameter("J", 0.01, unit="kg m^2", lower=0.0),'
 B = 'Parameter("b", 0.10, unit="N m s/rad", lower=0.0),'
 
 
@@ -132,7 +133,15 @@ FAULTS = {
         "warning", "input 'voltage' moves no output", "u.voltage", '"voltage"',
     ),
     "not finite": (
-        rate("p.b * x.speed", "p.b * torch.sqrt(x.speed)"), "warning", "are no numbers at", "clamp", "def derivative",
+        rate("p.b * x.speed", "p.b * torch.sqrt(x.speed)"), "warning", "random points", "clamp", "torch.sqrt",
+    ),
+    "start that is divided by": (
+        rate("p.b * x.speed", "0.0 * u.voltage / x.speed"),
+        "warning", "no numbers at the start (states at their start values, measured ones and inputs at zero), where speed = 0",
+        "a denominator", "/ x.speed",
+    ),
+    "parameter of zero that is divided by": (
+        (J, J.replace("0.01", "0.0").replace(", lower=0.0", "")), "warning", "at the start", "a denominator", "return {",
     ),
     "name of a method": ((B, B.replace('"b"', '"items"')), "error", "'items' is a method", "another name", '"items"'),
 }  # fmt: skip

@@ -90,3 +90,14 @@ def test_from_python(machines: Path) -> None:
 
 def test_built_in() -> None:
     assert gt.check("robot_arm").findings == ()
+
+
+def test_a_value_of_the_card_that_the_equations_divide_by(
+    motor_folder: Callable[..., Path], edit: Callable[[Path, str, str], None]
+) -> None:
+    """Seen: an inertia of zero on the card, "can be used", and no simulation."""
+    card = motor_folder() / "dataset.toml"
+    edit(card, "J = { value = 0.03 }", "J = { value = 0.0 }")
+    done = CliRunner().invoke(app, ["check", str(card)])
+    assert "warning: my_motor.py, line 21: the equations are no numbers at the start" in done.stdout
+    assert "where J = 0" in done.stdout

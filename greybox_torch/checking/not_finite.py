@@ -1,0 +1,116 @@
+"""Where the equations are no numbers: at random points, and where a simulation begins, with the line that makes them so."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch.utils._python_dispatch import TorchDispatchMode
+from torch.utils._pytree import tree_leaves
+
+from greybox_torch.checking.finding import Finding
+from greybox_torch.checking.influence import Influence
+from greybox_torch.checking.points import Points, start_of
+from greybox_torch.checking.source import Source
+from greybox_torch.model import GreyBoxModel
+
+_WRITE = "torch.sqrt(a.clamp(min=1e-9)), torch.log(a.clamp(min=…)), a denominator that stays away from zero"
+
+
+def not_finite(model: GreyBoxModel, influence: Influence, points: Points, source: Source) -> Iterator[Finding]:
+    """A finding where the equations give no number at some of the points, with the smallest of them."""
+    lost = np.flatnonzero(~influence.finite)
+    if not lost.size:
+        return
+    x, u = points.x.detach().numpy(), points.u.detach().numpy()
+    size = np.abs(np.vstack([x, u])).max(axis=0)
+    at = lost[np.argmin(size[lost])]
+    shown = [f"{s.name} = {v:.3g}" for s, v in zip((*model.states, *model.inputs), (*x[:, at], *u[:, at]), strict=True)]
+    one = Points(*(of.detach()[:, at : at + 1] for of in (points.x, points.u, points.p, points.f)))
+    yield _finding(
+        f"the equations are no numbers at {lost.size} of {len(influence.finite)} random points, such as {', '.join(shown[:6])}",
+        source,
+        _origin(model, one, source.file)[1],
+    )
+
+
+def not_finite_at_start(
+    model: GreyBoxModel, source: Source, values: Mapping[str, float] | None = None
+) -> Iterator[Finding]:
+    """A finding where the equations give no number where a simulation begins.
+
+    Args:
+        values: of parameters, where a card has others than the model declares.
+    """
+    start = start_of(model, values or {})
+    lost, line = _origin(model, start, source.file)
+    if not lost:
+        return
+    declared = (*model.states, *model.inputs, *model.declared_parameters)
+    zero = [
+        s.name for s, v in zip(declared, torch.cat([start.x, start.u, start.p])[:, 0].tolist(), strict=True) if v == 0
+    ]
+    text = _text(source, line)
+    standing = [name for name in zero if re.search(rf"\b{re.escape(name)}\b", text)]
+    divisors = [name for name in standing if re.search(rf"/\s*\(?\s*\w+\.{re.escape(name)}\b", text)]
+    yield _finding(
+        "the equations are no numbers at the start (states at their start values, measured ones and inputs at zero)"
+        + (f", where {' and '.join(f'{name} = 0' for name in divisors or standing)}" if standing else ""),
+        source,
+        line,
+    )
+
+
+def _finding(found: str, source: Source, line: int | None) -> Finding:
+    first = next((m.tree.lineno for m in source.methods), source.line)
+    return Finding("warning", "numbers", found, _WRITE, source.file, line or first)
+
+
+def _origin(model: GreyBoxModel, point: Points, file: Path | None) -> tuple[bool, int | None]:
+    """Whether a rate or an output is no number at a point, and the line that the first such number on its way is from."""
+    x, u, p, f = point.signals(model)
+    with torch.no_grad(), _Watch(str(file)) as watch:
+        given = [*model.derivative(x, u, p, f).values(), *model.outputs_with(x, u, p, f).values()]
+    lost = [torch.as_tensor(value) for value in given if not torch.isfinite(torch.as_tensor(value)).all()]
+    return bool(lost), next((line for value in lost if (line := watch.line_of(value))), None)
+
+
+class _Watch(TorchDispatchMode):
+    """Remembers of every tensor that is no number in which line of a file the first such number was made."""
+
+    def __init__(self, file: str) -> None:
+        super().__init__()
+        self._file = file
+        self._lines: dict[int, int | None] = {}
+        self._kept: list[torch.Tensor] = []  # so that no other tensor gets the identity of one that is gone
+
+    def line_of(self, value: torch.Tensor) -> int | None:
+        return self._lines.get(id(value))
+
+    def __torch_dispatch__(self, func: Any, types: Any, args: Any = (), kwargs: Any = None) -> Any:
+        made = func(*args, **(kwargs or {}))
+        before = [a for a in tree_leaves((args, kwargs or {})) if isinstance(a, torch.Tensor) and id(a) in self._lines]
+        for value in tree_leaves(made):
+            if isinstance(value, torch.Tensor) and value.is_floating_point() and not torch.isfinite(value).all():
+                self._kept.append(value)
+                self._lines[id(value)] = self._lines[id(before[0])] if before else self._line()
+        return made
+
+    def _line(self) -> int | None:
+        frame = sys._getframe(2)
+        while frame is not None and frame.f_code.co_filename != self._file:
+            frame = frame.f_back
+        return None if frame is None else frame.f_lineno
+
+
+def _text(source: Source, line: int | None) -> str:
+    """A line of the file."""
+    if source.file is None or line is None:
+        return ""
+    lines = source.file.read_text(encoding="utf-8").splitlines()
+    return lines[line - 1] if line <= len(lines) else ""
