@@ -123,8 +123,8 @@ def _per_unit_of(traced: Traced, node: int, known: Known, names: Names) -> str |
     ports = [
         a for a in graph.nodes[node].arguments if graph.nodes[a].operation == "leaf" and graph.nodes[a].leaf == "f"
     ]
-    others = [known[a] for a in graph.nodes[node].arguments if a not in ports]
-    if len(ports) != 1 or len(others) != 1 or others[0] is None or (force := known[ports[0]]) is None:
+    others = [known.get(a) for a in graph.nodes[node].arguments if a not in ports]
+    if len(ports) != 1 or len(others) != 1 or others[0] is None or (force := known.get(ports[0])) is None:
         return None
     port = names.of("f", int(graph.nodes[ports[0]].value))
     return (

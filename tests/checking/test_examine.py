@@ -218,3 +218,25 @@ def test_a_class_without_equations() -> None:
 
     found = [f.found for f in examine(Empty).findings]
     assert found[:2] == ["derivative() is not defined", "output() is not defined"]
+
+
+def test_ports_that_are_added_to_what_does_not_fit() -> None:
+    """Seen: KeyError, where a port is added to what misfits already."""
+    from greybox_torch import Coupling, GreyBoxModel, Input, Output, Parameter, State
+
+    class Sledge(GreyBoxModel):
+        states, outputs, inputs = [State("x", "m"), State("v", "m/s")], [Output("x", "m")], [Input("base", "m")]
+        parameters = [Parameter("k", 50.0, unit="N/m"), Parameter("r", 2.0, unit="m")]
+        ports = [
+            Coupling("spring", deflection=lambda x, u, p: u.base - x.x, rate=lambda x, u, p: -x.v),
+            Coupling("lever", deflection=lambda x, u, p: p.r * x.x, rate=lambda x, u, p: p.r * x.v),
+            Coupling("screw", deflection=lambda x, u, p: p.r * u.base - x.x, rate=lambda x, u, p: -x.v),
+        ]
+
+        def derivative(self, x, u, p, port):
+            return {"x": x.v, "v": p.k * (u.base - x.x) + port.spring - port.lever + port.screw}
+
+        def output(self, x, u, p):
+            return {"x": x.x}
+
+    assert "units" in {f.topic for f in examine(Sledge).findings}
