@@ -232,7 +232,7 @@ def where(profiles: Sequence[Profile], timelines: Sequence[Timeline]) -> str:
     first = profiles[0]
     low, high, share = most_of(first)
     return (
-        f"{low:.3g} < {first.signal} < {high:.3g} {first.unit}".rstrip()
-        + f"; {100 * share:.0f} % of the explained error energy"
+        f"{100 * share:.0f} % of what it explains lies within "
+        + f"{low:.3g} < {first.signal} < {high:.3g} {first.unit}".rstrip()
         + (f", strongest in {strongest}" if strongest else "")
     )

@@ -33,7 +33,7 @@ def what_is_left(
         else "the error is white, as noise is"
     )
     size = (
-        f"in {worst} the free run's error is {times:.2g} times the noise"
+        f"in {worst} the free run's error is {'as large as' if f'{times:.2g}' == '1' else f'{times:.2g} times'} the noise"
         if np.isfinite(times)
         else "how much of its error is noise does not show"
     )

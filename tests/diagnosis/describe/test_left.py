@@ -28,6 +28,12 @@ def test_size_and_kind_of_error_are_each_told_of_their_experiments(stub, past, c
     )
 
 
+def test_an_error_of_the_size_of_the_noise(stub) -> None:
+    """Seen: "is 1 times the noise"."""
+    left = what_is_left(stub(left=lambda effects: (0.01, 1.02, "Run 2")), [], True, 1.3)
+    assert "in Run 2 the free run's error is as large as the noise." in left.sentence
+
+
 def test_where_noise_is_not_known(stub) -> None:
     left = what_is_left(stub(left=lambda effects: (1.0, np.nan, "")), [], False, 1.3)
     assert left.sentence.startswith(

@@ -59,7 +59,7 @@ def test_in_words() -> None:
     profile = Profile("gear_twist", "rad", np.array([-0.1, 0.0, 0.1, 0.2]), np.array([0.1, 0.8, 0.1]))
     long = Timeline("Steps", np.array([0.0, 10.0]), np.array([0.6]))
     short = Timeline("Validation 2", np.array([0.0, 1.0]), np.array([0.4]))
-    told = "0 < gear_twist < 0.1 rad; 80 % of the explained error energy"
+    told = "80 % of what it explains lies within 0 < gear_twist < 0.1 rad"
     assert where([profile], [long, short]) == f"{told}, strongest in Validation 2"
     assert where([profile], [long]) == where([profile], []) == told
     assert where([], []) == "everywhere along the records"
