@@ -13,7 +13,7 @@ import typer
 from typer.testing import CliRunner
 
 from greybox_torch.cli import app
-from tests.documentation.pages import PAGES, blocks, commands, pages_with
+from tests.documentation.pages import PAGES, ROOT, blocks, commands, pages_with
 
 Make = Callable[..., Path]
 GROUP: Any = typer.main.get_command(app)
@@ -51,6 +51,13 @@ def test_the_tutorial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (effect,) = json.loads((tmp_path / "found" / "verdict.json").read_text())["effects"]
     assert (effect["port"], effect["mechanism"]) == ("rotor", "coulomb_friction")
     assert effect["parameters"]["F_c"]["value"] == pytest.approx(0.08, rel=0.05)
+    for page in (
+        "docs/tutorial/first_diagnosis.md",
+        "docs/explanation/verdict.md",
+    ):  # what they show is what is printed
+        assert f"at rotor (probability {effect['probability']:.2f})" in (ROOT / page).read_text()
+    lines = len((tmp_path / "my_drive.py").read_text().splitlines())
+    assert f"it is {lines} lines with comments" in (ROOT / "docs/tutorial/first_diagnosis.md").read_text()
     assert "rotor.coulomb_friction.F_c [N m]" in (tmp_path / "found" / "c" / "MyDrive.h").read_text()
     fitted = json.loads((tmp_path / "fitted" / "fit.json").read_text())
     assert fitted["parameters"]["b"]["value"] == pytest.approx(0.064, abs=1e-3)  # as the page says
