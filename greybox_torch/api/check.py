@@ -9,6 +9,7 @@ from typing import Any
 from greybox_torch.api.check_result import CheckResult
 from greybox_torch.checking.examine import examine
 from greybox_torch.checking.finding import Finding, in_order
+from greybox_torch.checking.missing_inputs import WRITE, missing_inputs
 from greybox_torch.checking.not_finite import not_finite_at_start
 from greybox_torch.checking.source import source_of
 from greybox_torch.data import DataSet
@@ -53,7 +54,8 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
         findings += [Finding("warning", "card", c.found, c.write, data.path) for c in contradictions(data.path)]
     if data is not None and examined.model is not None and not any(f.level == "error" for f in findings):
         more, values = _with_data(data, examined.model)
-        findings += more
+        gaps = missing_inputs(data, examined.model)
+        findings += [*more, *(Finding("warning", "card", gap.found, WRITE, data.path) for gap in gaps)]
     return CheckResult(name, replace(examined, findings=in_order(findings)), in_order(findings), values)
 
 

@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.api.arguments import check_device, check_precision, named_model
+from greybox_torch.checking.missing_inputs import missing_inputs
 from greybox_torch.commands.options import Options
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.drafting.contradicted import contradictions
@@ -44,7 +45,7 @@ def load_task(dataset: Path, options: Options) -> Task:
     model = named_model(dataset, data, options.model)
     make_problem(data, model, data.recordings)  # card and model fit together, whatever the command then takes of it
     log = Console(stderr=True, highlight=False)
-    for found in contradictions(data.path):
+    for found in (*contradictions(data.path), *missing_inputs(data, model)):
         log.print(Text(f"warning: {dataset}: {found}", style="yellow"), soft_wrap=True)
     return Task(data, model, device, folder, precision)
 

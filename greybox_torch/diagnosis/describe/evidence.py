@@ -87,6 +87,8 @@ def _step_sentence(done: SelectionStep, settings: DiagnosisSettings) -> str:
     if not done.ranked:
         return "No further candidate promised enough in the screen to be refitted."
     best = done.ranked[0]
+    if best.gain <= 0:
+        return f"The best further candidate, {_name(best.candidate.attachment)}, would not lower it."
     return (
         f"The best further candidate, {_name(best.candidate.attachment)}, would lower it by {100 * (1 - np.exp(-best.gain)):.2g} % "
         f"({best.significance:.1f} standard errors); claimed is what exceeds {100 * least_gain(best.fitted, settings):.0f} % and chance."
