@@ -81,6 +81,6 @@ def _with_data(data: DataSet, model: GreyBoxModel) -> tuple[list[Finding], dict[
         problem = make_problem(data, model, data.recordings)
     except UserError as error:
         found, _, write = str(error).removeprefix(f"{data.path}: ").partition("; expected ")
-        return [Finding("error", "card", found, write or "the names that the model declares", data.path)], {}
+        return [Finding("error", "card", found, write or "what fits the model", data.path)], {}
     values = problem.values_by_name
     return list(not_finite_at_start(model, source_of(type(model)), values)), values

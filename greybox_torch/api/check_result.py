@@ -25,7 +25,8 @@ _COLUMNS = ["kind", "name", "unit", "value", "moves"]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CheckResult(Result):
-    """``findings`` say where, what and what to write instead, errors first; ``usable`` is False where one is an error.
+    """``findings`` say where, what and what to write instead, errors first; ``usable`` is False where one is an error,
+    of the model or of the card.
 
     ``compiled`` is False where equations work but have no compiled form, which makes a diagnosis far too slow. ``values``: of parameters,
     where a data card was given; those declared otherwise.
@@ -50,10 +51,19 @@ class CheckResult(Result):
         counts = {level: sum(f.level == level for f in self.findings) for level in ("error", "warning", "note")}
         told = ", ".join(f"{count} {level}{'s' * (count != 1)}" for level, count in counts.items() if count)
         if not self.usable:
-            return f"{self.name} cannot be used: {told}."
+            return f"{self._at_fault}: {told}."
         return f"{self.name} can be used" + (
             f": {told}." if told else "; nothing is wrong with it that shows without data."
         )
+
+    @property
+    def _at_fault(self) -> str:
+        """Which cannot be used: the model, or the card, which is compared with a model that can."""
+        errors = [finding for finding in self.findings if finding.level == "error"]
+        if any(finding.topic != "card" for finding in errors):
+            return f"{self.name} cannot be used"
+        card = "the data set" if errors[0].file is None else errors[0].file.name
+        return f"{card} does not fit {self.name}, which itself can be used"
 
     @property
     def rows(self) -> list[dict[str, Any]]:

@@ -14,7 +14,7 @@ Topic = Literal["declaration", "name", "code", "units", "influence", "numbers", 
 
 @dataclass(frozen=True)
 class Finding:
-    """A model with an ``error`` cannot be used; a ``warning`` makes results slow or doubtful; a ``note`` may be meant as it is.
+    """A model, or a card, with an ``error`` cannot be used; a ``warning`` makes results slow or doubtful; a ``note`` may be meant as it is.
 
     ``found`` says what is there, ``write`` what to write instead. ``line`` is None where no line of ``file`` can be named.
     """

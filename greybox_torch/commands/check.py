@@ -13,7 +13,7 @@ from greybox_torch.errors import UserError
 
 
 def run(target: str, options: Options) -> None:
-    """Prints the findings; ends with 2 where the model cannot be used.
+    """Prints the findings; ends with 2 where the model, or the card, cannot be used.
 
     Args:
         target: a model's name, or a data card that names one.

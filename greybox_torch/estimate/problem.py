@@ -147,7 +147,8 @@ def make_problem(
     if not problem.admissible(problem.values):
         broken = ", ".join(model.admissible(problem.parameter_tensors))
         raise UserError(
-            f"{dataset.place('[model.parameters]')} break a constraint of {model.title}: these must be positive: {broken}"
+            f"{dataset.place('[model.parameters]')} break a constraint of {model.title}: these must be positive: {broken}; "
+            "expected values that keep it"
         )
     return problem
 

@@ -79,7 +79,8 @@ class Parameter:
             raise UserError(f"Parameter '{self.name}': lower bound {low:g} is not below upper bound {high:g}")
         if not low <= self.value <= high:
             raise UserError(
-                f"Parameter '{self.name}': value {self.value:g} lies outside its bounds [{low:g}, {high:g}]"
+                f"Parameter '{self.name}': value {self.value:g} lies outside its bounds [{low:g}, {high:g}]; "
+                "expected a value within the bounds"
             )
 
     @property

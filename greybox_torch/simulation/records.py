@@ -8,8 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.data import DataSet, Recording
+from greybox_torch.data.units import dimensionality
 from greybox_torch.errors import UserError
-from greybox_torch.model import GreyBoxModel
+from greybox_torch.files import toml_key
+from greybox_torch.model import GreyBoxModel, Input, Output
 from greybox_torch.simulation.driven_inputs import check_controller
 
 
@@ -90,22 +92,45 @@ def check_channels(dataset: DataSet, model: GreyBoxModel) -> None:
         if name not in dataset.channels:
             found = ", ".join(dataset.channels)
             raise UserError(
-                f"{dataset.place('[channels]')} has no '{name}', which model {model.title} needs; found: {found}"
+                f"{dataset.place('[channels]')} has no '{name}', which model {model.title} needs; found: {found}; "
+                f"expected {_missing(dataset, signal, model)}"
             )
         unit = dataset.channels[name].unit
         if unit and signal.unit and _plain(unit) != _plain(signal.unit):
-            advice = f'expected unit = "{signal.unit}" with file_unit = "{unit}", or with a scale, to convert the values of the file'
             raise UserError(
                 f"{dataset.place('[channels]')} {name}: unit is '{unit}', model {model.title} expects '{signal.unit}'; "
-                f"{'expected values and unit of the model' if dataset.path is None else advice}"
+                f"{_other_unit(dataset, unit, signal.unit)}"
             )
     for name in dataset.channels:
         if name not in declared:
-            expected = ", ".join(declared)
             raise UserError(
-                f"{dataset.place('[channels]')} {name}: model {model.title} has no such signal; expected: {expected}"
+                f"{dataset.place('[channels]')} {name}: model {model.title} has no such signal; "
+                f"expected one of {', '.join(declared)}, or no such channel"
             )
     check_controller(dataset.controller, model, dataset.place("[controller]"))
+
+
+def _missing(dataset: DataSet, signal: Input | Output, model: GreyBoxModel) -> str:
+    """What is to be written for a signal that the data set has no channel for."""
+    if dataset.path is None:
+        line = f"a channel '{signal.name}' in {signal.unit or 'its unit'}"
+    else:
+        line = f'a line such as {toml_key(signal.name)} = {{ column = "…", unit = "{signal.unit}" }}'
+    without_sensor = "; an output that no sensor shows is left out of the model's outputs"
+    return line + (without_sensor if any(o.name == signal.name for o in model.outputs) else "")
+
+
+def _other_unit(dataset: DataSet, found: str, wanted: str) -> str:
+    """What is expected of a channel in another unit than the model's: converted values, or another column where none can be converted."""
+    try:
+        of_one_quantity = dimensionality(found) == dimensionality(wanted)
+    except ValueError:  # a unit of the user's own
+        of_one_quantity = True
+    if not of_one_quantity:
+        return f"{found} cannot be converted to {wanted}; expected a column whose values are in {wanted}, or in a unit of that quantity"
+    if dataset.path is None:
+        return "expected values and unit of the model"
+    return f'expected unit = "{wanted}" with file_unit = "{found}", or with a scale, to convert the values of the file'
 
 
 def _plain(unit: str) -> str:

@@ -46,6 +46,49 @@ def test_a_card_that_does_not_fit(motor_folder: Callable[..., Path], edit: Calla
     assert "model Motor has no such name" in done.stdout
 
 
+BOUNDS = "Parameter 'b': value -1 lies outside its bounds [0, inf]"
+SENSOR = 'a line such as speed = { column = "…", unit = "rad/s" }; an output that no sensor shows is left out of the model\'s outputs'
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "found", "write"),
+    [
+        ("b = { value = 0.08, upper = 1.0 }", "b = { value = -1.0 }", BOUNDS, "a value within the bounds"),
+        ("speed = {", "wheel = {", "[channels] has no 'speed', which model Motor needs; found: voltage, wheel", SENSOR),
+        ('unit = "V"', 'unit = "A"', "A cannot be converted to V", "a column whose values are in V"),
+        ('unit = "V"', 'unit = "mV"', "unit is 'mV'", 'unit = "V" with file_unit = "mV"'),
+        ('unit = "V"', 'unit = "digits"', "unit is 'digits'", 'file_unit = "digits", or with a scale'),
+    ],
+)
+def test_a_wrong_card_is_told_what_to_write(
+    motor_folder: Callable[..., Path],
+    edit: Callable[[Path, str, str], None],
+    old: str,
+    new: str,
+    found: str,
+    write: str,
+) -> None:
+    """Seen: advice to write "the names that the model declares" for a value, and to convert volts to ampere."""
+    card = motor_folder() / "dataset.toml"
+    edit(card, old, new)
+    done = CliRunner().invoke(app, ["check", str(card)])
+    assert done.exit_code == 2
+    error, advice, closing = done.stdout.splitlines()[-3:]
+    assert error.startswith("error: dataset.toml: ") and found in error
+    assert advice.startswith("    write: ") and write in advice
+    assert closing == "dataset.toml does not fit my_motor.py:Motor, which itself can be used: 1 error."
+
+
+def test_a_wrong_model_cannot_be_used(
+    motor_folder: Callable[..., Path], edit: Callable[[Path, str, str], None]
+) -> None:
+    folder = motor_folder()
+    edit(folder / "my_motor.py", "p.b * x.speed", "p.c * x.speed")
+    edit(folder / "dataset.toml", "b = { value = 0.08, upper = 1.0 }", "b = { value = -1.0 }")
+    done = CliRunner().invoke(app, ["check", str(folder / "dataset.toml")])
+    assert done.stdout.splitlines()[-1] == "my_motor.py:Motor cannot be used: 1 error."
+
+
 def test_parameters_have_the_values_of_the_card(motor_folder: Callable[..., Path]) -> None:
     """Seen: a new user read the values of the model's file as those of a card that is not applied."""
     folder = motor_folder()

@@ -64,7 +64,10 @@ def test_ways_to_write_a_unit(motor: GreyBoxModel, data_set: Any, unit: str) -> 
             "[channels] has no 'speed', which model Motor needs; found: voltage, spede",
         ),
         ({"voltage": "V", "speed": "rpm"}, "[channels] speed: unit is 'rpm', model Motor expects 'rad/s'"),
-        ({**UNITS, "torque": "N m"}, "[channels] torque: model Motor has no such signal; expected: voltage, speed"),
+        (
+            {**UNITS, "torque": "N m"},
+            "[channels] torque: model Motor has no such signal; expected one of voltage, speed",
+        ),
     ],
 )
 def test_channels_that_are_not_the_models(
