@@ -131,7 +131,7 @@ def test_out_that_is_a_file(bench: Path) -> None:
     Path("taken").touch()
     result = CliRunner().invoke(app, ["inspect", "bench/dataset.toml", "--out", "taken"])
     assert result.exit_code == 2
-    assert "taken/channels.png: cannot be written" in result.stderr
+    assert "--out taken: taken is a file; expected a folder for results" in result.stderr
     assert result.stdout == ""
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from greybox_torch.api.design import design
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.progress import stages
-from greybox_torch.commands.task import check_folder
+from greybox_torch.commands.results_folder import check_folder
 from greybox_torch.errors import UserError
 
 FOLDER = "design"

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from greybox_torch.api.export import export
 from greybox_torch.commands.options import Options
+from greybox_torch.commands.results_folder import check_folder
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel
@@ -19,9 +20,11 @@ CHECKPOINT = "model"
 def run(results: Path, to: str, dataset: Path | None, name: str | None, step: float | None, options: Options) -> None:
     """Writes the files to --out, by default beside the checkpoint."""
     stem = results / CHECKPOINT if results.is_dir() else results
+    folder = options.out if options.out is not None else stem.parent / to
+    check_folder(folder)
     model, data = _loaded(stem, dataset, options)
     found = export(model, to=to, data=data, name=name, step=step)
-    options.finish(found, options.out if options.out is not None else stem.parent / to)
+    options.finish(found, folder)
 
 
 def _loaded(stem: Path, dataset: Path | None, options: Options) -> tuple[GreyBoxModel, DataSet | None]:

@@ -9,7 +9,7 @@ from greybox_torch.api.fleet import fleet
 from greybox_torch.api.fleet_result import FleetResult
 from greybox_torch.commands.fleet_progress import counting
 from greybox_torch.commands.options import Options
-from greybox_torch.commands.task import check_folder
+from greybox_torch.commands.results_folder import check_folder
 
 OUT = Path("results/fleet")
 

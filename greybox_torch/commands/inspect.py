@@ -6,9 +6,12 @@ from pathlib import Path
 
 from greybox_torch.api.inspect import inspect
 from greybox_torch.commands.options import Options
+from greybox_torch.commands.results_folder import check_folder
 from greybox_torch.data import load_dataset
 
 
 def run(dataset: Path, options: Options) -> None:
     """Looks at every channel; where the user or the card names a model, the card is checked against it. Writes a figure."""
-    options.finish(inspect(load_dataset(dataset), options.model), options.folder(dataset))
+    folder = options.folder(dataset)
+    check_folder(folder)
+    options.finish(inspect(load_dataset(dataset), options.model), folder)

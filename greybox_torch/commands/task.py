@@ -12,9 +12,9 @@ from rich.text import Text
 from greybox_torch.api.arguments import check_device, check_precision, named_model
 from greybox_torch.checking.missing_inputs import missing_inputs
 from greybox_torch.commands.options import Options
+from greybox_torch.commands.results_folder import check_folder
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.drafting.contradicted import contradictions
-from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel
 
@@ -48,13 +48,3 @@ def load_task(dataset: Path, options: Options) -> Task:
     for found in (*contradictions(data.path), *missing_inputs(data, model)):
         log.print(Text(f"warning: {dataset}: {found}", style="yellow"), soft_wrap=True)
     return Task(data, model, device, folder, precision)
-
-
-def check_folder(folder: Path) -> None:
-    """Raises UserError where results could not be written to ``folder`` because a file is in the way."""
-    try:
-        nearest = next(path for path in (folder, *folder.absolute().parents) if path.exists())
-    except OSError as error:
-        raise UserError(f"--out {folder}: cannot be written: {error.strerror}; expected a folder for results") from None
-    if not nearest.is_dir():
-        raise UserError(f"--out {folder}: {nearest} is a file; expected a folder for results")

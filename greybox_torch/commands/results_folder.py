@@ -1,0 +1,32 @@
+"""Whether results can be written, asked before anything is computed."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from greybox_torch.errors import UserError
+
+
+def check_folder(folder: Path) -> None:
+    """Raises UserError where results could not be written to ``folder``: a file is in the way, or nothing can be written there.
+
+    What is tried is gone again; ``folder`` is not made.
+    """
+    try:
+        nearest = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+    except OSError as error:
+        raise UserError(f"--out {folder}: cannot be written: {error.strerror}; expected a folder for results") from None
+    if not nearest.is_dir():
+        raise UserError(f"--out {folder}: {nearest} is a file; expected a folder for results")
+    try:  # rights alone do not say it: not of the administrator, nor where a disk is read-only or holds no files
+        if nearest == folder:
+            with tempfile.TemporaryFile(dir=nearest):
+                pass
+        else:
+            with tempfile.TemporaryDirectory(dir=nearest, prefix=".greybox"):
+                pass
+    except OSError as error:
+        raise UserError(
+            f"--out {folder}: nothing can be written in {nearest} ({error.strerror or error}); expected a folder for results"
+        ) from None
