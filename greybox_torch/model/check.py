@@ -9,7 +9,7 @@ from typing import Any
 
 import torch
 
-from greybox_torch.errors import UserError
+from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.signals import Signals
 
@@ -27,9 +27,10 @@ def check_equations(model: GreyBoxModel) -> None:
     """Evaluates the model's rates and outputs on small batches: zeros, and ones in another shape.
 
     Raises:
-        UserError: ``derivative()`` or ``output()`` raises, branches on a signal, does not return what the model declares, changes what it
-            is given, or returns something else the second time.
+        UserError: a port's signal is no state; ``derivative()`` or ``output()`` raises, branches on a signal, does not return what the
+            model declares, changes what it is given, or returns something else the second time.
     """
+    _check_ports(model)
     with torch.no_grad():
         values = model.physical()
         for batch, level in zip(BATCHES, (0.0, 1.0), strict=True):
@@ -47,6 +48,18 @@ def check_equations(model: GreyBoxModel) -> None:
                         f"the equations of {model.title} give other values when they are called again with the same; "
                         "expected equations of x, u, p and port alone: no random numbers, no memory in self"
                     )
+
+
+def _check_ports(model: GreyBoxModel) -> None:
+    """The equations do not read what ports say of themselves; laws that are attached there do, long after."""
+    states = [state.name for state in model.states]
+    for port in model.ports:
+        for name, signal in port.signals.items():
+            if isinstance(signal, str) and signal not in states:
+                raise UserError(
+                    f"port '{port.name}': {name} = \"{signal}\" is not a state{did_you_mean(signal, states)}; "
+                    f"expected one of {', '.join(states)}, or {name}=lambda x, u, p: …"
+                )
 
 
 def _evaluated(model: GreyBoxModel, function: Callable[..., torch.Tensor], *given: Any) -> torch.Tensor:

@@ -199,3 +199,16 @@ def test_strict_json(motor_folder: Make, finding: Callable[..., dict[str, Any]])
     folder = motor_folder()
     text = diagnose(folder, "--json").stdout
     assert json_text(json.loads(text)) == text
+
+
+def test_a_port_whose_signal_is_no_state_is_refused_at_the_beginning(
+    motor_folder: Make, edit: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Seen: stopped in the search with "the model asks for the state 'sped'", without saying which port."""
+    folder = motor_folder()
+    edit(folder / "my_motor.py", 'speed="speed"', 'speed="sped"')
+    monkeypatch.setattr(pipeline, "diagnose", lambda *_, **__: pytest.fail("searched"))
+    result = diagnose(folder)
+    assert result.exit_code == 2
+    assert "my_motor.py, class Motor: port 'rotor': speed = \"sped\" is not a state (did you mean" in result.stderr
+    assert written(folder) == []
