@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from greybox_torch.data.asked_for import left_out
 from greybox_torch.data.recording import Recording
 from greybox_torch.errors import UserError
 
@@ -45,10 +46,12 @@ def check_no_channel_is_empty(recordings: Sequence[Recording], path: Path | None
     for recording in recordings:
         for channel, values in recording.signals.items():
             if np.isnan(values).all():
+                others = [r for r in recordings if not np.isnan(r.signals[channel]).all()]
+                advice = f"; {left_out(channel)}" if others and path is not None else ""
                 of = "" if recording.source is None else f" in {recording.source}"
                 raise UserError(
                     f'{_of(recording, path)}, channel "{channel}": all {len(values)} samples are '
-                    f"missing (NaN){of}, rows {list(recording.rows)}; expected numbers"
+                    f"missing (NaN){of}, rows {list(recording.rows)}; expected numbers{advice}"
                 )
 
 

@@ -10,6 +10,7 @@ from typing import get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from greybox_torch.data.asked_for import asked_for
 from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry, TimeEntry
 from greybox_torch.data.checks import check_finite, check_length, check_time
@@ -56,7 +57,9 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     clock = None if card.time is None else experiment.columns.get(TIME, card.time.column)
     formulas = {name: entry.expression(experiment.columns.get(name)) for name, entry in card.channels.items()}
     needed = [column for formula in formulas.values() for column in formula.columns]
-    source = source_of(files, experiment.join, list(dict.fromkeys([*needed, *([clock] if clock else [])])), clock, read)
+    needed += [clock] if clock else []
+    with asked_for(place, formulas, clock, alone=len(card.experiment) == 1):
+        source = source_of(files, experiment.join, list(dict.fromkeys(needed)), clock, read)
     start, stop = _rows(place, source, experiment.rows)
     check_length(stop - start, place)
     time, sample_time = _time(path, card, source, clock, start, stop)

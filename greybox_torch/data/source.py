@@ -86,7 +86,7 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
         lacking = [column for column in lacking if column not in own]
     if lacking:
         names = ", ".join(file.name for file in files)
-        raise UserError(f'{files[0]}: no column "{lacking[0]}"; it is in none of {names}')
+        raise NoSuchColumn(f'{files[0]}: no column "{lacking[0]}"; it is in none of {names}', lacking[0])
     return Source((tables[0],), held, tuple(notes))
 
 
