@@ -51,6 +51,7 @@ def test_json_and_checkpoint(motor_folder: Make) -> None:
     assert result.exit_code == 0, result.stderr
     found = json.loads(result.stdout)
     assert written(folder) == FILES and "explanation" not in found
+    assert "training.safetensors" in result.stderr.split("Written to ")[1]
     assert found == json.loads((folder / "out" / "train.json").read_text())
     assert found["schema"] == "greybox-train/1"
     assert found["network"] == {
@@ -191,3 +192,9 @@ def test_killed_and_resumed(motor_folder: Make) -> None:
     process.send_signal(signal.SIGKILL)
     process.wait()
     assert validation_fit("--out", str(part), "--resume") == pytest.approx(whole, abs=1e-6), f"killed after {delay} s"
+
+
+def test_a_wrong_network_is_refused_before_training_is_said_to_begin(motor_folder: Make) -> None:
+    result = train(motor_folder(), "--net", "frictoin")
+    assert result.exit_code == 2
+    assert result.stderr.startswith('error: --net frictoin: unknown (did you mean "friction"?)')
