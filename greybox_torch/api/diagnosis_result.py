@@ -15,6 +15,7 @@ import numpy as np
 from rich.console import Console
 
 from greybox_torch import __version__
+from greybox_torch.api.estimated import ByName
 from greybox_torch.api.free_runs import plot_simulated
 from greybox_torch.api.hypotheses import MODEL, hypothesis_files
 from greybox_torch.api.result import Result
@@ -97,10 +98,10 @@ class DiagnosisResult(Result):
         for effect in self.effects:
             prefix = f"{effect.prefix}."
             deviations |= {f"{prefix}{name}": entry.get("std") for name, entry in effect.parameters.items()}
-        return {
-            p.name: FoundParameter(self.found.values[p.name], deviations.get(p.name), p.unit, p.fixed)
+        return ByName(
+            (p.name, FoundParameter(self.found.values[p.name], deviations.get(p.name), p.unit, p.fixed))
             for p in self.model.declared_parameters
-        }
+        )
 
     @property
     def initial(self) -> Mapping[str, Mapping[str, float]]:

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeVar
 
+from greybox_torch.errors import did_you_mean
 from greybox_torch.estimate.fit import Estimation
+
+Entry = TypeVar("Entry")
 
 
 @dataclass(frozen=True)
@@ -29,11 +33,18 @@ class EstimatedParameter(EstimatedStart):
     description: str
 
 
+class ByName(dict[str, Entry]):
+    """Parameters by name; asked for another, it says which names there are."""
+
+    def __missing__(self, name: object) -> Entry:
+        raise KeyError(f"no parameter {name!r}{did_you_mean(str(name), self)}; there are: {', '.join(self)}")
+
+
 def estimated_parameters(found: Estimation) -> dict[str, EstimatedParameter]:
     """By name, in the model's order."""
     problem = found.problem
     plain, sandwich = found.parameter_deviations(), found.parameter_deviations("sandwich")
-    return {
+    by_name = {
         declared.name: EstimatedParameter(
             value=float(problem.values[k]),
             std=plain.get(declared.name, 0.0),
@@ -46,6 +57,7 @@ def estimated_parameters(found: Estimation) -> dict[str, EstimatedParameter]:
         )
         for k, declared in enumerate(problem.model.declared_parameters)
     }
+    return ByName(by_name)
 
 
 def estimated_starts(found: Estimation, experiment: int) -> dict[str, EstimatedStart]:

@@ -33,6 +33,8 @@ def test_fit(folder: Path, data: gt.DataSet) -> None:
     found = gt.fit(model, data, profiles=["J"])
     from_files = told(folder, "fit", "--profile", "J")
     assert numbers(found.to_dict()) == numbers(from_files)
+    with pytest.raises(KeyError, match="no parameter 'b_x'; there are: J, k, b"):
+        _ = found.parameters["b_x"]
     inertia = found.parameters["J"]
     assert (inertia.value, inertia.std) == (
         from_files["parameters"]["J"]["value"],
