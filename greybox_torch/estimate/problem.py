@@ -146,10 +146,9 @@ def make_problem(
         problem = all_starts_free(dataset, problem)
     if not problem.admissible(problem.values):
         broken = ", ".join(model.admissible(problem.parameter_tensors))
-        raise UserError(
-            f"{dataset.place('[model.parameters]')} break a constraint of {model.title}: these must be positive: {broken}; "
-            "expected values that keep it"
-        )
+        place = dataset.place("[model.parameters]")
+        what = f"these must be positive: {broken}; expected values that keep it"
+        raise UserError(f"{place} break a constraint of {model.title}: {what}")
     return problem
 
 
