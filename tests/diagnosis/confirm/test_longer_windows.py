@@ -9,9 +9,16 @@ import pytest
 
 from greybox_torch.diagnosis.confirm import longer_windows as module
 from greybox_torch.diagnosis.confirm.held_out import Gain
-from greybox_torch.diagnosis.confirm.longer_windows import explains_free_runs, longer_windows, sentence, stands
+from greybox_torch.diagnosis.confirm.longer_windows import (
+    constant_effect,
+    explains_free_runs,
+    longer_windows,
+    sentence,
+    stands,
+)
 from greybox_torch.diagnosis.pipeline import diagnose
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
+from greybox_torch.mechanisms.surroundings import Range
 from greybox_torch.systems.load import load_model
 
 ROLES = ["estimation", "validation"]
@@ -152,9 +159,28 @@ def test_new_slow_effects_are_borne_out_and_the_same_everywhere(
     after_runs = judgement(stub, run_2=1.0)
     after_runs.problem, after_runs.begun = stub(), None
     gains = {"bias": Gain(errors_away * 0.01, 0.01)}
-    after = (stub(effects=(bias,), current=stub()), gains, after_runs)
+    after = (stub(effects=(bias,), current=stub(values=dict)), gains, after_runs)
     assert stands(study, before, after) is finding
     assert not stands(study, before, (stub(effects=(), current=stub()), {}, after_runs))
+
+
+@pytest.mark.parametrize(
+    ("order", "seen", "constant"), [(0.2, False, False), (0.2, True, True), (2.0, False, True), (None, False, True)]
+)
+def test_a_long_wave_over_a_position_that_no_sensor_shows_is_another_offset_in_each_experiment(
+    monkeypatch, stub, order, seen, constant
+) -> None:
+    """Seen: a complete arm that drifts, told as a ripple of two periods over its travel (0.97): each experiment begins where it fits."""
+    monkeypatch.setattr(module, "same_everywhere", lambda *args: True)
+    around = stub(ranges={"position": Range(0.0, 60.0, 20.0)})
+    study = stub(settings=SETTINGS, budget=SearchBudget(), surroundings={"motor": around})
+    values = {} if order is None else {"motor.ripple.order": order}
+    model = stub(start_trials=lambda values: [] if seen else [{"motor.position": 0.0}])
+    current = stub(values=lambda: values, model=model, problem=stub(values=None))
+    judged = judgement(stub, run_2=1.0)
+    judged.problem, judged.begun = stub(), None
+    ripple = stub(prefix="motor.ripple", port="motor")
+    assert constant_effect(study, stub(current=current), judged, ripple) is constant
 
 
 @pytest.mark.parametrize(
