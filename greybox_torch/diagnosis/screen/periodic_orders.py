@@ -27,7 +27,7 @@ BATCH = 32
 """Orders looked at in one compiled pass."""
 
 FAMILIES: tuple[type[Mechanism], ...] = (TorqueRipple, PositionDependentFriction)
-"""What the scan looks for."""
+"""What the scan looks for; at further bodies for the first alone."""
 
 
 def scan_orders(
@@ -39,7 +39,10 @@ def scan_orders(
     Of every fit (they differ in window length), the two that explain most, best first.
     """
     bodies = _moving_otherwise(study)
-    return {body.name: _orders_at(study, body, accepted, free_names, fits) for body in bodies}
+    return {
+        body.name: _orders_at(study, body, FAMILIES if k == 0 else FAMILIES[:1], accepted, free_names, fits)
+        for k, body in enumerate(bodies)
+    }
 
 
 def _moving_otherwise(study: Study) -> list[Body]:
@@ -57,7 +60,12 @@ def _moving_otherwise(study: Study) -> list[Body]:
 
 
 def _orders_at(
-    study: Study, body: Body, accepted: Sequence[Attachment], free_names: Sequence[str], fits: Sequence[WindowFit]
+    study: Study,
+    body: Body,
+    families: Sequence[type[Mechanism]],
+    accepted: Sequence[Attachment],
+    free_names: Sequence[str],
+    fits: Sequence[WindowFit],
 ) -> list[float]:
     base, settings, budget = study.problem.model, study.settings, study.budget
 
@@ -67,7 +75,7 @@ def _orders_at(
 
     around = study.surroundings[body.name]
     grids = [(fit, grid) for fit in fits if len(grid := _grid(around, fit, study)) >= 4]
-    screens = side_by_side(partial(screen, family) for family in FAMILIES) if grids else []
+    screens = side_by_side(partial(screen, family) for family in families) if grids else []
     pairs = [(one, fit, grid) for fit, grid in grids for one in screens]
     peaks_of = side_by_side(partial(_peaks, *pair, budget.order_peaks) for pair in pairs)
     orders = []
