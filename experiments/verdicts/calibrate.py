@@ -28,17 +28,18 @@ from experiments.verdicts.scoring import Finding, score_all
 
 EDGES = (0.0, 0.3, 0.5, 0.7, 0.9, 1.0)
 STEPS = 100
-NAMES, EXACT, ANSWERS, CLASSES = "names", "exact names", "answers", "classes"
+NAMES, EXACT, ANSWERS, CLASSES = KINDS = ("names", "exact names", "answers", "classes")
 
 
 def collect(folders: Sequence[Path], what: str = NAMES) -> tuple[np.ndarray, np.ndarray]:
     """Claimed probabilities (n,) of one of these kinds, over all pairs of folders, and whether each came true (n,)."""
     findings = [f for cases, verdicts in pairs_of(folders) for s in score_all(cases, verdicts) for f in s.findings]
-    told = [claim for f in findings for claim in _claims(f, what)]
+    told = [claim for f in findings for claim in claims_of(f, what)]
     return np.array([p for p, _ in told], dtype=float), np.array([right for _, right in told], dtype=float)
 
 
-def _claims(finding: Finding, what: str) -> Sequence[Claim]:
+def claims_of(finding: Finding, what: str) -> Sequence[Claim]:
+    """Probability and truth of what a finding claims, of one of the ``KINDS``."""
     if what == ANSWERS:
         return finding.answers
     if what == CLASSES:
@@ -119,7 +120,7 @@ def scored(folders: Sequence[Path], what: str) -> dict[str, Any]:
 def main(out: Path, folders: Sequence[Path], page: Path | None = None, about: str = "") -> None:
     from experiments.verdicts.calibration_page import draw, panels_of, write_page
 
-    result = {what: scored(folders, what) for what in (NAMES, EXACT, ANSWERS, CLASSES)}
+    result = {what: scored(folders, what) for what in KINDS}
     out.mkdir(parents=True, exist_ok=True)
     (out / "calibration.json").write_text(json.dumps(result, indent=1) + "\n")
     draw(panels_of(result), out / "calibration.png")

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from experiments.verdicts.answers import half_brier
-from experiments.verdicts.calibrate import brier
+from experiments.verdicts.calibrate import CLASSES, EXACT, NAMES, brier, claims_of
 from experiments.verdicts.scoring import KINDS, OUTSIDE, Finding, Scored
 
 
@@ -62,17 +62,22 @@ def closing(scored: Sequence[Scored]) -> Iterator[str]:
 
 def brier_of(findings: Sequence[Finding]) -> float:
     """Mean squared difference between the probability of a finding and whether it is right (Brier, 1950)."""
-    return brier(np.array([f.probability for f in findings]), np.array([float(f.right) for f in findings]))
+    return _brier(findings, NAMES)
 
 
 def brier_of_exact_names(findings: Sequence[Finding]) -> float:
     """The same of the names, each right where it is what was concealed itself."""
-    return brier(np.array([f.probability for f in findings]), np.array([float(f.exact) for f in findings]))
+    return _brier(findings, EXACT)
 
 
 def brier_of_classes(findings: Sequence[Finding]) -> float:
     """The same of the classes, each right where any of its members is."""
-    return brier(np.array([f.class_probability for f in findings]), np.array([float(f.class_right) for f in findings]))
+    return _brier(findings, CLASSES)
+
+
+def _brier(findings: Sequence[Finding], what: str) -> float:
+    told = [claim for f in findings for claim in claims_of(f, what)]
+    return brier(np.array([p for p, _ in told]), np.array([float(right) for _, right in told]))
 
 
 def brier_of_answers(findings: Sequence[Finding]) -> float:

@@ -9,11 +9,11 @@ from typing import Any
 from greybox_torch.api.check_result import CheckResult
 from greybox_torch.checking.examine import examine
 from greybox_torch.checking.finding import Finding, in_order
-from greybox_torch.checking.missing_inputs import WRITE, missing_inputs
+from greybox_torch.checking.missing_inputs import MissingInput, missing_inputs
 from greybox_torch.checking.not_finite import not_finite_at_start
 from greybox_torch.checking.source import source_of
 from greybox_torch.data import DataSet
-from greybox_torch.drafting.contradicted import contradictions
+from greybox_torch.drafting.contradicted import Contradiction, contradictions
 from greybox_torch.errors import ArgumentError, Kind, UserError
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel
@@ -50,12 +50,12 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
     with users_code(_file(given), f"model {name}", "checking it"):
         examined = examine(given)
     findings, values = list(examined.findings), dict[str, float]()
-    if data is not None:
-        findings += [Finding("warning", "card", c.found, c.write, data.path) for c in contradictions(data.path)]
+    told: list[Contradiction | MissingInput] = [] if data is None else [*contradictions(data.path)]
     if data is not None and examined.model is not None and not any(f.level == "error" for f in findings):
         more, values = _with_data(data, examined.model)
-        gaps = missing_inputs(data, examined.model)
-        findings += [*more, *(Finding("warning", "card", gap.found, WRITE, data.path) for gap in gaps)]
+        findings += more
+        told += missing_inputs(data, examined.model)
+    findings += [Finding("warning", "card", one.found, one.write, data.path) for one in told if data is not None]
     return CheckResult(name, replace(examined, findings=in_order(findings)), in_order(findings), values)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,7 @@ from rich.text import Text
 
 from greybox_torch.api.result import HELD_OUT, Result
 from greybox_torch.data import DataSet
-from greybox_torch.drafting.contradicted import contradictions
+from greybox_torch.drafting.contradicted import Contradiction, contradictions
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
 
@@ -43,6 +44,11 @@ class InspectionResult(Result):
             for name, entry in self._channels(recording).items()
         ]
 
+    @cached_property
+    def contradicted(self) -> list[Contradiction]:
+        """Units on the card that the names of its columns contradict."""
+        return contradictions(self.data.path)
+
     def __repr__(self) -> str:
         return f"<inspection of {self.data.name}: {', '.join(r.name for r in self.data.recordings)}>"
 
@@ -61,7 +67,7 @@ class InspectionResult(Result):
                 for recording in self.data.recordings
             ],
             "model": self.model,
-            "warnings": [str(found) for found in contradictions(self.data.path)],
+            "warnings": [str(found) for found in self.contradicted],
             "figure": str(folder / FIGURE),
         }
 
@@ -114,7 +120,7 @@ class InspectionResult(Result):
 
     def _notes(self) -> list[str]:
         notes = [f"{recording.name}: {note}." for recording in self.data.recordings for note in recording.notes]
-        notes += [f"warning: {self.data.place()}: {found}" for found in contradictions(self.data.path)]
+        notes += [f"warning: {self.data.place()}: {found}" for found in self.contradicted]
         notes += [HELD_OUT] if self.data.held_out_by_default else []
         if self.model is not None:
             notes.append(f"Channels, parameters and start states fit the model {self.model}.")

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.source import Source
-from greybox_torch.errors import did_you_mean
 from greybox_torch.model import GreyBoxModel, Signals
+from greybox_torch.model.check import unknown_signals
 
 _METHODS = {name for name in dir(Signals) if not name.startswith("_")}
 
@@ -37,18 +37,8 @@ def unusable_names(made: type[GreyBoxModel], source: Source) -> Iterator[Finding
 
 def port_signals(made: type[GreyBoxModel], source: Source) -> Iterator[Finding]:
     """Findings for ports whose signal names no state."""
-    states = [s.name for s in made.states]
-    for port in made.ports:
-        for name, signal in port.signals.items():
-            if isinstance(signal, str) and signal not in states:
-                yield Finding(
-                    "error",
-                    "name",
-                    f"port '{port.name}': {name} = \"{signal}\" is not a state{did_you_mean(signal, states)}",
-                    f"one of {', '.join(states)}, or {name}=lambda x, u, p: …",
-                    source.file,
-                    source.line_of(f'"{port.name}"'),
-                )
+    for port, found, write in unknown_signals(made):
+        yield Finding("error", "name", found, write, source.file, source.line_of(f'"{port.name}"'))
 
 
 def no_ports(made: type[GreyBoxModel], source: Source) -> Iterator[Finding]:

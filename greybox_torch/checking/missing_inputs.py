@@ -13,10 +13,6 @@ from greybox_torch.model import GreyBoxModel
 LONGEST = 5
 """Samples that may be missing one after the other before that is told: a lost message or two changes nothing."""
 
-WRITE = (
-    "one experiment that ends before it and another that begins after it: rows = [first, last] in each [[experiment]]"
-)
-
 
 @dataclass(frozen=True)
 class MissingInput:
@@ -41,8 +37,13 @@ class MissingInput:
             "stands for them, which is not what drove the machine"
         )
 
+    @property
+    def write(self) -> str:
+        """What to write instead."""
+        return "one experiment that ends before it and another that begins after it: rows = [first, last] in each [[experiment]]"
+
     def __str__(self) -> str:
-        return f"{self.found}; expected {WRITE}"
+        return f"{self.found}; expected {self.write}"
 
 
 def missing_inputs(data: DataSet, model: GreyBoxModel) -> Iterator[MissingInput]:

@@ -15,7 +15,7 @@ from greybox_torch.commands.options import Options
 from greybox_torch.commands.progress import training
 from greybox_torch.commands.task import load_task
 from greybox_torch.training import Report, TrainingSettings
-from greybox_torch.training.hybrid import default_port, make_network, port_named
+from greybox_torch.training.hybrid import network_at
 from greybox_torch.training.tensorboard import tensorboard_log
 
 SNAPSHOT, LOG = "training.safetensors", "tensorboard"
@@ -43,8 +43,8 @@ def run(dataset: Path, options: Options, choices: Choices) -> None:
     """
     task = load_task(dataset, options)
     settings = TrainingSettings(seed=options.seed, **choices.training)
-    site = port_named(task.model, choices.port or default_port(task.model, choices.net))
-    make_network(choices.net, site, choices.signals, **choices.network)  # refused before anything is said to be done
+    # refused before anything is said to be done
+    network_at(task.model, choices.net, choices.port, choices.signals, **choices.network)
     with ExitStack() as together:
         together.enter_context(_interruptible(task.folder / SNAPSHOT))
         log = together.enter_context(tensorboard_log(task.folder / LOG)) if choices.tensorboard else None

@@ -30,12 +30,14 @@ class OpenStarts:
 
 def open_starts(problem: Problem, windows: Windows) -> OpenStarts:
     """The open start states of windows of a problem's records."""
-    n_x, remembered = len(problem.carried), _remembered(problem)
+    remembered, count, n_x = _remembered(problem), len(windows.start), len(problem.carried)
     states = np.flatnonzero(~problem.carried | remembered)
+    directions = np.broadcast_to(np.eye(n_x)[states], (count, len(states), n_x))
+    if not remembered.any():  # of nearly all models, in every pass
+        return OpenStarts(states, directions, np.zeros((count, len(states)), dtype=bool))
     later = ~np.isin(windows.start, problem.records.first)
     bound = later[:, None] & remembered[states]
-    directions = np.where(bound[:, :, None], 0.0, np.eye(n_x)[states])
-    return OpenStarts(states, directions, bound)
+    return OpenStarts(states, np.where(bound[:, :, None], 0.0, directions), bound)
 
 
 def begun_with(problem: Problem, windows: Windows, starts: np.ndarray) -> Problem:

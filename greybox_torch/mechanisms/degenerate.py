@@ -104,6 +104,11 @@ def too_long(name: str, seconds: float, around: Surroundings) -> str | None:
     return f"{name} = {seconds:.3g} s is far longer than the longest record, {around.ranges['time'].high:.3g} s"
 
 
+def periods(order: float, around: Surroundings) -> float:
+    """How often what has an order per unit of position repeats in the travel."""
+    return abs(order) * around.ranges["position"].span / (2 * np.pi)
+
+
 def not_seen_to_repeat(order: float, around: Surroundings, once_per_turn: bool = False) -> str | None:
     """An order per turn goes through too few periods in the travel, or passes faster than sampling resolves at the usual speed.
 
@@ -112,10 +117,12 @@ def not_seen_to_repeat(order: float, around: Surroundings, once_per_turn: bool =
             is as well, is not.
     """
     if "position" in around.ranges:
-        periods = abs(order) * around.ranges["position"].span / (2 * np.pi)
+        times = periods(order, around)
         least = LEAST_PERIODS_OF_WHOLE if _whole_per_turn(order, around, once_per_turn) else LEAST_PERIODS
-        if periods < least:
-            return f"order = {order:.3g} repeats {periods:.2g} times in the travel; {least:g} are needed to see that it does"
+        if times < least:
+            return (
+                f"order = {order:.3g} repeats {times:.2g} times in the travel; {least:g} are needed to see that it does"
+            )
     if "speed" in around.ranges:
         samples = 2 * np.pi / max(abs(order) * around.ranges["speed"].rms * around.sample_time, 1e-300)
         if samples < 2.0:

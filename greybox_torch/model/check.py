@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +11,7 @@ import torch
 
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.model.greybox_model import GreyBoxModel
+from greybox_torch.model.ports import Port
 from greybox_torch.model.signals import Signals
 
 NEEDS_A_VALUE = (
@@ -52,14 +53,18 @@ def check_equations(model: GreyBoxModel) -> None:
 
 def _check_ports(model: GreyBoxModel) -> None:
     """The equations do not read what ports say of themselves; laws that are attached there do, long after."""
+    for _, found, expected in unknown_signals(model):
+        raise UserError(f"{found}; expected {expected}")
+
+
+def unknown_signals(model: GreyBoxModel | type[GreyBoxModel]) -> Iterator[tuple[Port, str, str]]:
+    """Every port of which a signal names no state, what is found there, and what is expected."""
     states = [state.name for state in model.states]
     for port in model.ports:
         for name, signal in port.signals.items():
             if isinstance(signal, str) and signal not in states:
-                raise UserError(
-                    f"port '{port.name}': {name} = \"{signal}\" is not a state{did_you_mean(signal, states)}; "
-                    f"expected one of {', '.join(states)}, or {name}=lambda x, u, p: …"
-                )
+                found = f"port '{port.name}': {name} = \"{signal}\" is not a state{did_you_mean(signal, states)}"
+                yield port, found, f"one of {', '.join(states)}, or {name}=lambda x, u, p: …"
 
 
 def _evaluated(model: GreyBoxModel, function: Callable[..., torch.Tensor], *given: Any) -> torch.Tensor:

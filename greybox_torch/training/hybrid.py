@@ -70,6 +70,14 @@ def default_port(model: GreyBoxModel, net: str) -> str:
     return model.all_ports[0].name
 
 
+def network_at(
+    model: GreyBoxModel, net: str, port: str | None, signals: Sequence[str], **options: object
+) -> tuple[Port, Network]:
+    """The port of ``model``, by default where such a network belongs, and the network for it; raises as the two functions below."""
+    site = port_named(model, port or default_port(model, net))
+    return site, make_network(net, site, signals, **options)
+
+
 def make_network(net: str, port: Port, signals: Sequence[str], **options: object) -> Network:
     """A network for ``port``: "friction", "residual" or "memory", reading ``signals`` (the usual ones of such a port where there are none).
 

@@ -23,7 +23,7 @@ from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 from greybox_torch.training.curriculum import Curriculum, descend
 from greybox_torch.training.gradients import make_gradient
 from greybox_torch.training.gradients.tangents import TangentsGradient
-from greybox_torch.training.hybrid import Hybrid, attach_network, default_port, make_network, port_named
+from greybox_torch.training.hybrid import Hybrid, attach_network, network_at
 from greybox_torch.training.keeper import Keeper
 from greybox_torch.training.physics import Physics, estimate_physics, training_problem, with_physics
 from greybox_torch.training.polish import Polished, polish
@@ -70,8 +70,7 @@ def train_hybrid(
         NumericalError: the simulation overflows even over short windows.
     """
     began, settings, tell = time.perf_counter(), settings or TrainingSettings(), progress or (lambda report: None)
-    site = port_named(model, port or default_port(model, net))
-    learner = make_network(net, site, signals, **{"seed": settings.seed, **(network or {})})
+    site, learner = network_at(model, net, port, signals, **{"seed": settings.seed, **(network or {})})
     problem = training_problem(data, model) if physics is None else physics.result.problem
     lengths = tuple(window_lengths(problem.records, settings))
     about = {

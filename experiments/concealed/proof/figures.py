@@ -11,7 +11,7 @@ import numpy as np
 
 from experiments.concealed.proof.confusion import matrix
 from experiments.concealed.visibility import DOMINANT, MODERATE, OVERWHELMING
-from experiments.verdicts.calibrate import reliability
+from experiments.verdicts.calibrate import KINDS, claims_of, reliability
 from experiments.verdicts.calibration_page import draw as draw_reliability
 from experiments.verdicts.rates import Rate
 from experiments.verdicts.scoring import Scored
@@ -147,12 +147,7 @@ def _reliability(found: Sequence[Scored], file: Path) -> bool:
     findings = [f for r in found for f in r.findings]
     if not findings:
         return False
-    told = {
-        "names": [(f.probability, f.right) for f in findings],
-        "exact names": [(f.probability, f.exact) for f in findings],
-        "answers": [claim for f in findings for claim in f.answers],
-        "classes": [(f.class_probability, f.class_right) for f in findings],
-    }
+    told = {what: [claim for f in findings for claim in claims_of(f, what)] for what in KINDS}
     bins = {what: reliability(*np.array(claims, dtype=float).T) for what, claims in told.items()}
     draw_reliability(list(bins.items()), file)
     return True

@@ -100,8 +100,7 @@ class Judgement:
     def unstable(self) -> frozenset[str]:
         """Validation experiments that do not count, as no free run of the model with effects follows them, and it comes out worse there.
 
-        Not one that both models follow. None where they were more than half of all: what is left would say too little. That does not
-        hold of those that are ``lost``.
+        Not one that both models follow; none where they were more than half of all (what is left would say too little), but the ``lost``.
         """
         both = followed(self.refit, self.settings) & followed(self.with_effects, self.settings)
         parted = self.free_runs.parted(self.augmented, self.with_effects, self._worse - both)
@@ -144,7 +143,8 @@ class Judgement:
             return self.judges <= but
         before, after = (mean_fit(self._judged(c, but).scores) for c in (self.refit, self.with_effects))
         refit, with_effects = (self._energy(c, but) for c in (self.refit, self.with_effects))
-        return with_effects <= (1 + (least := self.settings.unexercised)) * refit and after >= before - 100 * least
+        least = self.settings.unexercised
+        return with_effects <= (1 + least) * refit and after >= before - 100 * least
 
     @property
     def _rows(self) -> list[dict[str, Any]]:

@@ -10,8 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.same_everywhere import same_everywhere
@@ -21,6 +19,7 @@ from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.degenerate import periods
 
 Judged = tuple[SearchState, Mapping[str, Gain], Judgement]
 """What a search found, what its effects gain on held-out experiments, and its free runs."""
@@ -76,13 +75,11 @@ def _another_offset_in_each(study: Study, state: SearchState, effect: Attachment
     may stand for another offset in each. Seen: a complete arm that drifts, told as a ripple of two periods over all that it travelled
     (0.97), 23 % of six times the noise left.
     """
-    current, around = state.current, study.surroundings[effect.port]
-    values = current.values()
-    order = values.get(f"{effect.prefix}.order")
+    current = state.current
+    order = current.values().get(f"{effect.prefix}.order")
     if order is None or not current.model.start_trials(current.problem.values):
         return False
-    travel = around.ranges["position"].high - around.ranges["position"].low
-    return abs(order) * travel < 2 * np.pi * study.settings.least_periods
+    return periods(order, study.surroundings[effect.port]) < study.settings.least_periods
 
 
 def explains_free_runs(before: Judgement, after: Judgement, settings: DiagnosisSettings) -> bool:

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from greybox_torch.diagnosis.hypothesis.start_positions import placed
+from greybox_torch.diagnosis.hypothesis.start_positions import begun_at, placed
 from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.estimate.initial import beginning
@@ -40,11 +40,9 @@ def with_common_positions(
         length: of the windows, in samples.
         rough: whether places that are known are near enough.
     """
-    model, count = problems[0].model, len(problems[0].records.first)
-    trials = model.start_trials(problems[0].values) if count > 1 else []
-    if not trials:
+    names, count = _placed_names(problems[0]), len(problems[0].records.first)
+    if not names:
         return list(problems), list(early)
-    names = list(trials[0])
     told = [[places.get(e, {}).get(name, np.nan) for name in names] for e in problems[0].records.names]
     fit = next((f for f in known if _has(f, names, count)), None)
     if fit is None and np.isfinite(told).all():
@@ -67,12 +65,9 @@ def begun_as(problem: Problem, shorter: WindowFit | None) -> WindowFit | None:
     names = _placed_names(problem)
     if shorter is None or not names or not _has(shorter, names, len(problem.initial)):
         return shorter
-    there, starts = _columns(shorter.problem, names), shorter.starts.copy()
+    there, to = _columns(shorter.problem, names), problem.initial[:, _columns(problem, names)]
     experiments = problem.records.experiments(shorter.windows.start)
-    first = np.searchsorted(experiments, np.arange(len(problem.initial)))
-    away = problem.initial[:, _columns(problem, names)] - starts[first][:, there]
-    starts[:, there] += away[experiments]
-    return replace(shorter, starts=starts, along=None)
+    return replace(shorter, starts=begun_at(shorter.starts, there, to, experiments), along=None)
 
 
 def placed_alike(one: Problem, other: Problem) -> bool:

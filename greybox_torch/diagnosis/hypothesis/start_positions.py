@@ -111,9 +111,19 @@ def _moved(
     budget: SearchBudget,
 ) -> WindowFit | None:
     """``fit`` once more with the positions ``places`` of every experiment beginning at ``to`` (E, k)."""
-    starts, initial = fit.starts.copy(), fit.problem.initial.copy()
-    first = np.searchsorted(experiments, np.arange(len(to)))
-    starts[:, places] += (to - starts[first][:, places])[experiments]
+    starts, initial = begun_at(fit.starts, places, to, experiments), fit.problem.initial.copy()
     initial[:, places] = to
     problem = replace(fit.problem, initial=initial)
     return fit_windows(problem, simulator, length, starts=starts, settings=budget.position_trial_iterations)
+
+
+def begun_at(starts: np.ndarray, places: Sequence[int], to: np.ndarray, experiments: np.ndarray) -> np.ndarray:
+    """Window starts (W, n_x) with the positions ``places`` of every experiment moved along, so that its first window begins at ``to``.
+
+    Args:
+        to: by experiment, shape (E, k).
+        experiments: of every window, shape (W,).
+    """
+    moved, first = starts.copy(), np.searchsorted(experiments, np.arange(len(to)))
+    moved[:, places] += (to - starts[first][:, places])[experiments]
+    return moved
