@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial, reduce
 
@@ -202,6 +202,19 @@ def gain(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> Gain:
             scatter = float(np.std(difference - share * old.energies, ddof=1)) if count > 1 else np.inf
             found.append(Gain(share, float(scatter * np.sqrt(count) / total)))
     return max(found, key=lambda g: g.errors_away, default=Gain(0.0, float("inf")))
+
+
+def pooled(gains: Sequence[Gain]) -> Gain:
+    """The share that independent experiments show together, each by the inverse of its variance; none where no error is known.
+
+    Source: W. G. Cochran, "The combination of estimates from different experiments", Biometrics 10, 1954.
+    """
+    known = [g for g in gains if np.isfinite(g.error)]
+    weights = [1.0 / max(g.error, 1e-12) ** 2 for g in known]
+    if not known:
+        return Gain(0.0, float("inf"))
+    share = sum(w * g.share for w, g in zip(weights, known, strict=True)) / sum(weights)
+    return Gain(share, sum(weights) ** -0.5)
 
 
 def timelines(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> tuple[Timeline, ...]:

@@ -5,11 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from greybox_torch.diagnosis.confirm import simpler_laws
+from greybox_torch.diagnosis.confirm.held_out import Gain, pooled
 from greybox_torch.diagnosis.confirm.simpler_laws import _contained
 from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select import finer_steps
 from greybox_torch.diagnosis.select.state import SelectionStep
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
@@ -38,3 +41,34 @@ def test_dry_friction_that_changes_its_sign_within_a_step_is_asked_in_finer_ones
     if finer:
         assert fitted.score < rival.fitted.score - 0.5
         assert fitted.values()["rotor.coulomb_friction.v_0"] == pytest.approx(WIDTH, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("held_out", "chosen_by", "likelihood", "meant"),
+    [
+        ((-0.007, 0.011), (0.008, 0.006), 3.3, "simpler"),
+        ((-0.042, 0.017), (0.004, 0.002), 7.5, "simpler"),
+        ((0.0, 0.01), (0.05, 0.01), 7.5, "larger"),
+        ((0.0, 0.01), (0.05, 0.01), 0.0, "simpler"),
+        ((0.04, 0.01), (0.0, 0.01), 0.0, "larger"),
+    ],
+    ids=["a stage's force", "an arm's force", "by both", "by windows that chose alone", "held out"],
+)
+def test_likelihood_alone_is_no_evidence_for_the_larger_law(
+    monkeypatch, stub, held_out, chosen_by, likelihood, meant
+) -> None:
+    """Seen: constant forces told as friction that differs by direction, as a slow disturbance was counted in every sample."""
+    monkeypatch.setattr(simpler_laws, "gain", lambda before, after: Gain(*chosen_by))
+    monkeypatch.setattr(simpler_laws, "likelihood_significance", lambda *_: likelihood)
+    by_chance = simpler_laws._by_chance(
+        stub(settings=DiagnosisSettings()), stub(fits=()), stub(fits=()), Gain(*held_out)
+    )
+    assert by_chance is (meant == "simpler")
+
+
+def test_shares_of_independent_experiments_are_weighed_by_what_is_known_of_them() -> None:
+    both = pooled([Gain(0.1, 0.03), Gain(0.02, 0.04)])
+    assert both.share == pytest.approx((0.1 / 9 + 0.02 / 16) / (1 / 9 + 1 / 16))
+    assert both.error == pytest.approx(0.01 / (1 / 9 + 1 / 16) ** 0.5)
+    assert pooled([Gain(0.1, 0.03), Gain(0.0, np.inf)]) == Gain(0.1, pytest.approx(0.03))
+    assert pooled([Gain(0.0, np.inf)]).errors_away == pooled([]).errors_away == 0.0
