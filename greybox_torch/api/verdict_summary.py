@@ -12,7 +12,7 @@ from greybox_torch.api.scores import print_scores
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import Alternative, spoken_at
-from greybox_torch.diagnosis.verdict import Verdict
+from greybox_torch.diagnosis.verdict import STOPPED, Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.tables import print_table
 
@@ -38,12 +38,15 @@ def effect_table(verdict: Verdict) -> tuple[list[str], list[list[str | float]]]:
 
 
 def notes(verdict: Verdict) -> list[str]:
-    """Where each effect acts, what else it could be, and what remains; where there is none, the evidence for that."""
+    """Where each effect acts, what else it could be, and what remains; where there is none, the evidence for that. Both with what was not
+    tried, where the search was stopped.
+    """
     if not verdict.effects:
-        return list(verdict.evidence)
+        return [*verdict.evidence, *verdict.not_tried.sentences()]
+    stopped = [] if verdict.complete else [STOPPED, *verdict.not_tried.sentences()]
     left = [] if verdict.left is None else [verdict.left.sentence]
     small = [f"Refinement: {refinement.sentence}." for refinement in verdict.refinements]
-    return [*(line for effect in verdict.effects for line in _notes(effect)), *left, *small]
+    return [*(line for effect in verdict.effects for line in _notes(effect)), *left, *small, *stopped]
 
 
 def verdict_scores(verdict: Verdict) -> dict[str, tuple[Score, ...]]:

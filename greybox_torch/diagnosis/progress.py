@@ -33,7 +33,7 @@ class Journal:
 
     def __init__(self, hear: Callable[[Progress], None] = lambda progress: None) -> None:
         self._hear, self._began, self._now = hear, time.perf_counter(), Progress(0.0)
-        self._lock, self._left = threading.Lock(), dict[Named, None]()
+        self._lock, self._left, self._tests = threading.Lock(), dict[Named, None](), 0
 
     def doing(self, text: str) -> None:
         """What is begun now."""
@@ -51,7 +51,7 @@ class Journal:
             self._tell(leading=f"perhaps {_listed([effect])}: {100 * share:.3g} % in the screen", effects=(effect,))
 
     def offer(self, candidates: Iterable[Named]) -> None:
-        """Candidates that are to be refitted now."""
+        """Candidates that are to be screened, or refitted, now."""
         with self._lock:
             self._left = dict.fromkeys(candidates)
 
@@ -59,6 +59,16 @@ class Journal:
         """One of them is."""
         with self._lock:
             self._left.pop(candidate, None)
+
+    def screened(self, tests: int) -> None:
+        """A screen has ended that made so many tests of a mechanism at a port."""
+        with self._lock:
+            self._tests += tests
+
+    @property
+    def tests(self) -> int:
+        """Those of all screens that have ended."""
+        return self._tests
 
     @property
     def left(self) -> tuple[Named, ...]:

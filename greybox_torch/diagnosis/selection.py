@@ -23,6 +23,7 @@ from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.schedule import Schedule
 from greybox_torch.diagnosis.select.backward import drop_superfluous
+from greybox_torch.diagnosis.select.offered import offer_all
 from greybox_torch.diagnosis.select.other_values import other_values
 from greybox_torch.diagnosis.select.plain_model import fit_plain_model, squared_errors, weighted_by_noise
 from greybox_torch.diagnosis.select.search import search
@@ -146,6 +147,7 @@ def _searched(
         study.journal.found(effects, size(better.plain.fits, better.plain.fits, better.current.fits, study.settings))
 
     begun, complete = (study, state), True
+    offer_all(study, state)
     with until(deadline):
         begun, complete = or_else(partial(_weighted, study, state), lambda: begun)
         if complete:

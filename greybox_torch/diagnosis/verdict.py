@@ -29,10 +29,16 @@ class Left:
     sentence: str
 
 
+STOPPED = "The search was stopped before it was done (time limit or interruption): the best verdict so far."
+
+MOST_NAMED = 12
+"""Candidates not tried any more up to which a sentence names them all."""
+
+
 @dataclass(frozen=True)
 class NotTried:
     """What was left when a diagnosis was stopped: the ``stages`` that were cut short or left out, and the ``candidates`` (port, mechanism)
-    of the present step that were not yet refitted.
+    of the present step that were not yet refitted; all that it offers, where its screen did not come to an end.
     """
 
     stages: tuple[str, ...] = ()
@@ -43,7 +49,11 @@ class NotTried:
         told = []
         if self.stages:
             told.append(f"Cut short: {'; '.join(self.stages)}.")
-        if self.candidates:
+        if len(self.candidates) > MOST_NAMED:
+            told.append(
+                f"Not tried any more: {len(self.candidates)} mechanisms at ports, which verdict.json lists (not_tried)."
+            )
+        elif self.candidates:
             named = ", ".join(spoken_at(mechanism, port) for port, mechanism in self.candidates)
             told.append(f"Not tried any more: {named}.")
         return tuple(told)

@@ -11,6 +11,7 @@ from greybox_torch.diagnosis.pipeline import diagnose
 from greybox_torch.diagnosis.progress import Journal, Progress
 from greybox_torch.diagnosis.select.search import search
 from greybox_torch.diagnosis.stopping import best_so_far
+from greybox_torch.diagnosis.verdict import MOST_NAMED
 from greybox_torch.errors import NumericalError
 
 DRAG, BIAS = ("rotor", "quadratic_drag"), ("rotor", "constant_bias")
@@ -43,11 +44,14 @@ def test_candidates_that_are_left() -> None:
     assert journal.left == (BIAS,)
     journal.offer([])
     assert journal.left == ()
+    journal.screened(20)
+    journal.screened(3)
+    assert journal.tests == 23
 
 
-@pytest.mark.parametrize(("stage", "left"), [("screening", False), ("refitting", True), ("polishing", False)])
+@pytest.mark.parametrize(("stage", "left"), [("screening", True), ("refitting", True), ("polishing", False)])
 def test_a_search_ends_within_a_refit_and_says_what_was_left(dead_zone_search, stage: str, left: bool) -> None:
-    """A few passes after a stage was begun, in the middle of it."""
+    """A few passes after a stage was begun, in the middle of it. Where that is the screen, none of what it offers was tried."""
     begun, journal, said = dead_zone_search.state, Journal(), []
     passes = iter(range(4))
 
@@ -61,6 +65,19 @@ def test_a_search_ends_within_a_refit_and_says_what_was_left(dead_zone_search, s
     assert state.current.score <= begun.current.score
     assert bool(journal.left) == left
     assert sum(text.startswith(stage) for text in said) <= 4
+
+
+def test_stopped_before_a_screen_has_ended(motor_data, motor) -> None:
+    """Seen: Ctrl-C after the first line; the verdict spoke of 0 tests, and of no candidate that was not tried."""
+
+    def stop(text: str) -> None:
+        if text.startswith("screening"):
+            raise KeyboardInterrupt
+
+    verdict = diagnose(motor_data(400, torque=lambda q, v: -0.004 * v * abs(v)), motor, progress=stop).verdict
+    left = verdict.not_tried.candidates
+    assert len(left) == len(set(left)) > MOST_NAMED and {DRAG, BIAS, ("rotor", "torque_ripple")} <= set(left)
+    assert verdict.evidence[0].startswith("The search was stopped before any mechanism was tested at a port; the model")
 
 
 def test_the_leading_finding_is_told_and_is_the_answer_in_the_end(motor_data, motor) -> None:

@@ -18,6 +18,7 @@ from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.diagnosis.verdict import STOPPED
 from greybox_torch.mechanisms.attachment import Attachment
 
 
@@ -32,10 +33,8 @@ def sentences(
 ) -> tuple[str, ...]:
     """The evidence for a reader: what was looked at, what it showed, and what limits it."""
     plain, final = state.plain.fits, state.current.fits
-    looked = sum(len(s.screened[0]) for s in state.steps if s.screened)
-    lengths = ", ".join(str(f.windows.steps) for f in plain)
     lines = [
-        f"{looked} tests of a mechanism at a port, over windows of {lengths} samples with free start states.",
+        _looked(study, state, interrupted),
         "Root mean square error over those windows, model as it stands: "
         + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in plain)
         + ("; with the effects: " + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in final) if effects else "")
@@ -63,8 +62,18 @@ def sentences(
             "No experiment had the role 'validation': the last quarter of every experiment was held out for judging."
         )
     if interrupted:
-        lines.append("The search was stopped before it was done (time limit or interruption): the best verdict so far.")
+        lines.append(STOPPED)
     return tuple(begun(line) for line in lines)
+
+
+def _looked(study: Study, state: SearchState, interrupted: bool) -> str:
+    """How many tests were made. A search that was stopped counts those of a step that did not come to its end as well."""
+    tests = sum(len(s.screened[0]) for s in state.steps if s.screened)
+    tests = max(tests, study.journal.tests) if interrupted else tests
+    over = f"over windows of {', '.join(str(f.windows.steps) for f in state.plain.fits)} samples with free start states"
+    if interrupted and not tests:
+        return f"The search was stopped before any mechanism was tested at a port; the model as it stands was fitted {over}."
+    return f"{tests} tests of a mechanism at a port, {over}."
 
 
 def begun(sentence: str) -> str:

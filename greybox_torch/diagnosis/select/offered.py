@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -35,10 +35,19 @@ def screen_scores(study: Study, state: SearchState, *, curves: bool, fine: bool)
         curves: whether free curves are offered.
         fine: offer curves with many knots, and nothing else.
     """
+    offer_all(study, state, curves=curves, fine=fine)
     study.working_on("screening fine curves" if fine else "screening every port and mechanism")
     every = _fine_curves(study) if fine else _offered(study, state, curves)
     scored = _scored(study, state, every, state.current.fits)
+    study.journal.screened(len(scored[0]) if scored else 0)
     return _with_narrow_curves(study, state, scored) if curves and not (fine or state.effects) else scored
+
+
+def offer_all(study: Study, state: SearchState, *, curves: bool = True, fine: bool = False) -> None:
+    """Note what a screen is to test, before it looks for periods: where it is stopped, all of that was not tried. Arguments as there."""
+    any_order = [2.0 * study.settings.least_ripple_order]  # which orders is not known yet, and only names are noted
+    every = _fine_curves(study) if fine else _with_periods(study, {"": any_order}, curves)
+    study.journal.offer(a.named for a in every if _may_join(study, state, a))
 
 
 def _with_narrow_curves(study: Study, state: SearchState, scored: Screened) -> Screened:
@@ -99,7 +108,7 @@ def memory_scores(study: Study, state: SearchState, knots: int = 0, among: Colle
 def _scored(study: Study, state: SearchState, every: Sequence[Attachment], fits: Sequence[WindowFit]) -> Screened:
     """By window length, the scores of those that are not there yet, nor excluded, around ``fits`` of the effects that are."""
     model, at = study.problem.model, state.current
-    offered = [a for a in every if not (_is_there(a, at.effects) or study.beliefs.exclude(a))]
+    offered = [a for a in every if _may_join(study, state, a)]
     if not offered:
         return tuple(() for _ in fits)
     screen = Screen.of(
@@ -126,8 +135,13 @@ def from_motion(study: Study, state: SearchState) -> list[Candidate]:
         study,
         state.current.problem,
         state.effects,
-        lambda a: not (_is_there(a, state.effects) or study.beliefs.exclude(a)),
+        partial(_may_join, study, state),
     )
+
+
+def _may_join(study: Study, state: SearchState, offered: Attachment) -> bool:
+    """Whether an effect is not there yet, and not excluded by what is known beforehand."""
+    return not (_is_there(offered, state.effects) or study.beliefs.exclude(offered))
 
 
 def _is_there(offered: Attachment, effects: tuple[Attachment, ...]) -> bool:
@@ -145,23 +159,26 @@ def _fine_curves(study: Study) -> list[Attachment]:
 
 
 def _offered(study: Study, state: SearchState, curves: bool) -> list[Attachment]:
-    model, at = study.problem.model, state.current
+    at = state.current
     over = [f for f in at.fits if f.mean_square > noise_floor(study.problem, study.settings)] or at.fits
     scanned = scan_orders(study, at.effects, at.problem.free_names, over[:2])
     first, *further = scanned or [""]
     known = [*scanned.get(first, ()), *orders_before(study, state)]
-    orders = distinct_orders(known, study.settings.orders_differ)
-    periodic = partial(periodic_candidates, model, study.shifts, study.surroundings)
+    orders = {first: distinct_orders(known, study.settings.orders_differ)}
+    return _with_periods(study, {**orders, **{name: scanned[name] for name in further}}, curves)
+
+
+def _with_periods(study: Study, orders: Mapping[str, Sequence[float]], curves: bool) -> list[Attachment]:
+    """All laws, those that repeat with ``orders`` by the body that turns (the first of them by its usual name), and free curves."""
+    model, shifts, surroundings = study.problem.model, study.shifts, study.surroundings
+    periodic = partial(periodic_candidates, model, shifts, surroundings)
     least = study.settings.least_ripple_order
+    first, *further = orders
     return [
-        *candidates(model, study.shifts, study.surroundings, flexible=False),
-        *periodic(orders, least),
-        *(candidate for name in further for candidate in periodic(scanned[name], least, at=name)),
-        *(
-            candidates(model, study.shifts, study.surroundings, flexible=True, knots=study.budget.knots)
-            if curves
-            else []
-        ),
+        *candidates(model, shifts, surroundings, flexible=False),
+        *periodic(orders[first], least),
+        *(candidate for name in further for candidate in periodic(orders[name], least, at=name)),
+        *(candidates(model, shifts, surroundings, flexible=True, knots=study.budget.knots) if curves else []),
     ]
 
 

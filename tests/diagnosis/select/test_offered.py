@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from greybox_torch.diagnosis.progress import Journal
 from greybox_torch.diagnosis.select import offered as module
 from greybox_torch.diagnosis.select.offered import from_motion, screen_scores
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -45,10 +46,13 @@ def test_fine_curves_along_the_way_stand_beside_the_coarse_ones_where_nothing_ex
     def scored(study, state, every, fits) -> tuple:
         return (tuple(stub(attachment=a, explained=explained[a.mechanism.knots]) for a in every),)
 
+    monkeypatch.setattr(module, "offer_all", lambda *args, **options: None)
     monkeypatch.setattr(module, "_offered", lambda *args: offered["coarse"])
     monkeypatch.setattr(module, "_fine_curves", lambda study: offered["fine"])
     monkeypatch.setattr(module, "_scored", scored)
     model = stub(ports=(Body("cart", speed="v", position="q"),))
-    study = stub(settings=DiagnosisSettings(), problem=stub(model=model), working_on=lambda text: None)
+    study = stub(
+        settings=DiagnosisSettings(), problem=stub(model=model), working_on=lambda text: None, journal=Journal()
+    )
     (found,) = screen_scores(study, stub(effects=effects, current=stub(fits=())), curves=True, fine=False)
     assert [s.attachment for s in found] == [*offered["coarse"], *offered["fine"][: int(there)]]
