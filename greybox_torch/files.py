@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -81,6 +81,14 @@ def write_all(contents: Mapping[Path, str | bytes]) -> None:
                 raise UserError(f"{path}: cannot be written: it is a folder; expected a place for a file")
             temporary = together.enter_context(replacing(path))
             temporary.write_bytes(content.encode() if isinstance(content, str) else content)
+
+
+def remove_all(paths: Iterable[Path]) -> None:
+    """Removes files that no longer belong to what lies beside them, as far as the system lets them go, and folders that are empty then."""
+    for path in paths:
+        with suppress(OSError):
+            path.unlink()
+            path.parent.rmdir()  # only where nothing is left in it
 
 
 def json_text(result: Any) -> str:

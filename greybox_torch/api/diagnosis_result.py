@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from functools import cached_property
@@ -17,7 +17,7 @@ from rich.console import Console
 from greybox_torch import __version__
 from greybox_torch.api.estimated import ByName
 from greybox_torch.api.free_runs import plot_simulated
-from greybox_torch.api.hypotheses import MODEL, hypothesis_files
+from greybox_torch.api.hypotheses import MODEL, hypothesis_files, kept_hypotheses
 from greybox_torch.api.result import Result
 from greybox_torch.api.scores import score_rows, score_table
 from greybox_torch.api.verdict_summary import effect_table, notes, print_verdict, verdict_scores
@@ -27,7 +27,7 @@ from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.pipeline import Diagnosis
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.problem import with_card
-from greybox_torch.files import json_text, write_all
+from greybox_torch.files import json_text
 from greybox_torch.mechanisms.stored import in_layers, stored_effects
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
@@ -146,6 +146,8 @@ class DiagnosisResult(Result):
     def save(self, folder: str | PathLike[str], *, pdf: bool = False) -> tuple[Path, ...]:
         """Write what the command of the same name writes: all of its files or none. Returns their paths.
 
+        What an earlier diagnosis left there and this one does not have is removed: its hypotheses, and its report for print.
+
         Args:
             pdf: the report for print as well, report.pdf.
 
@@ -161,8 +163,11 @@ class DiagnosisResult(Result):
             from greybox_torch.report.pdf.document import render_pdf
 
             contents[where / PRINTED] = render_pdf(self.verdict, self._about(where))
-        write_all(contents)
-        return tuple(contents)
+        return self._written(where, contents)
+
+    def earlier(self, folder: Path) -> Iterable[Path]:
+        """The report for print, and hypotheses that are none any more."""
+        return [folder / PRINTED, *kept_hypotheses(folder)]
 
     def plot(self, experiment: str | None = None) -> Figure:
         """Simulated by each model against measured, of all experiments or of one."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -110,6 +110,10 @@ class FitResult(EstimatedModel):
             **checkpoint_files(folder / MODEL, self._checkpoint()),
             **{folder / f"profile_{name}.png": self._profile_picture(name) for name in self.profiles},
         }
+
+    def earlier(self, folder: Path) -> Iterable[Path]:
+        """Figures of other parameters' profiles."""
+        return [folder / f"profile_{name}.png" for name in self.parameters]
 
     def plot(self, experiment: str | None = None) -> Figure:
         """Simulated before and after against measured, of all experiments or of one."""

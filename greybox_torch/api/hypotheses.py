@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
 SCHEMA = "greybox-hypotheses/1"
 FILE, FOLDER, MODEL = "hypotheses.json", "hypotheses", "model"
+_OF_A_HYPOTHESIS = re.compile(r"\d+-.+\.(json|safetensors)")
 Starts = Mapping[str, Mapping[str, float]]
 
 
@@ -88,6 +90,11 @@ def hypothesis_files(folder: Path, result: DiagnosisResult, checkpoint: Checkpoi
         "findings": list(findings.values()),
     }
     return {**files, folder / FILE: json_text(content)}
+
+
+def kept_hypotheses(folder: Path) -> list[Path]:
+    """The files of the hypotheses that some diagnosis has left in a folder; none that goes by another kind of name."""
+    return [path for path in (folder / FOLDER).glob("*") if _OF_A_HYPOTHESIS.fullmatch(path.name)]
 
 
 def read_hypotheses(folder: Path, model: str | None = None) -> Hypotheses:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping
 from io import StringIO
 from os import PathLike
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
-from greybox_torch.files import json_text, write_all
+from greybox_torch.files import json_text, remove_all, write_all
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -39,6 +40,10 @@ class Result(ABC):
     def files(self, folder: Path) -> dict[Path, str | bytes]:
         """What is to be written to ``folder``, by path."""
 
+    def earlier(self, folder: Path) -> Iterable[Path]:
+        """Files that an earlier result of the same kind may have left in ``folder``; those that this one does not have are to go."""
+        return ()
+
     @abstractmethod
     def plot(self) -> Figure:
         """The result as a figure."""
@@ -62,11 +67,16 @@ class Result(ABC):
     def save(self, folder: str | PathLike[str]) -> tuple[Path, ...]:
         """Write what the command of the same name writes: all of its files or none. Returns their paths.
 
+        What an earlier result of the same kind left there and this one does not have is removed.
+
         Raises:
             UserError: the folder or a file cannot be written.
         """
-        contents = self.files(Path(folder))
+        return self._written(Path(folder), self.files(Path(folder)))
+
+    def _written(self, folder: Path, contents: Mapping[Path, str | bytes]) -> tuple[Path, ...]:
         write_all(contents)
+        remove_all(path for path in self.earlier(folder) if path not in contents)
         return tuple(contents)
 
     def __str__(self) -> str:

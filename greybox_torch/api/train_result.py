@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -109,6 +109,10 @@ class TrainingResult(EstimatedModel):
         if explained is not None and explained.result is not None:
             contents |= checkpoint_files(folder / NAMED_MODEL, self._checkpoint(explained.result))
         return contents
+
+    def earlier(self, folder: Path) -> Iterable[Path]:
+        """The picture, and the model with a law in the network's place."""
+        return [folder / name for name in (FIGURE, f"{NAMED_MODEL}.json", f"{NAMED_MODEL}.safetensors")]
 
     def plot(self, experiment: str | None = None) -> Figure:
         """Simulated by physics, hybrid and named law against measured, of all experiments or of one."""

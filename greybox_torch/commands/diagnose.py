@@ -15,7 +15,7 @@ def run(
     dataset: Path, time_limit: float | None, options: Options, settings: Path | None = None, *, pdf: bool = False
 ) -> None:
     """Diagnoses, writes the verdict, the report and the augmented model (all or nothing), and prints what was found."""
-    task = load_task(dataset, options)
+    task = load_task(dataset, options, writes_model="diagnose")
     own = settings_from_mapping(task.data.diagnosis, task.data.place("[diagnosis]"))
     if settings is not None:
         own = settings_from_mapping(settings_from_file(settings), str(settings), own)

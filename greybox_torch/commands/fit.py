@@ -15,7 +15,7 @@ from greybox_torch.commands.task import load_task
 
 def run(dataset: Path, options: Options, profiled: Sequence[str] = (), starts: int | None = None) -> None:
     """Estimates, and writes fit.json, the checkpoint `model`, and figures of the profiles that were asked for."""
-    task = load_task(dataset, options)
+    task = load_task(dataset, options, writes_model="fit")
     log = Console(stderr=True, highlight=False)
     found = fit(
         task.model,

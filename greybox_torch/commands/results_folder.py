@@ -7,6 +7,21 @@ from pathlib import Path
 
 from greybox_torch.errors import UserError
 
+COMMANDS = {"diagnose": "verdict.json", "fit": "fit.json", "train": "train.json"}
+"""The commands that write a model, model.safetensors and model.json, by what they write beside it."""
+
+
+def others_model(folder: Path, command: str) -> str:
+    """What to warn of where ``folder`` holds the model of another command, whose results would lie beside one that is not theirs."""
+    there = [name for name, file in COMMANDS.items() if name != command and (folder / file).is_file()]
+    if not there or not (folder / "model.json").is_file():
+        return ""
+    named = " and ".join(f"greybox {name} ({COMMANDS[name]})" for name in there)
+    return (
+        f"{folder}: holds results of {named}, whose model (model.json, model.safetensors) this command replaces; expected another folder, "
+        "--out DIR"
+    )
+
 
 def check_folder(folder: Path) -> None:
     """Raises UserError where results could not be written to ``folder``: a file is in the way, or nothing can be written there.

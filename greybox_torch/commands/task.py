@@ -12,7 +12,7 @@ from rich.text import Text
 from greybox_torch.api.arguments import check_device, check_precision, named_model
 from greybox_torch.checking.missing_inputs import missing_inputs
 from greybox_torch.commands.options import Options
-from greybox_torch.commands.results_folder import check_folder
+from greybox_torch.commands.results_folder import check_folder, others_model
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.drafting.contradicted import contradictions
 from greybox_torch.estimate.problem import make_problem
@@ -30,8 +30,11 @@ class Task:
     precision: str = "double"
 
 
-def load_task(dataset: Path, options: Options) -> Task:
+def load_task(dataset: Path, options: Options, *, writes_model: str = "") -> Task:
     """Reads and checks all that the user has given, before anything is computed.
+
+    Args:
+        writes_model: the name of a command that writes a model; it is told whose model it replaces.
 
     Raises:
         UserError: the data set, the model, the device, the precision or the folder for results is not usable, or data set and model do
@@ -47,4 +50,6 @@ def load_task(dataset: Path, options: Options) -> Task:
     log = Console(stderr=True, highlight=False)
     for found in (*contradictions(data.path), *missing_inputs(data, model)):
         log.print(Text(f"warning: {dataset}: {found}", style="yellow"), soft_wrap=True)
+    if writes_model and (replaced := others_model(folder, writes_model)):
+        log.print(Text(f"warning: {replaced}", style="yellow"), soft_wrap=True)
     return Task(data, model, device, folder, precision)

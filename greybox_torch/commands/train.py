@@ -41,7 +41,7 @@ def run(dataset: Path, options: Options, choices: Choices) -> None:
 
     While it runs it keeps `training.safetensors`, which --resume takes up; that is left where it is.
     """
-    task = load_task(dataset, options)
+    task = load_task(dataset, options, writes_model="train")
     settings = TrainingSettings(seed=options.seed, **choices.training)
     # refused before anything is said to be done
     network_at(task.model, choices.net, choices.port, choices.signals, **choices.network)

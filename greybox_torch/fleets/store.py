@@ -13,7 +13,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from greybox_torch.errors import UserError
-from greybox_torch.files import json_text, write_all, write_text
+from greybox_torch.files import json_text, remove_all, write_all, write_text
 from greybox_torch.fleets.job import Job
 from greybox_torch.fleets.row import Row
 from greybox_torch.reading import read_text
@@ -35,8 +35,12 @@ def stored(job: Job, fingerprint: str) -> Row | None:
 
 
 def store(job: Job, row: Row, files: Mapping[Path, str | bytes]) -> None:
-    """Write the results of a diagnosis with their row. Raises UserError where one cannot be written, and then writes none."""
+    """Write the results of a diagnosis with their row. Raises UserError where one cannot be written, and then writes none.
+
+    Rivals of an earlier run that are none any more are removed.
+    """
     write_all({**files, job.folder / ROW: json_text(row.as_json())})
+    remove_all(path for path in (job.folder / RIVALS).glob("*") if path not in files)
 
 
 def store_failure(job: Job, row: Row) -> None:

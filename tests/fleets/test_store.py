@@ -85,6 +85,14 @@ def test_a_row_of_another_form_is_none(job: Job, text: str) -> None:
     assert stored(job, "") is None
 
 
+def test_rivals_of_an_earlier_run_go(job: Job) -> None:
+    first, second = (job.folder / "hypotheses" / f"{k}-rotor-gravity.json" for k in (1, 2))
+    row = Row("pump", str(job.card), "found", fingerprint="abc")
+    store(job, row, {**results(job), first: "{}", second: "{}"})
+    store(job, row, {**results(job), first: "{}"})
+    assert list((job.folder / "hypotheses").iterdir()) == [first]
+
+
 def test_a_failure_leaves_no_earlier_verdict_beside_it(job: Job) -> None:
     rival = job.folder / "hypotheses" / "rival.json"
     store(job, Row("pump", str(job.card), "nothing", fingerprint="abc"), {**results(job), rival: "{}"})
