@@ -20,8 +20,9 @@ from greybox_torch.api.arguments import (
     check_names,
     check_whole,
 )
+from greybox_torch.api.train_range import beyond_learned
 from greybox_torch.api.train_result import TrainingResult
-from greybox_torch.api.train_scores import free_runs_of
+from greybox_torch.api.train_scores import HYBRID, free_runs_of
 from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError, UserError
 from greybox_torch.estimate.problem import Problem, make_problem
@@ -96,7 +97,8 @@ def train(
     found = trained(settings=settings, snapshot=None if snapshot is None else Path(snapshot), resume=resume)
     explanation = _explained(found, trained, count, progress) if explain else None
     progress(Report("scoring", 1.0))
-    return TrainingResult(data, given, found, explanation, free_runs_of(data, given, found, explanation, device))
+    runs = free_runs_of(data, given, found, explanation, device)
+    return TrainingResult(data, given, found, explanation, runs, beyond_learned(data, given, found, runs[HYBRID]))
 
 
 def _check_moving(data: DataSet, problem: Problem) -> None:

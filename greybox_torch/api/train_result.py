@@ -15,7 +15,9 @@ from greybox_torch.api.estimated import EstimatedParameter, estimated_parameters
 from greybox_torch.api.estimated_model import EstimatedModel
 from greybox_torch.api.free_runs import plot_simulated
 from greybox_torch.api.scores import score_table, scores_side_by_side
+from greybox_torch.api.train_advice import train_advice
 from greybox_torch.api.train_json import training_json
+from greybox_torch.api.train_range import Beyond
 from greybox_torch.api.train_scores import START
 from greybox_torch.api.train_summary import parameter_table, print_training, training_sentence
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
@@ -44,7 +46,8 @@ class TrainingResult(EstimatedModel):
 
     ``trained`` says how it was come by, ``explanation`` what the network stands for (None where that was not asked for). ``comparisons``
     are the free runs on all experiments: with the values before ("start"), of the physics alone ("refit"), of the hybrid ("augmented"),
-    and of the model with a law in the network's place ("named"), where one does as well.
+    and of the model with a law in the network's place ("named"), where one does as well. ``beyond``: signals of the network that the
+    validation experiments take out of the range that it was learned over.
     """
 
     stage: ClassVar[str] = "augmented"
@@ -55,6 +58,7 @@ class TrainingResult(EstimatedModel):
     trained: Trained
     explanation: Explanation | None
     comparisons: Mapping[str, Comparison]
+    beyond: tuple[Beyond, ...] = ()
 
     @cached_property
     def model(self) -> GreyBoxModel:
@@ -86,16 +90,22 @@ class TrainingResult(EstimatedModel):
         """The network's own force at local signals (arrays of one shape, in their units), in the unit of the port's force."""
         return self.trained.force(**signals)
 
+    @property
+    def advice(self) -> list[str]:
+        """What the validation experiments say of the network: that it makes the model worse, where it only extrapolates, or nothing."""
+        return [*train_advice(self._scores), *(one.sentence for one in self.beyond)]
+
     def __repr__(self) -> str:
         return f"<training on {self.data.name}: {self.sentence}>"
 
     def content(self, folder: Path) -> dict[str, Any]:
         return training_json(self.data, self.given, self.trained, self._scores, self.explanation) | {
-            "checkpoint": str(folder / MODEL)
+            "validation": {"beyond_learned": [one.as_json() for one in self.beyond], "sentences": self.advice},
+            "checkpoint": str(folder / MODEL),
         }
 
     def show(self, console: Console) -> None:
-        print_training(console, self.data, self.given, self.trained, self._scores, self.explanation)
+        print_training(console, self.data, self.given, self.trained, self._scores, self.explanation, self.advice)
 
     def files(self, folder: Path) -> dict[Path, str | bytes]:
         """The result as JSON, the hybrid as a checkpoint, what was learned as a figure, the model with the law as a checkpoint."""
@@ -140,6 +150,7 @@ class TrainingResult(EstimatedModel):
             notebook.table(*parameter_table(self.trained)),
             *([] if learned is None else [notebook.picture(learned, "force of the network over what it reads")]),
             notebook.table(*score_table(self.data, self._scores)),
+            *(notebook.sentence(line) for line in self.advice),
             notebook.picture(self.plot(), "outputs over time, measured, and simulated by each model"),
         )
 

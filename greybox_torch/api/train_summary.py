@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from rich.console import Console
 from rich.text import Text
 
@@ -14,9 +16,15 @@ from greybox_torch.training import Explanation, Trained
 
 
 def print_training(
-    console: Console, data: DataSet, model: GreyBoxModel, found: Trained, scores: Scores, explained: Explanation | None
+    console: Console,
+    data: DataSet,
+    model: GreyBoxModel,
+    found: Trained,
+    scores: Scores,
+    explained: Explanation | None,
+    advice: Sequence[str] = (),
 ) -> None:
-    """What the network is and what it adds, how the physics moved, and fit and error of every experiment before and after."""
+    """What the network is and what it adds, how the physics moved, fit and error of every experiment before and after, and ``advice``."""
     network = found.hybrid.network
     console.print(Text(f"{data.name}: {model.title}", style="bold"))
     console.print(Text(f"\n{training_sentence(found)}", style="bold"), soft_wrap=True)
@@ -30,7 +38,9 @@ def print_training(
     print_substeps(console, found.result.substeps)
     console.print()
     print_scores(console, data, scores)
-    console.print(Text(f"{found.seconds:.1f} s, {len(found.history)} epochs, seed {found.settings.seed}"))
+    for line in advice:
+        console.print(Text(line, style="yellow"), soft_wrap=True)
+    console.print(Text(f"training took {found.seconds:.1f} s, {len(found.history)} epochs, seed {found.settings.seed}"))
 
 
 def training_sentence(found: Trained) -> str:

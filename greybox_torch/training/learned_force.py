@@ -9,6 +9,7 @@ import numpy as np
 import torch
 
 from greybox_torch.estimate.free_run import FreeRun, visited_states
+from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.uncertainty import uncertainty
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import Signals
@@ -56,17 +57,26 @@ def learned_force(found: Trained) -> LearnedForce:
     return LearnedForce(signals, force, slope, _covariances(found))
 
 
-def visited_signals(found: Trained) -> dict[str, np.ndarray]:
-    """What the network reads (N,) along the free run of the estimation experiments."""
-    problem, model = found.result.problem, found.result.problem.model
+def visited_signals(
+    found: Trained, elsewhere: Problem | None = None, most: int = MOST_SAMPLES
+) -> dict[str, np.ndarray]:
+    """What the network reads (N,) along the free run of the estimation experiments, at no more than so many samples.
+
+    Args:
+        elsewhere: other experiments of the hybrid, from their start states.
+    """
+    problem, simulator = found.result.problem, found.course.simulator
+    if elsewhere is not None:
+        problem, simulator = elsewhere, simulator.with_substeps(found.result.substeps)
+    model = problem.model
     assert isinstance(model, AugmentedModel)
     records = problem.driving_records
-    states = np.concatenate(visited_states(problem, found.course.simulator))
+    states = np.concatenate(visited_states(problem, simulator))
     spans = [records.span(e) for e in range(len(records.lengths))]
     index = np.concatenate([np.arange(span.start, span.stop) for span in spans])
-    kept = slice(None, None, max(1, -(-len(index) // MOST_SAMPLES)))
+    kept = slice(None, None, max(1, -(-len(index) // most)))
     x, u = model.named_signals(torch.as_tensor(states[kept].T), torch.as_tensor(records.u[:, index[kept]]))
-    local = model.local_signals(found.hybrid.network, x, u, found.result.problem.parameter_tensors)
+    local = model.local_signals(found.hybrid.network, x, u, problem.parameter_tensors)
     shape = index[kept].shape
     return {n: np.broadcast_to(np.asarray(local[n], dtype=float), shape) for n in found.hybrid.network.mechanism.needs}
 
