@@ -171,7 +171,7 @@ def test_nothing_is_overwritten(folder: Path) -> None:
     ("name", "content", "message"),
     [
         ("none.csv", None, "no such file"),
-        ("empty.csv", "", "no line of numbers"),
+        ("empty.csv", "", "is empty (0 bytes); expected a recording"),
         ("words.csv", "a,b\nc,d\n", "no line of numbers"),
         ("a.xyz", "1", 'no reader for files ending in ".xyz"'),
         ("a.npz", "1", "not a NumPy archive"),

@@ -100,6 +100,7 @@ def guarded(path: Path, table: Mapping[str, Callable[..., _Found]]) -> Callable[
     if suffix not in table:
         raise UserError(f'{path}: no reader for files ending in "{path.suffix}"; expected one of {", ".join(table)}')
     _check_there(path)
+    _check_not_empty(path)
 
     def call(*arguments: object) -> _Found:
         try:
@@ -134,7 +135,17 @@ def _check_there(path: Path) -> None:
             raise
         beside = [other.name for other in path.parent.iterdir()] if path.parent.is_dir() else []
         hint = did_you_mean(path.name, beside[:2000])
-        raise UserError(f"{path}: no such file{hint}; expected a recording, named relative to the data card") from None
+        raise UserError(f"{path}: no such file{hint}; expected a recording (a card names it relative to itself)") from None
+
+
+def _check_not_empty(path: Path) -> None:
+    """Raises UserError where nothing was ever written to the file, whatever its format."""
+    try:
+        empty = path.stat().st_size == 0
+    except OSError:  # reading it will say why
+        return
+    if empty:
+        raise UserError(f"{path}: is empty (0 bytes); expected a recording")
 
 
 def _said(error: Exception) -> str:

@@ -73,6 +73,8 @@ def layout_of(path: Path, file: TextIO, columns: Collection[str]) -> Layout:
                 f"{path}, line {len(head) + 1}: has more than {_LONGEST_LINE} characters; expected lines of samples"
             )
         head.append(line)
+    if not any(line.strip() for line in head):
+        raise UserError(f"{path}: has nothing but blank lines; expected a line of column names, and lines of samples")
     wanted = [column for column in columns if not _POSITION.fullmatch(column)]
     numbered = {column: int(m[1]) - 1 for column in columns if (m := _POSITION.fullmatch(column))}
     found = _named(head, wanted, numbered) if wanted else _numbered(head, numbered)

@@ -64,7 +64,8 @@ def test_reads(tmp_path: Path, text: str, u: list[float], y: list[float]) -> Non
         ("u,y\n1,2\n3\n", "a.csv, line 3: found 1 cell(s), expected 2"),
         ("u,u,y\n1,2,3\n", 'a.csv, line 1: 2 columns are named "u"; expected one'),
         ("U;Y\n1;2\n", 'no column "u" (did you mean "U"?); found U, Y'),
-        ("", 'no column "u"; found none'),
+        ("", "a.csv: has nothing but blank lines; expected a line of column names, and lines of samples"),
+        (" \n\n", "a.csv: has nothing but blank lines"),
         ('u,y\n"' + "1" * 140000 + '",2\n', "a.csv, line 2: not comma-separated values"),
     ],
 )

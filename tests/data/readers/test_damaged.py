@@ -47,6 +47,13 @@ def refused(path: Path, message: str) -> None:
     assert path.name in str(error.value)
 
 
+@pytest.mark.parametrize("suffix", [".csv", ".mat", ".npz", ".h5", ".parquet", ".json"])
+def test_a_file_of_no_bytes(tmp_path: Path, suffix: str) -> None:
+    """Seen: a log that was never written, told as a column that the card has wrong."""
+    (tmp_path / f"a{suffix}").touch()
+    refused(tmp_path / f"a{suffix}", r"is empty \(0 bytes\); expected a recording$")
+
+
 @pytest.mark.usefixtures("little_memory")
 @pytest.mark.parametrize(
     "shape", ["(100000000000,)", f"({10**40},)", "(100000, 100000)", "(-5,)", "(2.5,)", "(None,)", "(10,"]

@@ -155,7 +155,7 @@ def test_records(tmp_path: Path, name: str) -> None:
 @pytest.mark.parametrize(
     ("name", "text", "message"),
     [
-        ("a.json", "", "not JSON"),
+        ("a.json", " ", "not JSON"),
         ("a.json", "[" * 100_000, "not JSON: nested too deeply"),
         ("a.json", "3", "holds neither an object nor a list"),
         ("a.json", "[1, 2]", "entry 0 .*: found 1, expected a record"),
