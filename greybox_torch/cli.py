@@ -238,3 +238,7 @@ def main() -> None:
         app()
     finally:
         gc.freeze()  # to look for circles among all that is left takes Python half a second, and the process ends anyway
+
+
+if __name__ == "__main__":
+    main()

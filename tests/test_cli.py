@@ -52,6 +52,13 @@ def test_version() -> None:
     assert (result.exit_code, result.stdout) == (0, greybox_torch.__version__ + "\n")
 
 
+@pytest.mark.parametrize("module", ["greybox_torch", "greybox_torch.cli"])
+def test_run_as_a_module(module: str) -> None:
+    """Seen: `python -m greybox_torch.cli` printed nothing, and ended with 0."""
+    result = subprocess.run([sys.executable, "-m", module, "--version"], capture_output=True, text=True, check=True)
+    assert (result.stdout, result.stderr) == (greybox_torch.__version__ + "\n", "")
+
+
 @pytest.mark.parametrize("arguments", [["--help"], ["inspect", "--help"]])
 def test_help_loads_nothing_heavy(arguments: list[str]) -> None:
     """That it answers at once is for a benchmark to say; what would keep it is seen here."""
