@@ -8,7 +8,7 @@ from greybox_torch.api.scores import Scores
 from greybox_torch.api.train_scores import HYBRID, NAMED, PHYSICS
 from greybox_torch.estimate.comparison import mean_fit
 
-WORSE = 0.05
+WORSE = 0.01
 """Points of the mean fit in % from which a model simulates worse than another."""
 
 
