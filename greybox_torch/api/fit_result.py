@@ -15,7 +15,7 @@ from greybox_torch.api.estimated import EstimatedParameter, EstimatedStart, esti
 from greybox_torch.api.estimated_model import EstimatedModel
 from greybox_torch.api.fit_advice import fit_advice
 from greybox_torch.api.fit_json import estimation_json, identifiability_json, profile_json, status
-from greybox_torch.api.fit_summary import parameter_table, print_estimate, warnings
+from greybox_torch.api.fit_summary import beginnings, parameter_table, print_estimate, warnings
 from greybox_torch.api.free_runs import plot_simulated
 from greybox_torch.api.scores import print_scores, score_table, scores_side_by_side
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
@@ -100,6 +100,8 @@ class FitResult(EstimatedModel):
         print_estimate(console, self.estimation, self.profiles)
         console.print()
         print_scores(console, self.data, self._scores)
+        for line in beginnings(self.estimation):
+            console.print(Text(line), soft_wrap=True)
         for line in self._advice:
             console.print(Text(line, style="yellow"), soft_wrap=True)
 
@@ -127,7 +129,7 @@ class FitResult(EstimatedModel):
             *(notebook.sentence(line) for line in warnings(self.estimation)),
             notebook.table(*parameter_table(self.estimation)),
             notebook.table(*score_table(self.data, self._scores)),
-            *(notebook.sentence(line) for line in self._advice),
+            *(notebook.sentence(line) for line in (*beginnings(self.estimation), *self._advice)),
             notebook.picture(self.plot(), "outputs over time, measured, and simulated before and after"),
         )
 

@@ -35,11 +35,12 @@ def print_estimate(console: Console, found: Estimation, profiles: Mapping[str, P
 
 def statistics(found: Estimation) -> dict[str, str]:
     """How the estimation ended, in words."""
+    several = " (each output's error over its spread)" if len(found.problem.model.outputs) > 1 else ""
     return {
         "termination": found.termination.value,
         "iterations": str(found.iterations),
         "evaluations": str(found.evaluations),
-        "mean squared error": f"{found.mse:.6g}",
+        "mean squared error": f"{found.mse:.6g}{several}",
         "final prediction error": f"{found.fpe:.6g}",
         "samples": str(found.samples),
     }
@@ -93,6 +94,8 @@ def warnings(found: Estimation) -> list[str]:
     """What is doubtful about the estimate, in sentences."""
     lost = [name for name, deviation in found.parameter_deviations().items() if deviation == float("inf")]
     lines = []
+    if not found.problem.free.any():
+        lines.append("All parameters are fixed, on the card or in the model: none is estimated.")
     if lost:
         lines.append(
             f"The data do not determine {brief(lost)}, alone or together: fix one of them, or excite the machine more."
@@ -105,6 +108,17 @@ def warnings(found: Estimation) -> list[str]:
                 "something that drives the parameter there, or the data hardly determine it beside those that it is correlated with."
             )
     return lines
+
+
+def beginnings(found: Estimation) -> list[str]:
+    """Where the free runs begin, where that is estimated: what a comparison of the same model does otherwise. A sentence, or none."""
+    if not found.problem.initial_free.any():
+        return []
+    names = brief(found.problem.records.names)
+    return [
+        f"Refit of {names}: begun with the start states above, which the whole experiment gives. All else is begun with start states "
+        "estimated on the first tenth; so is everything in `greybox compare`, whose fits may therefore differ."
+    ]
 
 
 def _print_profiles(console: Console, profiles: Mapping[str, Profile]) -> None:

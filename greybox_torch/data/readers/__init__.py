@@ -135,7 +135,9 @@ def _check_there(path: Path) -> None:
             raise
         beside = [other.name for other in path.parent.iterdir()] if path.parent.is_dir() else []
         hint = did_you_mean(path.name, beside[:2000])
-        raise UserError(f"{path}: no such file{hint}; expected a recording (a card names it relative to itself)") from None
+        raise UserError(
+            f"{path}: no such file{hint}; expected a recording (a card names it relative to itself)"
+        ) from None
 
 
 def _check_not_empty(path: Path) -> None:
