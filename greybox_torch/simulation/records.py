@@ -101,12 +101,17 @@ def check_channels(dataset: DataSet, model: GreyBoxModel) -> None:
                 f"{dataset.place('[channels]')} {name}: unit is '{unit}', model {model.title} expects '{signal.unit}'; "
                 f"{_other_unit(dataset, unit, signal.unit)}"
             )
-    for name in dataset.channels:
-        if name not in declared:
-            raise UserError(
-                f"{dataset.place('[channels]')} {name}: model {model.title} has no such signal; "
-                f"expected one of {', '.join(declared)}, or no such channel"
-            )
+    strange = [name for name in dataset.channels if name not in declared]
+    if strange:
+        of_a_frame = (
+            '; which columns of a frame are channels, columns = {"channel": "column", …} says'
+            if dataset.path is None
+            else ""
+        )
+        raise UserError(
+            f"{dataset.place('[channels]')} {', '.join(strange)}: model {model.title} has no such signal; "
+            f"expected one of {', '.join(declared)}, or no such channel{of_a_frame}"
+        )
     check_controller(dataset.controller, model, dataset.place("[controller]"))
 
 

@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pandas
 import pytest
 
@@ -128,3 +129,18 @@ def test_loading_does_not_need_the_diagnosis(folder: Path) -> None:
     )
     result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert result.stdout.strip() == "[]"
+
+
+def test_a_frame_with_further_columns_is_told_how_to_leave_them_out() -> None:
+    """Seen: a frame with the columns of the log beside those converted; of three that are no signals one was told, and not what to do."""
+    samples = {name: np.linspace(0.0, 1.0, 30) for name in ("voltage", "speed", "U_mot", "n_rpm")}
+    units = {"voltage": "V", "speed": "rad/s"}
+    made = gt.Recording.from_dataframe("steps", samples, sample_time=0.01, units=units)
+    with pytest.raises(
+        gt.UserError, match=r"channels U_mot, n_rpm: model Motor has no such signal; .*, columns = \{"
+    ) as error:
+        gt.simulate(Motor(), gt.DataSet([made]))
+    assert "frame" in str(error.value)
+    named = {"voltage": "voltage", "speed": "speed"}
+    made = gt.Recording.from_dataframe("steps", samples, sample_time=0.01, units=units, columns=named)
+    assert "steps" in gt.simulate(Motor(), gt.DataSet([made]))

@@ -23,7 +23,7 @@ def line(number: int, text: str) -> str:
 
 
 RECORDINGS = [
-    ("", 'no column "u"; found none'),
+    ("", "a.csv: is empty (0 bytes); expected a recording"),
     ("u,y\n", "has 0 samples; expected at least 10"),
     ("\n".join(LINES[:10]), "has 9 samples; expected at least 10"),
     ("u\n1\n2\n", 'no column "y"; found u'),
