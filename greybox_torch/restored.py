@@ -100,7 +100,7 @@ def _plain_model(path: Path, checkpoint: Checkpoint, model: GreyBoxModel | str |
     if defined is None:
         raise UserError(
             f"checkpoint {path}: is of the model {checkpoint.title} in {checkpoint.model}; a model file is run only where you name it "
-            "yourself, with --model (in Python: model=)"
+            "yourself, with --model, or --dataset of a command that has it (in Python: model=)"
         )
     return defined()
 

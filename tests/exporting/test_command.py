@@ -56,6 +56,7 @@ def test_a_model_is_named_by_the_user(bench: Path, tmp_path: Path) -> None:
     done = CliRunner().invoke(app, ["export", stem, "--to", "c"])
     assert done.exit_code == 2
     assert "a model file is run only where you name it yourself" in done.stderr
+    assert "or --dataset of a command that has it" in done.stderr
     named = ["--model", f"{bench / 'my_motor.py'}:Motor", "--out", str(tmp_path / "out"), "--name", "drive"]
     done = CliRunner().invoke(app, ["export", stem, "--to", "c", *named])
     assert done.exit_code == 0, done.output
