@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,12 @@ from greybox_torch.checking.missing_inputs import MissingInput, missing_inputs
 from greybox_torch.checking.not_finite import not_finite_at_start
 from greybox_torch.checking.source import source_of
 from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.beliefs import beliefs_from_mapping
+from greybox_torch.diagnosis.settings import settings_from_mapping
 from greybox_torch.drafting.contradicted import Contradiction, contradictions
 from greybox_torch.errors import ArgumentError, Kind, UserError
 from greybox_torch.estimate.problem import make_problem
+from greybox_torch.experiment_design.limits import limits_of
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.systems import model_class
 from greybox_torch.systems.user_code import users_code
@@ -28,7 +32,7 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
 
     Args:
         model: an object, its class, or a name as :func:`greybox_torch.load_model` takes it.
-        data: a data set whose channels, parameters and start states are to be compared with the model's.
+        data: a data set whose channels, parameters, start states, beliefs, settings and limits are to be compared with the model's.
 
     Raises:
         UserError: no such model, or a file that raises when it is run. What is wrong with the model itself is among the findings.
@@ -80,7 +84,26 @@ def _with_data(data: DataSet, model: GreyBoxModel) -> tuple[list[Finding], dict[
     try:
         problem = make_problem(data, model, data.recordings)
     except UserError as error:
-        found, _, write = str(error).removeprefix(f"{data.path}: ").partition("; expected ")
-        return [Finding("error", "card", found, write or "what fits the model", data.path)], {}
+        return [_of_the_card(error, data)], {}
     values = problem.values_by_name
-    return list(not_finite_at_start(model, source_of(type(model)), values)), values
+    return [*not_finite_at_start(model, source_of(type(model)), values), *_tables(data, model)], values
+
+
+def _tables(data: DataSet, model: GreyBoxModel) -> list[Finding]:
+    """What `greybox diagnose` and `greybox design` would refuse of the card's tables for them."""
+    found = []
+    for read in (
+        partial(beliefs_from_mapping, data.beliefs, model, data.place("[beliefs]")),
+        partial(settings_from_mapping, data.diagnosis, data.place("[diagnosis]")),
+        partial(limits_of, data, model, data.limits, data.place("[limits]")),
+    ):
+        try:
+            read()
+        except UserError as error:
+            found.append(_of_the_card(error, data))
+    return found
+
+
+def _of_the_card(error: UserError, data: DataSet) -> Finding:
+    found, _, write = str(error).removeprefix(f"{data.path}: ").partition("; expected ")
+    return Finding("error", "card", found, write or "what fits the model", data.path)

@@ -74,11 +74,13 @@ def limits_of(
     """
     own = {s.name for s in model.plain.states}
     inputs, outputs = [s.name for s in model.inputs], [s.name for s in model.outputs]
-    known = [*inputs, *outputs, *sorted(own), SECONDS]
+    known = list(
+        dict.fromkeys([*inputs, *outputs, *sorted(own), SECONDS])
+    )  # an output may be called as the state that it shows
     for name in given:
         if name not in known:
             raise UserError(
-                f"{place} {name}: no input, output or state is named so{did_you_mean(name, known)}; expected {', '.join(known)}"
+                f"{place} {name}: no input, output or state is named so{did_you_mean(name, known)}; expected one of {', '.join(known)}"
             )
     recorded = max(float(r.time[-1] - r.time[0]) + r.sample_time for r in data.recordings)
     seconds = _positive(given.get(SECONDS, recorded), f"{place} {SECONDS}")
@@ -107,7 +109,7 @@ def _range(entry: Any, place: str, default: Range | None) -> Range:
     lower = _number(entry.get("lower", -math.inf if default is None else default.lower), f"{place}, lower")
     upper = _number(entry.get("upper", math.inf if default is None else default.upper), f"{place}, upper")
     if not lower < upper:
-        raise UserError(f"{place}: lower = {lower:g} is not below upper = {upper:g}")
+        raise UserError(f"{place}: lower = {lower:g} is not below upper = {upper:g}; expected a range, lower first")
     return Range(lower, upper, _positive(entry.get("rate", math.inf), f"{place}, rate"))
 
 
