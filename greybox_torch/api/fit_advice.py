@@ -26,8 +26,9 @@ def fit_advice(scores: Scores) -> str | None:
         return None  # of a machine at rest, or unstable by itself, this says nothing
     if after <= 0.0:
         return (
-            f"The estimate simulates the {on} experiments no better than a constant would (mean fit {after:.3g} %): the model lacks "
-            f"something, or no free run follows this machine for long. {DIAGNOSE}"
+            f"The estimate simulates the {on} experiments no better than a constant would (mean fit {after:.3g} %): a column has another "
+            "sign, unit or meaning than the card says (`greybox inspect` draws them), the model lacks something, or no free run follows "
+            f"this machine for long. {DIAGNOSE}"
         )
     if np.isfinite(before) and after < before - WORSE:
         return (

@@ -35,6 +35,9 @@ def test_an_estimate_that_predicts_worse_than_its_start_is_said_to() -> None:
 def test_a_model_that_cannot_follow_the_machine_is_said_to() -> None:
     told = said((-900.0,), (-186.0,))
     assert told is not None and "no better than a constant would (mean fit -186 %)" in told
+    assert "another sign, unit or meaning than the card says (`greybox inspect` draws them)" in told, (
+        "seen: a voltage of the wrong sign"
+    )
 
 
 def test_of_a_machine_whose_free_runs_overflow_nothing_is_said() -> None:
