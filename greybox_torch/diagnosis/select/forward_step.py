@@ -15,6 +15,7 @@ from greybox_torch.diagnosis.refit.rank import rank
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, sound
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
 from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist, with_card, with_motion
+from greybox_torch.diagnosis.select.bent_model import unbent_first
 from greybox_torch.diagnosis.select.choice import as_unsure_as_a_name, chosen, least_gain, part_of_a_curve
 from greybox_torch.diagnosis.select.compare import Comparison, compare
 from greybox_torch.diagnosis.select.finer_curve import with_finer_curve, with_tied_curves_finer
@@ -99,6 +100,7 @@ def _take(study: Study, state: SearchState, screened: Screened, compared: Compar
         paying = [r for r in paying if completes(r.fitted, settings)]
     if state.has_curve:
         paying = [r for r in paying if completes(r.fitted, settings) or _more_than_a_curve_lacks(state, r, settings)]
+    paying = unbent_first(paying, settings)
     led = chosen([r for r in paying if not r.unknown or substantial(study, state, r)], state.plain, settings)
     if led is not None and part_of_a_curve(led, paying, settings):
         led = None

@@ -10,7 +10,7 @@ import pytest
 
 from greybox_torch.diagnosis.refit.rank import rank
 from greybox_torch.diagnosis.screen.shortlist import Candidate, with_card
-from greybox_torch.diagnosis.select.bent_model import from_the_card, moved_far, narrowed
+from greybox_torch.diagnosis.select.bent_model import from_the_card, moved_far, narrowed, unbent_first
 from greybox_torch.diagnosis.select.offered import from_card
 from greybox_torch.mechanisms.actuator import ActuatorDeadzone
 from greybox_torch.mechanisms.attachment import attach
@@ -63,6 +63,29 @@ def test_a_parameter_far_from_what_it_began_as_is_bent(dead_zone_search, factor:
     problem = dead_zone_search.state.plain.problem
     values = problem.expected * np.where(np.arange(len(problem.values)) == np.flatnonzero(problem.free)[0], factor, 1.0)
     assert moved_far(problem.with_values(values), dead_zone_search.study.settings.bent_parameter) == far
+
+
+@pytest.mark.parametrize(
+    ("whole", "gain", "first"),
+    [(True, 1.13, "arm"), (True, 0.9, "gearbox"), (False, 1.13, "gearbox")],
+    ids=["nearly as far", "not as far", "bent as well"],
+)
+def test_a_law_that_bends_the_machine_goes_after_one_that_comes_nearly_as_far(
+    dead_zone_search, stub, whole: bool, gain: float, first: str
+) -> None:
+    """Seen: an arm's friction told at its gearbox (0.97), with the spring between them thirty thousand times too soft."""
+    problem, settings = dead_zone_search.state.plain.problem, dead_zone_search.study.settings
+    factors = np.where(np.arange(len(problem.values)) == np.flatnonzero(problem.free)[0], 3e-5, 1.0)
+    bent = problem.with_values(problem.expected * factors)
+    unbent = problem.with_values(problem.expected) if whole else bent
+    leader = stub(at="gearbox", unknown=False, gain=1.16, fitted=stub(problem=bent))
+    curve = stub(at="curve", unknown=True, gain=1.15, fitted=stub(problem=unbent))
+    rival = stub(at="arm", unknown=False, gain=gain, fitted=stub(problem=unbent))
+    ranked = [leader, curve, rival]
+    found = unbent_first(ranked, settings)
+    assert found[0].at == first and {r.at for r in found} == {r.at for r in ranked} and len(found) == 3
+    assert unbent_first([curve, leader, rival], settings) == [curve, leader, rival], "a curve leads"
+    assert unbent_first([], settings) == []
 
 
 def test_curves_are_offered_around_the_card_where_curves_are(dead_zone_search) -> None:
