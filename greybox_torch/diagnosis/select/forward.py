@@ -17,6 +17,7 @@ from greybox_torch.diagnosis.select.finer_steps import in_finer_steps
 from greybox_torch.diagnosis.select.flexed import flexed
 from greybox_torch.diagnosis.select.forward_step import forward_step, little_is_left, take_best
 from greybox_torch.diagnosis.select.memory import completed_by_memory
+from greybox_torch.diagnosis.select.memory_for_lags import with_memory_for_lags
 from greybox_torch.diagnosis.select.remaining import completes, little_things_are_missing
 from greybox_torch.diagnosis.select.richer import richer_instead, with_earlier_law_richer, with_richer_form
 from greybox_torch.diagnosis.select.state import SearchState
@@ -43,6 +44,7 @@ def take_effects(
     while len(state.effects) < study.budget.most_effects and hopeful(state) and not _done(study, state):
         if curves:
             state = yield from completed_by_memory(study, state)
+            state = yield from with_memory_for_lags(study, state)
         if _done(study, state):
             break
         if curves and little_things_are_missing(study, state):

@@ -31,7 +31,7 @@ def completed_by_memory(study: Study, state: SearchState) -> Stage[SearchState]:
     """
     if state.memory is not None or len(state.effects) < study.budget.names_before_memory or not _asked(study, state):
         return state
-    alone = _linear(study, state.at(state.plain), state)
+    alone = linear_residual(study, state.at(state.plain), state)
     state = replace(state, plain=alone.plain, memory=alone)
     if alone.took_one and completes(alone.current, study.settings) and _goes_farther(study, state, alone):
         state = _in_place(state, alone)
@@ -43,7 +43,7 @@ def with_memory(study: Study, state: SearchState) -> Stage[SearchState]:
     """The state with an unknown that remembers, in the place of what was found or beside it, where that pays; else as it is."""
     if not _asked(study, state):
         return state
-    alone = state.memory or _linear(study, state.at(state.plain), state)
+    alone = state.memory or linear_residual(study, state.at(state.plain), state)
     much_is_left = far_above_noise(state.current, study.settings)
     alone = _curved_if_farther(study, alone, state) if much_is_left else alone
     state = replace(state, plain=alone.plain, memory=alone)
@@ -51,7 +51,7 @@ def with_memory(study: Study, state: SearchState) -> Stage[SearchState]:
         state = _in_place(state, alone)
         yield state
     elif state.effects and not state.has_curve and len(state.effects) < study.budget.most_effects:
-        beside = _linear(study, state, state)
+        beside = linear_residual(study, state, state)
         beside = _curved_if_farther(study, beside, state) if much_is_left else beside
         if beside.took_one and completes(beside.current, study.settings):
             state = beside
@@ -88,7 +88,7 @@ def _goes_farther(study: Study, state: SearchState, alone: SearchState) -> bool:
     return not state.effects or (much and farther > reached + settings.curve_margin)
 
 
-def _linear(study: Study, state: SearchState, standing: SearchState) -> SearchState:
+def linear_residual(study: Study, state: SearchState, standing: SearchState) -> SearchState:
     """The step from a state to a linear residual, which has to come as far as what stands."""
     return result_of(_step(study, state, standing))
 

@@ -95,7 +95,7 @@ def test_it_takes_the_place_of_a_name_that_leaves_more(
     dragged: Begun, found: SearchState, named: SearchState, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The name is kept at hand, for held-out experiments to prefer it; so is one that had its place before, of a curve."""
-    monkeypatch.setattr(memory, "_linear", lambda study, state, *rest: replace(found, named=None))
+    monkeypatch.setattr(memory, "linear_residual", lambda study, state, *rest: replace(found, named=None))
     for standing, names in ((named, named), (replace(named, named=dragged.state), dragged.state)):
         instead = result_of(with_memory(dragged.study, standing))
         assert instead.effects == found.effects and instead.memory is not None
@@ -105,7 +105,7 @@ def test_it_takes_the_place_of_a_name_that_leaves_more(
 def test_where_it_comes_little_farther_the_name_stands_and_it_is_the_ceiling(
     dragged: Begun, found: SearchState, named: SearchState, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(memory, "_linear", lambda study, state, *rest: state if state.effects else found)
+    monkeypatch.setattr(memory, "linear_residual", lambda study, state, *rest: state if state.effects else found)
     monkeypatch.setattr(memory, "_curved_if_farther", lambda study, linear, to_beat: linear)
     strict = replace(dragged.study, settings=replace(dragged.study.settings, curve_margin=50.0))
     kept = result_of(with_memory(strict, named))
