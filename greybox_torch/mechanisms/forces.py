@@ -50,6 +50,7 @@ class ConstantBias(LinearLaw):
 
     name = "constant_bias"
     kinds = ("body", "balance")
+    akin = ("input_bias",)
     nature = "a constant offset"
     explanation = "A constant force acts (offset of an amplifier, unbalanced weight, preload)."
     source = "A. Janot, M. Gautier, M. Brunot, Data set and reference models of EMPS, 2019"
