@@ -134,7 +134,7 @@ def compare(
 def residuals(
     dataset: DataSetFile,
     checkpoint: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Parameter values of a fit instead of the start values.")
+        Path | None, typer.Option(metavar="FILE", help="Results of fit, train or diagnose, in the place of the start values.")
     ] = None,
     model: Model = None,
     out: Out = None,

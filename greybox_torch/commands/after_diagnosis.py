@@ -45,7 +45,7 @@ def export(
     to: Annotated[str, typer.Option(metavar="c|torch|fmu|mjcf|urdf", help="What to export to.")],
     dataset: Annotated[
         Path | None,
-        typer.Option(metavar="DATASET.toml", help="Names the model; integration steps are what its recordings need."),
+        typer.Option(metavar="DATASET.toml", help="Card that names the model; its recordings set the integration step."),
     ] = None,
     model: Model = None,
     name: Annotated[
