@@ -86,7 +86,7 @@ def fit(
     dataset: DataSetFile,
     profile: Annotated[
         list[str] | None,
-        typer.Option(metavar="PARAMETER", help="Also its profile likelihood: 95 % interval and figure. Repeatable."),
+        typer.Option(metavar="PARAMETER", help="Add its profile likelihood: 95 % interval, figure. Repeatable."),
     ] = None,
     starts: Annotated[
         int | None,
@@ -94,7 +94,7 @@ def fit(
             min=1,
             max=4096,
             metavar="N",
-            help="Start values to try, drawn around those given.",
+            help="How many start values to try, drawn around those given.",
             show_default="those given; many where they are poor",
         ),
     ] = None,
@@ -134,7 +134,7 @@ def compare(
 def residuals(
     dataset: DataSetFile,
     checkpoint: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Parameter values of a fit instead of the start values.")
+        Path | None, typer.Option(metavar="FILE", help="Results of fit, train or diagnose, not the start values.")
     ] = None,
     model: Model = None,
     out: Out = None,
@@ -154,7 +154,7 @@ def diagnose(
     dataset: DataSetFile,
     time_limit: Annotated[
         float | None,
-        typer.Option(min=1.0, metavar="SECONDS", help="When the best answer found so far is to stand."),
+        typer.Option(min=1.0, metavar="SECONDS", help="After this time the best answer so far is given."),
     ] = None,
     settings: Settings = None,
     model: Model = None,
@@ -177,36 +177,36 @@ def train(
         str,
         typer.Option(
             metavar="friction|residual|memory",
-            help="A body's friction, any extra force at a port, or one that remembers.",
+            help="A body's friction, any extra force at a port, or a force with memory.",
         ),
     ] = "friction",
     port: Annotated[
-        str | None, typer.Option(metavar="PORT", help="Where it acts.", show_default="the driving body")
+        str | None, typer.Option(metavar="PORT", help="Where the network acts.", show_default="the first body")
     ] = None,
     signals: Annotated[
         str | None,
-        typer.Option(metavar="A,B", help="What it reads at the port.", show_default="speed; deflection,rate; level; …"),
+        typer.Option(metavar="A,B", help="Signals that it reads.", show_default="speed; deflection,rate; level; …"),
     ] = None,
     units: Annotated[int, typer.Option(min=1, max=256, help="Hidden units of the network.")] = 8,
     odd: Annotated[bool, typer.Option(help="The same friction in both directions.")] = True,
-    dissipative: Annotated[bool, typer.Option(help="Friction that never drives, whatever the weights.")] = True,
+    dissipative: Annotated[bool, typer.Option(help="Friction that always opposes the motion.")] = True,
     memories: Annotated[int, typer.Option(min=1, max=4, help="Hidden states of a network with memory.")] = 1,
     gradient: Annotated[
         str,
-        typer.Option(metavar="tangents|recomputation|odeint_adjoint", help="How a gradient is computed."),
+        typer.Option(metavar="tangents|recomputation|odeint_adjoint", help="How gradients are computed."),
     ] = "tangents",
     epochs: Annotated[int, typer.Option(min=1, help="Most passes over the windows of each length.")] = 120,
     freeze_physics: Annotated[
         bool, typer.Option("--freeze-physics", help="Keep the physical parameters as estimated without the network.")
     ] = False,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with the training that DIR holds.")] = False,
-    tensorboard: Annotated[bool, typer.Option("--tensorboard", help="Log the course to DIR/tensorboard.")] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue the interrupted training in DIR.")] = False,
+    tensorboard: Annotated[bool, typer.Option("--tensorboard", help="Log the training to DIR/tensorboard.")] = False,
     explain: Annotated[
         bool, typer.Option(help="Compare what was learned with every law, and put the nearest in its place.")
     ] = True,
     ensemble: Annotated[
         int,
-        typer.Option(min=1, metavar="N", help="Trainings, with seeds from --seed on, that the curve's band is from."),
+        typer.Option(min=1, metavar="N", help="Number of trainings, seeds from --seed on, for the curve's band."),
     ] = 1,
     model: Model = None,
     out: Out = None,

@@ -25,8 +25,8 @@ _COLUMNS = ["kind", "name", "unit", "value", "moves"]
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CheckResult(Result):
-    """``findings`` say where, what and what to write instead, errors first; ``usable`` is False where one is an error,
-    of the model or of the card.
+    """``findings`` say where something is wrong, what it is, and what to write instead, errors first; ``usable`` is
+    False where one is an error, of the model or of the card.
 
     ``compiled`` is False where equations work but have no compiled form, which makes a diagnosis far too slow. ``values``: of parameters,
     where a data card was given; those declared otherwise.

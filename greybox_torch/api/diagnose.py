@@ -40,16 +40,17 @@ def diagnose(
 ) -> DiagnosisResult:
     """Find what physics the model leaves out: whether, where it acts, what it is, how sure that is, and the model with it.
 
-    Choosing uses the experiments of role "estimation"; those of role "validation" can only take a finding back, or show that more is
-    needed to choose with.
+    Choosing uses the experiments of role "estimation". Those of role "validation" judge: they can take a finding back.
+    One of them is used for choosing too where it shows what the others do not; the report says so.
 
     Args:
         model: searched from the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else the
             declared ones. It stays as it is; the result's ``model`` is a copy with the effects that were found.
-        time_limit: seconds after which the best answer so far stands, with what was not tried any more. Only what no answer can be without
-            takes longer where it has to: the fit of the model as it stands, and the comparison of the result with all experiments.
-        settings: the thresholds that it decides by; by default what the card's table [diagnosis] says, else the defaults.
-        budget: how much it may compute; likewise.
+        time_limit: seconds after which the best answer so far is given, with a list of what was not tried. Only two
+            steps may take longer, as no answer is possible without them: the fit of the model as it stands, and the
+            comparison of the result with all experiments.
+        settings: the thresholds of its decisions; by default those of the card's table [diagnosis], else the defaults.
+        budget: how much it may compute; by default likewise.
         beliefs: what is known beforehand, by "port/mechanism" (* for any): "likely", "unlikely", or a probability; 0 takes a hypothesis out
             of the search. By default what the card's table [beliefs] says.
         seed: kept in the verdict; the search itself draws no random numbers.

@@ -149,7 +149,7 @@ class DiagnosisResult(Result):
         What an earlier diagnosis left there and this one does not have is removed: its hypotheses, and its report for print.
 
         Args:
-            pdf: the report for print as well, report.pdf.
+            pdf: also write the report for print, report.pdf.
 
         Raises:
             UserError: the folder or a file cannot be written.
@@ -166,7 +166,7 @@ class DiagnosisResult(Result):
         return self._written(where, contents)
 
     def earlier(self, folder: Path) -> Iterable[Path]:
-        """The report for print, and hypotheses that are none any more."""
+        """The report for print, and hypotheses of an earlier diagnosis."""
         return [folder / PRINTED, *kept_hypotheses(folder)]
 
     def plot(self, experiment: str | None = None) -> Figure:

@@ -68,14 +68,14 @@ def export(
     name: str | None = None,
     step: float | None = None,
 ) -> ExportResult | SnippetResult:
-    """The model with the values that it holds, and its effects, each with a switch, in a form that needs nothing of this package.
+    """Export the model with its values and its effects, each with a switch, in a form that does not need this package.
 
     Args:
         model: an object, or the result of a fit or a diagnosis.
         to: "c" (a header, a source, an example), "torch" (a module), "fmu" (FMI 2.0 and 3.0, co-simulation);
-            "mjcf" or "urdf" for the effects alone, to be put into a simulation of the machine that is there already: attributes of joints,
-            tendons and actuators, and a list of what has no word there.
-        data: recordings from which the integration step is taken, and how inputs run between samples.
+            "mjcf" or "urdf" for the effects alone, to be added to a simulation of the machine that you already have:
+            attributes of joints, tendons and actuators, and a list of what the format cannot express.
+        data: recordings that set the integration step, and say how inputs change between samples.
         name: of functions and files; by default made from the model's.
         step: largest integration step in seconds; by default what ``data`` need, else the sample time that effects were found with.
 

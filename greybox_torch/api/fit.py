@@ -44,13 +44,14 @@ def fit(
     precision: str = "double",
     progress: Callable[[str], None] = lambda text: None,
 ) -> FitResult:
-    """Estimate the free parameters and start states on the experiments of role "estimation"; judge on all.
+    """Estimate the free parameters and start states on the experiments of role "estimation"; score all experiments.
 
     Args:
         model: estimated from the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else
             the declared ones. It stays as it is; the result's ``model`` is a copy with the estimates.
-        starts: how many start values to try, drawn around those given; by default those given, and many where these turn out poor.
-        seed: of the start values drawn.
+        starts: how many sets of start values to try, drawn around those given; by default only those given, and many
+            where these turn out poor.
+        seed: of the random start values.
         profiles: names of free parameters whose profile likelihood (95 % interval) is wanted too.
         device: "cpu", "cuda" or "cuda:N".
         precision: "double" or "single".

@@ -61,14 +61,16 @@ def fit_many(
 ) -> list[FitResult | Failure]:
     """Estimate one model on the recordings of many machines, each with parameters of its own, all in one batch.
 
-    Every machine makes the iterations that :func:`fit` makes for it alone, and comes to the same optimum; the simulations of all are made
-    side by side. A machine whose start values do not simulate tolerably, or turn out poor, goes on alone as :func:`fit` does.
+    For each machine the iterations are those that :func:`fit` makes for it alone, and the optimum is the same; the
+    simulations of all run side by side. A machine whose start values do not simulate tolerably, or turn out poor, goes
+    on alone as :func:`fit` does.
 
     Args:
         model: estimated for each data set from the values that it holds or that its card gives, see :func:`fit`.
         data: a data set for each machine, with start values, bounds and what is fixed of its own.
-        starts: how many start values to try for each; by default those given, and many where these turn out poor.
-        seed: of the start values drawn.
+        starts: how many sets of start values to try for each; by default only those given, and many where these turn
+            out poor.
+        seed: of the random start values.
         device: "cpu", "cuda" or "cuda:N".
         precision: "double" or "single".
         return_exceptions: give the error in the place of a machine that fails, instead of raising the first one.

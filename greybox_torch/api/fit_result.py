@@ -42,8 +42,9 @@ RESULT, MODEL = "fit.json", "model"
 class FitResult(EstimatedModel):
     """An estimate of the free parameters and start states of a model.
 
-    ``estimation`` says how it was come by; ``comparisons`` are the free runs on all experiments with the values before ("start") and after
-    ("refit"); ``profiles`` the profile likelihoods that were asked for, ``undetermined`` what the data leave open as far as the start
+    ``estimation`` says how it was obtained; ``comparisons`` are the free runs on all experiments with the values
+    before ("start") and after ("refit"); ``profiles`` the profile likelihoods that were asked for, ``undetermined``
+    what the data leave open as far as the start
     values told; ``seconds`` how long it took.
     """
 

@@ -45,9 +45,10 @@ def fleet(
 ) -> FleetResult:
     """Diagnose every data set below a folder, on Dask, and write the results as they come.
 
-    What an earlier run into the same folder came to is kept where nothing that it depends on has changed: recordings, card, model file,
-    settings, and the version of this package. A data set that fails is a row of the table like the others; it is tried again the next
-    time. Ctrl-C ends the work: the result is then that of what is done, and says that it is not complete.
+    The results of an earlier run into the same folder are kept where nothing that they depend on has changed:
+    recordings, card, model file, settings, and the version of this package. A data set that fails is a row of the
+    table like the others; it is tried again the next
+    time. Ctrl-C ends the work: the result then has what is done, and says that it is not complete.
 
     In a program that is run as a file this has to stand under ``if __name__ == "__main__":``, as worker processes import that file.
 
@@ -58,7 +59,7 @@ def fleet(
         model: a name as :func:`greybox_torch.load_model` takes it; by default each card's own.
         settings: names of settings of a diagnosis with their values, or a TOML file of them; they go before those of the cards.
         time_limit: seconds after which the search on one data set stops and the best answer so far is given.
-        seed: kept in the verdicts.
+        seed: written into the verdicts; the search itself draws no random numbers.
         device: "cpu", "cuda" or "cuda:N", as the workers have it.
         workers: processes on this machine; by default one for each core.
         scheduler: address of a Dask scheduler whose workers are to be used in their place. They have to see the same files under the same

@@ -131,7 +131,8 @@ def inspect(data: DataSet, model: GreyBoxModel | str | None = None) -> Inspectio
     """Look at the channels of a data set, and check it against a model.
 
     Args:
-        model: an object, or a name as :func:`greybox_torch.load_model` takes it; by default the card's. Without one nothing is checked.
+        model: an object, or a name as :func:`greybox_torch.load_model` takes it; by default the card's. Without
+            a model only the data are looked at.
 
     Raises:
         UserError: channels, parameters or start states are not the model's.

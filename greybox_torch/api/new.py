@@ -63,8 +63,8 @@ def new(name: str, *, like: str = "motor", path: str | PathLike[str] | None = No
 
     Args:
         name: of the file, such as "my_motor"; the class in it is called MyMotor.
-        like: the machine that comes nearest: "motor", "pendulum", "two_mass", "tank" or "thermal".
-        path: of the file; by default its name with .py, where Python runs.
+        like: the machine that is most like yours: "motor", "pendulum", "two_mass", "tank" or "thermal".
+        path: of the file; by default its name with .py, in the current folder.
 
     Raises:
         UserError: a name that Python cannot use, or an unknown pattern.

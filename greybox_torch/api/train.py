@@ -49,22 +49,23 @@ def train(
     resume: bool = False,
     progress: Callable[[Report], None] = lambda report: None,
 ) -> TrainingResult:
-    """Attach a small network to a port, train it on the experiments of role "estimation", say what it has learned, and judge on all.
+    """Attach a small network to a port, train it on the experiments of role "estimation", say what it has learned, and
+    score everything.
 
     Args:
         model: the physics, estimated first, from the values that it holds: those set by ``set_values()``, else the start values of the data
             set's card, else the declared ones. It stays as it is; the result's ``model`` is a copy with the trained network.
         net: "friction" (a body's speed, and what else is asked for) or "residual" (any signals at any port), or "memory" (the
             same with hidden states).
-        port: where it acts; the driving body by default.
+        port: where it acts; by default the first body that the model declares.
         signals: what it reads, by their names at the port; by default the usual ones of such a port.
         network: further arguments of :class:`FrictionNet`, :class:`ResidualNet` or :class:`MemoryNet`: units, odd, dissipative, memories.
         settings: of the training, its seed among them.
         explain: compare what was learned with every law of the library, and put the nearest in the network's place.
-        ensemble: how many trainings, with seeds from that of the settings on, the band of the learned curve is from.
+        ensemble: how many trainings, with seeds from that of the settings on, the band of the learned curve comes from.
         device: "cpu", "cuda" or "cuda:N".
-        snapshot: a file that the training can be taken up from, kept up to date while it runs; none by default.
-        resume: take the training up from there.
+        snapshot: a file, kept up to date while the training runs, from which it can be continued; none by default.
+        resume: continue the training from there.
         progress: is told what is being done, and of every epoch.
 
     Raises:

@@ -45,11 +45,13 @@ def export(
     to: Annotated[str, typer.Option(metavar="c|torch|fmu|mjcf|urdf", help="What to export to.")],
     dataset: Annotated[
         Path | None,
-        typer.Option(metavar="DATASET.toml", help="Names the model; integration steps are what its recordings need."),
+        typer.Option(
+            metavar="DATASET.toml", help="Card that names the model; its recordings set the integration step."
+        ),
     ] = None,
     model: Model = None,
     name: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Of functions and files.", show_default="the model's")
+        str | None, typer.Option(metavar="NAME", help="Name of functions and files.", show_default="the model's")
     ] = None,
     step: Annotated[
         float | None, typer.Option(metavar="SECONDS", help="Largest integration step.", show_default="as needed")
@@ -59,7 +61,7 @@ def export(
     ] = None,
     json: Json = False,
 ) -> None:
-    """Take the model with its effects home: C, a module of torch, an FMU; or the effects alone, in MJCF or URDF."""
+    """Write the model with its effects as C, a module of torch or an FMU; or the effects alone, in MJCF or URDF."""
     from greybox_torch.commands import export
 
     export.run(results, to, dataset, name, step, Options(model, out, json=json))

@@ -35,10 +35,12 @@ def demo(
 
 
 def new(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Of the file, such as my_motor; the class is MyMotor.")],
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Name of the file, such as my_motor; the class is then MyMotor.")
+    ],
     like: Annotated[
         str,
-        typer.Option(metavar="motor|pendulum|two_mass|tank|thermal", help="The machine that comes nearest."),
+        typer.Option(metavar="motor|pendulum|two_mass|tank|thermal", help="The machine that is most like yours."),
     ] = "motor",
     out: Annotated[Path | None, typer.Option(metavar="FILE.py", help="Where to write.", show_default="NAME.py")] = None,
     json: Json = False,
@@ -50,10 +52,16 @@ def new(
 
 
 def card(
-    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Recordings; the last one is for validation.")],
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="FILE...", help="Recordings; the last of several, or the last quarter of one, is for validation."
+        ),
+    ],
     model: Model = None,
     sample_time: Annotated[
-        float | None, typer.Option(metavar="SECONDS", help="Where no column has time stamps.", show_default="guessed")
+        float | None,
+        typer.Option(metavar="SECONDS", help="Sample time, where no column has time stamps.", show_default="guessed"),
     ] = None,
     out: Annotated[
         Path | None, typer.Option(metavar="CARD.toml", help="Where to write.", show_default="dataset.toml beside FILE")

@@ -22,7 +22,10 @@ def fleet(
         typer.Argument(metavar="FOLDER|GLOB", help="Every dataset.toml below it, or the cards that match. Repeatable."),
     ],
     time_limit: Annotated[
-        float | None, typer.Option(min=1.0, metavar="SECONDS", help="When to stop searching on one data set.")
+        float | None,
+        typer.Option(
+            min=1.0, metavar="SECONDS", help="After this time the best answer so far is given, for each data set."
+        ),
     ] = None,
     workers: Annotated[
         int | None,
@@ -31,7 +34,8 @@ def fleet(
     scheduler: Annotated[
         str | None,
         typer.Option(
-            metavar="tcp://HOST:PORT", help="A Dask scheduler whose workers see the same files, in their place."
+            metavar="tcp://HOST:PORT",
+            help="Use the workers of this Dask scheduler instead; they have to see the same files.",
         ),
     ] = None,
     settings: Settings = None,

@@ -16,11 +16,13 @@ Out = Annotated[
     Path | None,
     typer.Option(metavar="DIR", help="Where to write results.", show_default="results/<folder of the card>[-<card>]"),
 ]
-Seed = Annotated[int, typer.Option(min=0, max=2**32 - 1, help="Start of everything that is drawn at random.")]
+Seed = Annotated[int, typer.Option(min=0, max=2**32 - 1, help="Seed of the random numbers.")]
 Device = Annotated[str, typer.Option(help='Where to compute: "cpu", "cuda", "cuda:1".')]
 Precision = Annotated[
     str,
-    typer.Option(metavar="single|double", help="Numbers of 32 or 64 bits; double unless you know that single does."),
+    typer.Option(
+        metavar="single|double", help="Numbers of 32 or 64 bits; keep double unless you know that single is enough."
+    ),
 ]
 Settings = Annotated[
     Path | None,
@@ -28,7 +30,7 @@ Settings = Annotated[
         metavar="FILE.toml", help="Thresholds and budgets of the search, by name; win over those on the card."
     ),
 ]
-Pdf = Annotated[bool, typer.Option("--pdf", help="The report as a document for print as well, report.pdf.")]
+Pdf = Annotated[bool, typer.Option("--pdf", help="Also write the report for print, report.pdf.")]
 Json = Annotated[
-    bool, typer.Option("--json", help="The result as JSON on standard output, all else on standard error.")
+    bool, typer.Option("--json", help="Print the result as JSON on standard output, all else on standard error.")
 ]

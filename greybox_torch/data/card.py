@@ -76,9 +76,11 @@ def _a_date(recorded: Any) -> date:
 class Card(Entry):
     """The whole of `dataset.toml`. Either `sample_time` (s) is given or `time`, a column of time stamps.
 
-    `resample` makes the time stamps even, that many seconds apart; `decimate` keeps one sample of so many, behind a low pass.
-    `diagnosis` names settings of `greybox diagnose`, `beliefs` what is known beforehand of what that looks for, `limits` what
-    `greybox design` may ask of the machine; those commands check them. `controller` has the loops that a designed recording runs under.
+    `hold` is the input between samples: held ("zoh") or linear ("foh"). `resample` makes the time stamps even, that
+    many seconds apart; `decimate` keeps one sample of that many, after a low pass.
+    `diagnosis` has settings of `greybox diagnose`, `beliefs` what is known beforehand about missing effects, `limits`
+    what `greybox design` may ask of the machine; those commands check them. `controller` has the loops that a designed
+    recording runs under.
     For `greybox fleet`, `machine` says which machine was recorded (several cards may be of one) and `recorded` when.
     """
 

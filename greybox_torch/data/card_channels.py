@@ -109,7 +109,8 @@ class TimeEntry(Entry):
 
 
 class ExperimentEntry(Entry):
-    """One recording: its file or files, its role, and optionally a slice of rows and columns of its own.
+    """One recording: its file or files, its role, and optionally `rows` ([start, stop], counted from zero, stop left
+    out) and columns of its own.
 
     `join` says how several files belong together: "concatenate", one after the other, or "time", columns matched by their time stamps.
     """
