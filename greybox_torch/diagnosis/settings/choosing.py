@@ -118,9 +118,7 @@ class ScreenSettings:
         chosen_by="start values of a card are right within a factor of ten",
     )
     unbent_share: float = share(
-        0.9,
-        "Share of the gain of a bent hypothesis from which one that is not bent goes before it.",
-        unit="share of the gain",
+        0.9, "Share of the gain of a bent fit from which one that is not bent goes before it.", unit="share of the gain"
     )
     least_periods: float = number(
         5.0, "Periods within the travel from which an effect is seen to repeat.", unit="periods"
