@@ -44,8 +44,7 @@ class FitResult(EstimatedModel):
 
     ``estimation`` says how it was obtained; ``comparisons`` are the free runs on all experiments with the values
     before ("start") and after ("refit"); ``profiles`` the profile likelihoods that were asked for, ``undetermined``
-    what the data leave open as far as the start
-    values told; ``seconds`` how long it took.
+    what the data leave open as far as the start values told; ``seconds`` how long it took.
     """
 
     stage: ClassVar[str] = "refit"

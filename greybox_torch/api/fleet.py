@@ -47,8 +47,8 @@ def fleet(
 
     The results of an earlier run into the same folder are kept where nothing that they depend on has changed:
     recordings, card, model file, settings, and the version of this package. A data set that fails is a row of the
-    table like the others; it is tried again the next
-    time. Ctrl-C ends the work: the result then has what is done, and says that it is not complete.
+    table like the others; it is tried again the next time. Ctrl-C ends the work: the result then has what is done, and
+    says that it is not complete.
 
     In a program that is run as a file this has to stand under ``if __name__ == "__main__":``, as worker processes import that file.
 

@@ -20,8 +20,6 @@ MARGIN = 0.01
 LEAST = 0.01
 """Share of the validation samples outside from which that is told."""
 
-ALL = 10**9
-
 
 @dataclass(frozen=True)
 class Beyond:
@@ -66,7 +64,7 @@ def beyond_learned(data: DataSet, model: GreyBoxModel, found: Trained, run: Comp
     )
     places = [run.experiments.index(recording.name) for recording in recordings]
     hybrid = replace(hybrid, initial=np.stack([run.initial[e] for e in places]))
-    learned, visited = visited_signals(found, most=ALL), visited_signals(found, hybrid, ALL)
+    learned, visited = visited_signals(found), visited_signals(found, hybrid)
     units = found.hybrid.surroundings[found.hybrid.network.port].units
     told = [_beyond(name, units.get(name, ""), learned[name], visited[name]) for name in learned]
     return tuple(one for one in told if one is not None)

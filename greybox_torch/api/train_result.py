@@ -46,9 +46,9 @@ class TrainingResult(EstimatedModel):
 
     ``trained`` says how it was obtained, ``explanation`` what the network stands for (None where that was not asked
     for). ``comparisons`` are the free runs on all experiments: with the values before ("start"), of the physics alone
-    ("refit"), of the hybrid ("augmented"),
-    and of the model with a law in the network's place ("named"), where one does as well. ``beyond``: signals of the network that the
-    validation experiments take out of the range that it was learned over.
+    ("refit"), of the hybrid ("augmented"), and of the model with a law in the network's place ("named"), where one
+    does as well. ``beyond``: signals of the network that the validation experiments take out of the range that it was
+    learned over.
     """
 
     stage: ClassVar[str] = "augmented"

@@ -1,9 +1,8 @@
 """Recordings searched with fewer samples: sampling as the model needs it, not as the logger had it.
 
-A search costs as much as there are samples. One of several of them shows as much of a law where neither the machine
-nor the model does anything between, or next to nothing beside what the model leaves, and a step of the simulation may
-be that much longer. What is found
-is fitted to all samples and judged by them.
+A search costs as much as there are samples. One of several of them shows as much of a law where neither the machine nor the model does
+anything between, or next to nothing beside what the model leaves, and a step of the simulation may be that much longer. What is found is
+fitted to all samples and judged by them.
 """
 
 from __future__ import annotations

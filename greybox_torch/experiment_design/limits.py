@@ -74,9 +74,8 @@ def limits_of(
     """
     own = {s.name for s in model.plain.states}
     inputs, outputs = [s.name for s in model.inputs], [s.name for s in model.outputs]
-    known = list(
-        dict.fromkeys([*inputs, *outputs, *sorted(own), SECONDS])
-    )  # an output may be called as the state that it shows
+    # an output may be called as the state that it shows
+    known = list(dict.fromkeys([*inputs, *outputs, *sorted(own), SECONDS]))
     for name in given:
         if name not in known:
             raise UserError(

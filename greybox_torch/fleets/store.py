@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 
 from greybox_torch.errors import UserError
@@ -48,8 +47,6 @@ def store_failure(job: Job, row: Row) -> None:
 
     Raises UserError where it cannot be written.
     """
-    for name in RESULTS:
-        with suppress(OSError):
-            (job.folder / name).unlink()
+    remove_all(job.folder / name for name in RESULTS)
     shutil.rmtree(job.folder / RIVALS, ignore_errors=True)
     write_text(job.folder / ROW, json_text(row.as_json()))

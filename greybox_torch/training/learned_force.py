@@ -52,18 +52,17 @@ class SignalCurve:
 
 def learned_force(found: Trained) -> LearnedForce:
     """The network's force where the free run of the hybrid takes it, at no more than :data:`MOST_SAMPLES` samples."""
-    signals = visited_signals(found)
+    signals = visited_signals(found, most=MOST_SAMPLES)
     force, slope = force_at(found, signals)
     return LearnedForce(signals, force, slope, _covariances(found))
 
 
-def visited_signals(
-    found: Trained, elsewhere: Problem | None = None, most: int = MOST_SAMPLES
-) -> dict[str, np.ndarray]:
-    """What the network reads (N,) along the free run of the estimation experiments, at no more than so many samples.
+def visited_signals(found: Trained, elsewhere: Problem | None = None, most: int | None = None) -> dict[str, np.ndarray]:
+    """What the network reads (N,) along the free run of the estimation experiments.
 
     Args:
         elsewhere: other experiments of the hybrid, from their start states.
+        most: samples, spread evenly; by default all.
     """
     problem, simulator = found.result.problem, found.course.simulator
     if elsewhere is not None:
@@ -74,7 +73,7 @@ def visited_signals(
     states = np.concatenate(visited_states(problem, simulator))
     spans = [records.span(e) for e in range(len(records.lengths))]
     index = np.concatenate([np.arange(span.start, span.stop) for span in spans])
-    kept = slice(None, None, max(1, -(-len(index) // most)))
+    kept = slice(None, None, 1 if most is None else max(1, -(-len(index) // most)))
     x, u = model.named_signals(torch.as_tensor(states[kept].T), torch.as_tensor(records.u[:, index[kept]]))
     local = model.local_signals(found.hybrid.network, x, u, problem.parameter_tensors)
     shape = index[kept].shape

@@ -9,7 +9,9 @@ from greybox_torch.diagnosis.select.remaining import completes
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.actuator import InputDelay, InputLag
 from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.sensor import OutputDelay, SensorLag
 
 
 def with_memory_for_lags(study: Study, state: SearchState) -> Stage[SearchState]:
@@ -40,4 +42,4 @@ def with_memory_for_lags(study: Study, state: SearchState) -> Stage[SearchState]
 
 def _late(effect: Attachment) -> bool:
     """Whether an effect is a signal's lag or dead time."""
-    return effect.mechanism.linear and effect.mechanism.name.endswith(("_lag", "_delay"))
+    return isinstance(effect.mechanism, InputLag | InputDelay | SensorLag | OutputDelay)
