@@ -12,6 +12,7 @@ from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.spring_force import moved_states, spring_force
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Signals
 from greybox_torch.model.along_motion import ALONG, DIRECTION, direction
+from greybox_torch.model.driving_states import STATE
 from greybox_torch.model.own_rate import RATE, own_rate
 from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Port, Sensor, driving_body, value_of
@@ -144,6 +145,8 @@ class LocalSignals:
             told, there = (
                 ("input", [i.name for i in self.base.inputs])
                 if kind in ("input", "along", "above")
+                else ("state", [s.name for s in self.base.states])
+                if kind == "state"
                 else ("port", list(self.ports))
             )
             if name not in there:
@@ -153,12 +156,14 @@ class LocalSignals:
     def _from_elsewhere(
         self, site: Port, signal: str, x: Signals, u: Signals, p: Signals, forces: Signals | None
     ) -> Any:
-        """An input of the model, by itself or along a body's motion, a signal of another port, its angle within a turn, by how much the
-        level of a balance is above another one's or an input, or a port's rate.
+        """An input or a state of the model, an input along a body's motion, a signal of another port, its angle within a turn, by how much
+        the level of a balance is above another one's or an input, or a port's rate.
         """
         kind, _, name = signal.partition("@")
         if kind == "input":
             return u[name]
+        if signal.startswith(STATE):
+            return x[name]
         if signal.startswith(ABOVE):
             assert isinstance(site, Balance)
             return value_of(above(site, name), x, u, p)

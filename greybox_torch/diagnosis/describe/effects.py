@@ -25,6 +25,7 @@ from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.model import Coupling, GreyBoxModel
 from greybox_torch.model.along_motion import ALONG, DIRECTION
+from greybox_torch.model.driving_states import STATE
 from greybox_torch.model.own_rate import RATE, balanced_state
 from greybox_torch.model.ports import Actuator, Port, driving_body
 from greybox_torch.model.signals_elsewhere import ABOVE, DIFFERENCE
@@ -166,8 +167,8 @@ def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:
         return given
     if signal in ("input", "output"):
         return str(getattr(site, signal, signal))
-    if signal.startswith(INPUT):
-        return signal.removeprefix(INPUT)
+    if signal.startswith((INPUT, STATE)):
+        return signal.partition("@")[2]
     if signal.startswith(DIFFERENCE):
         other = next(q for q in model.all_ports if q.name == signal.removeprefix(DIFFERENCE))
         return f"{signal_name(model, site, 'level')} - {signal_name(model, other, 'level')}"

@@ -11,6 +11,8 @@ import torch
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port
 from greybox_torch.model.along_motion import ALONG, DIRECTION, inputs_that_push
+from greybox_torch.model.driving_states import STATE, driving_states
+from greybox_torch.model.exchanges import exchange_between
 from greybox_torch.model.idle_inputs import idle_inputs, ports_in_use
 from greybox_torch.model.joined_bodies import bodies_apart
 from greybox_torch.model.once_per_model import once_per_model
@@ -28,16 +30,26 @@ from greybox_torch.model.signals_elsewhere import (
     signals_elsewhere,
     turning_elsewhere,
 )
-from greybox_torch.model.states_of import inputs_of
+from greybox_torch.model.states_of import inputs_of, states_of
 from greybox_torch.model.within_turn import TURN
 
-MOST_FROM_ELSEWHERE, MOST_FROM_INPUTS, MOST_EXCHANGED, MOST_LOST = 32, 12, 12, 12
-"""Curves of signals of other ports, of inputs, of what balances exchange, and of what they lose, that are tried at all."""
+MOST_FROM_ELSEWHERE, MOST_FROM_INPUTS, MOST_EXCHANGED, MOST_LOST, MOST_DRIVEN = 32, 12, 12, 12, 12
+"""Curves of signals of other ports, of inputs, of what balances exchange, of what they lose, and of what drives bodies, that are tried."""
 
 
 def further_curves(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
     """All of them, with the port of each."""
-    ways = (_by_rate, _by_direction, _from_elsewhere, _from_inputs, _stiffness, _within_a_turn, _exchanged, _lost)
+    ways = (
+        _by_rate,
+        _by_direction,
+        _from_elsewhere,
+        _from_inputs,
+        _stiffness,
+        _within_a_turn,
+        _exchanged,
+        _lost,
+        _driven,
+    )
     return chain.from_iterable(way(model, knots) for way in ways)
 
 
@@ -72,7 +84,7 @@ def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unk
     inputs = [f"{INPUT}{one.name}" for one in model.inputs]
 
     def of(port: Port) -> Iterator[tuple[Port, Unknown]]:
-        for signal in (n for n in signals_elsewhere(model, port) if not n.startswith((DIFFERENCE, ABOVE))):
+        for signal in (n for n in signals_elsewhere(model, port) if not n.startswith((DIFFERENCE, ABOVE, STATE))):
             own = (*(_own(port) if signal.startswith(LEVEL) else ()), *stiff(port))
             factors = ("", *own) if signal.startswith(SPEED) else ("", *inputs, *own)
             rate = (f"{RATE}{port.name}",) if not signal.startswith(SPEED) and balanced_state(model, port) else ()
@@ -157,11 +169,18 @@ def _within_a_turn(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unkn
 def _exchanged(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
     """What two balances exchange: by how far their levels are apart, and in proportion to that, by what may change the coefficient: an
     input (a heat exchanger's flow), or either level. No more than ``MOST_EXCHANGED``.
+
+    Where the model has a balance for that exchange, there: its own level is how far they are apart. Seen: the flow's effect on the heat
+    that goes through plates, told at the hot side.
     """
     inputs = [f"{INPUT}{one.name}" for one in model.inputs]
 
     def between(port: Balance, other: Balance) -> Iterator[tuple[Port, Unknown]]:
-        apart = f"{DIFFERENCE}{other.name}"
+        there, apart = exchange_between(model, port, other), f"{DIFFERENCE}{other.name}"
+        if there is not None:
+            yield from ((there, Unknown(one, knots, "level")) for one in inputs)
+            yield from ((there, Unknown(f"{LEVEL}{one.name}", knots, "level")) for one in (port, other))
+            return
         yield port, Unknown(apart, knots)
         yield from ((port, Unknown(one, knots, apart)) for one in (*inputs, "level", f"{LEVEL}{other.name}"))
 
@@ -184,6 +203,25 @@ def _lost(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
 
     balances = [q for q in model.ports if isinstance(q, Balance)]
     return _in_turn([to(q, name) for q in balances for name in inputs_alike(model, q)], MOST_LOST)
+
+
+def _driven(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
+    """What a state that drives a body does to it: by itself (iron that saturates), and by where the body is or how fast (a coil that leaves
+    its gap), which a curve at the actuator would do before the lag between. No more than ``MOST_DRIVEN``.
+
+    In place of such states the body's load, where they are in it. Seen: a voice coil's force by its stroke, told at the actuator with a
+    sensor's lag.
+    """
+
+    def at(body: Body) -> Iterator[tuple[Port, Unknown]]:
+        driving = driving_states(model, body)
+        shown = set(driving) & (set() if body.load is None else states_of(model, body.load))
+        for name in (*(("load",) if shown else ()), *(f"{STATE}{s}" for s in driving if s not in shown)):
+            yield body, Unknown(name, knots)
+            over = ("speed",) if integrates_position(model.ports, body) else ("position", "speed")
+            yield from ((body, Unknown(signal, knots, name)) for signal in over)
+
+    return _in_turn([at(q) for q in model.ports if isinstance(q, Body)], MOST_DRIVEN)
 
 
 def _in_turn(ways: Iterable[Iterable[tuple[Port, Unknown]]], most: int) -> Iterator[tuple[Port, Unknown]]:

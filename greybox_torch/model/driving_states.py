@@ -1,0 +1,29 @@
+"""States between an actuator and a body that it moves: the current of a coil, a pressure, a filter's."""
+
+from __future__ import annotations
+
+from greybox_torch.model.greybox_model import GreyBoxModel
+from greybox_torch.model.own_rate import balanced_state, without_laws
+from greybox_torch.model.ports import Balance, Body, Coupling, Port, Signal
+from greybox_torch.model.states_of import states_of
+
+STATE = "state@"
+"""Beginning of the name of a signal that is a state of the model at none of its ports; the state's name follows."""
+
+
+def driving_states(model: GreyBoxModel, body: Body) -> list[str]:
+    """The states that move a body's rate and are no port's own: neither its position, speed, deflection nor level depends on them."""
+    if balanced_state(model, body) is None:
+        return []
+    known = set().union(*(states_of(model, s) for q in model.ports for s in _own_signals(q)))
+    moving = states_of(model, without_laws(model, body))
+    return [s.name for s in model.states if s.name in moving - known]
+
+
+def _own_signals(port: Port) -> list[Signal]:
+    """The signals of a port by which states are told there: not what a body carries, which is a force."""
+    if isinstance(port, Body):
+        return [s for s in (port.speed, port.position) if s is not None]
+    if isinstance(port, Coupling):
+        return [port.deflection, port.rate]
+    return [port.level] if isinstance(port, Balance) else []
