@@ -17,6 +17,7 @@ from greybox_torch.diagnosis.confirm.holding import Judged, holding
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
 from greybox_torch.diagnosis.confirm.standing import findings
+from greybox_torch.diagnosis.confirm.too_little import without_too_little
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.final import Final, finish, from_longest_windows
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, sound
@@ -49,11 +50,12 @@ def judge(selection: Selection, clock: Stopwatch) -> Findings:
     clock.lap(FITTING)
     work = partial(_judged, selection, plain, augmented)
     (state, gains, judged, said, held), whole = or_else(work, work)
+    (state, gains, judged), why = without_too_little(state, gains, judged, study.settings)
     clock.lap(JUDGING)
     ended = {FITTING: fitted, JUDGING: held and whole}
     cut = (*selection.cut, *(stage for stage, whole in ended.items() if not whole))
     told: dict[str, Any] = {"state": state, "gains": gains, "complete": not cut, "cut": cut, "judged": judged}
-    told |= {"others": None if cut else others, "more": (*selection.more, *said)}
+    told |= {"others": None if cut else others, "more": (*selection.more, *said, *why)}
     return Findings(**vars(selection) | told)
 
 

@@ -12,11 +12,11 @@ from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.spring_force import moved_states, spring_force
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Signals
 from greybox_torch.model.along_motion import ALONG, DIRECTION, direction
-from greybox_torch.model.driving_states import STATE
 from greybox_torch.model.own_rate import RATE, own_rate
 from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Port, Sensor, driving_body, value_of
 from greybox_torch.model.signals_elsewhere import ABOVE, DIFFERENCE, above, difference
+from greybox_torch.model.states_at_no_port import STATE
 from greybox_torch.model.within_turn import TURN, TURN_OF, within_turn
 
 
@@ -94,6 +94,10 @@ class LocalSignals:
 
     def clock(self, x: Signals) -> dict[str, Any]:
         return {"time": x["time"]} if self.need("time") else {}
+
+    def states_read(self, a: Attachment, x: Signals) -> dict[str, Any]:
+        """The states of the model that a law reads."""
+        return {one: x[one.removeprefix(STATE)] for one in a.mechanism.reads if one.startswith(STATE)}
 
     def parameters(self, a: Attachment, p: Signals) -> Signals:
         """The mechanism's own parameters, by their short names."""

@@ -69,7 +69,8 @@ class SignalPaths:
 
     def _shown(self, a: Attachment, before: Any, x: Signals, p: Signals) -> Any:
         """What a law at a sensor adds to the output that reaches it."""
-        local = Signals("signal", {"output": before, **self.local.sampling(a.port), **self.local.clock(x)})
+        beside = self.local.sampling(a.port) | self.local.clock(x) | self.local.states_read(a, x)
+        local = Signals("signal", {"output": before, **beside})
         return self.share(a, p) * a.mechanism.force(local, self.local.parameters(a, p), self.local.memory(a, x))
 
     def _output(self, a: Attachment) -> str:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from greybox_torch.model.driving_states import STATE, driving_states
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.joined_bodies import bodies_apart
-from greybox_torch.model.ports import Actuator, Balance, Body, Coupling, Port, Signal, driving_body, value_of
+from greybox_torch.model.ports import Actuator, Balance, Body, Coupling, Port, Sensor, Signal, driving_body, value_of
+from greybox_torch.model.states_at_no_port import STATE, driving_states, states_shown
 from greybox_torch.model.within_turn import TURN_OF
 
 LEVEL, POSITION, SPEED = "level@", "position@", "speed@"
@@ -22,9 +22,9 @@ ABOVE = "above@"
 
 
 def signals_elsewhere(model: GreyBoxModel, port: Port) -> dict[str, Signal]:
-    """By name, at a body the positions and speeds of other axes, the levels of balances and the states that drive it, at a coupling the
-    positions of bodies, at an actuator those levels, at a balance the levels of others, and by how much its own is above those of them, and
-    above those inputs, that have its unit.
+    """By name, at a body the positions and speeds of other axes, the levels of balances and the states that drive it, at a sensor the
+    states that it shows, at a coupling the positions of bodies, at an actuator the levels of balances, at a balance those of others, by how
+    much its own is above them, and above inputs that have its unit.
 
     A force by the speed of what a spring joins with a body is friction there, or the spring's damping.
     """
@@ -38,6 +38,8 @@ def signals_elsewhere(model: GreyBoxModel, port: Port) -> dict[str, Signal]:
     if isinstance(port, Body):
         found |= {f"{SPEED}{b.name}": b.speed for b in bodies_apart(model, port)}
         found |= {f"{STATE}{name}": name for name in driving_states(model, port)}
+    if isinstance(port, Sensor):
+        found |= {f"{STATE}{name}": name for name in states_shown(model, port)}
     if isinstance(port, Balance):
         found |= {f"{DIFFERENCE}{other.name}": difference(port, other) for other in balances_alike(model, port)}
         found |= {f"{ABOVE}{name}": above(port, name) for name in inputs_alike(model, port)}

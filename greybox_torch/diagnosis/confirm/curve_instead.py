@@ -27,7 +27,8 @@ def curve_instead(
     a rail, told as a ripple of six harmonics and a curve; neither lasted, and 56 times the noise was left without a name.
     """
     settings = study.settings
-    step = next((s for s in state.steps if not s.parent.effects and _curves(study, s)), None)
+    asked = (*(() if state.in_place_of is None else (state.in_place_of,)), *state.steps)
+    step = next((s for s in asked if not s.parent.effects and _curves(study, s)), None)
     if others is None or step is None or times_noise(study.problem, state.plain, settings) <= settings.above_noise:
         return None
     study.working_on("asking held-out experiments about a curve in the place of names")

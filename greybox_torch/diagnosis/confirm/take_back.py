@@ -96,7 +96,8 @@ def _names_for_curve(study: Study, state: SearchState, others: HeldOut) -> Stage
     farther = gain(named, curve).errors_away >= study.settings.held_out_beyond_chance
     if farther or goes_farther_in_most_windows(plain, named, curve, study.settings):
         return state
-    named_state = replace(state.named.at(state.named.current), plain=state.plain, named=None)
+    curve = next((s for s in reversed(state.steps) if s.taken is not None and s.taken.unknown), None)
+    named_state = replace(state.named.at(state.named.current), plain=state.plain, named=None, in_place_of=curve)
     yield named_state
     return (yield from drop_superfluous(study, named_state))
 

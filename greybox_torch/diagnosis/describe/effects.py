@@ -25,10 +25,10 @@ from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.model import Coupling, GreyBoxModel
 from greybox_torch.model.along_motion import ALONG, DIRECTION
-from greybox_torch.model.driving_states import STATE
 from greybox_torch.model.own_rate import RATE, balanced_state
 from greybox_torch.model.ports import Actuator, Port, driving_body
 from greybox_torch.model.signals_elsewhere import ABOVE, DIFFERENCE
+from greybox_torch.model.states_at_no_port import STATE
 from greybox_torch.model.within_turn import TURN, TURN_OF
 
 

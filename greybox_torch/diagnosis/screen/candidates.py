@@ -135,7 +135,9 @@ def _curves(model: GreyBoxModel, port: Port, knots: int) -> Iterable[Unknown]:
         # One input's gain over the position is a curve at its actuator. Of several, one may be no drive: a flow, a pressure, a load.
         yield from (Unknown("position", knots, f"{INPUT}{one.name}") for one in model.inputs)
     if isinstance(port, Balance) and len(model.inputs) > 1:
+        # Either way round: what an input does to a rate by which a level falls, and what a level does to what an input brings.
         yield from (Unknown("level", knots, f"{INPUT}{one.name}") for one in model.inputs)
+        yield from (Unknown(f"{INPUT}{one.name}", knots, "level") for one in model.inputs)
 
 
 def memory_candidates(

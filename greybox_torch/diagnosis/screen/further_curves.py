@@ -8,10 +8,10 @@ from typing import Any
 
 import torch
 
+from greybox_torch.diagnosis.screen.curves_by_states import curves_by_states
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port
 from greybox_torch.model.along_motion import ALONG, DIRECTION, inputs_that_push
-from greybox_torch.model.driving_states import STATE, driving_states
 from greybox_torch.model.exchanges import exchange_between
 from greybox_torch.model.idle_inputs import idle_inputs, ports_in_use
 from greybox_torch.model.joined_bodies import bodies_apart
@@ -30,11 +30,12 @@ from greybox_torch.model.signals_elsewhere import (
     signals_elsewhere,
     turning_elsewhere,
 )
-from greybox_torch.model.states_of import inputs_of, states_of
+from greybox_torch.model.states_at_no_port import STATE
+from greybox_torch.model.states_of import inputs_of
 from greybox_torch.model.within_turn import TURN
 
-MOST_FROM_ELSEWHERE, MOST_FROM_INPUTS, MOST_EXCHANGED, MOST_LOST, MOST_DRIVEN = 32, 12, 12, 12, 12
-"""Curves of signals of other ports, of inputs, of what balances exchange, of what they lose, and of what drives bodies, that are tried."""
+MOST_FROM_ELSEWHERE, MOST_FROM_INPUTS, MOST_EXCHANGED, MOST_LOST = 32, 12, 12, 12
+"""Curves of signals of other ports, of inputs, of what balances exchange, and of what they lose, that are tried at all."""
 
 
 def further_curves(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
@@ -48,7 +49,7 @@ def further_curves(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unkn
         _within_a_turn,
         _exchanged,
         _lost,
-        _driven,
+        curves_by_states,
     )
     return chain.from_iterable(way(model, knots) for way in ways)
 
@@ -203,25 +204,6 @@ def _lost(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
 
     balances = [q for q in model.ports if isinstance(q, Balance)]
     return _in_turn([to(q, name) for q in balances for name in inputs_alike(model, q)], MOST_LOST)
-
-
-def _driven(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
-    """What a state that drives a body does to it: by itself (iron that saturates), and by where the body is or how fast (a coil that leaves
-    its gap), which a curve at the actuator would do before the lag between. No more than ``MOST_DRIVEN``.
-
-    In place of such states the body's load, where they are in it. Seen: a voice coil's force by its stroke, told at the actuator with a
-    sensor's lag.
-    """
-
-    def at(body: Body) -> Iterator[tuple[Port, Unknown]]:
-        driving = driving_states(model, body)
-        shown = set(driving) & (set() if body.load is None else states_of(model, body.load))
-        for name in (*(("load",) if shown else ()), *(f"{STATE}{s}" for s in driving if s not in shown)):
-            yield body, Unknown(name, knots)
-            over = ("speed",) if integrates_position(model.ports, body) else ("position", "speed")
-            yield from ((body, Unknown(signal, knots, name)) for signal in over)
-
-    return _in_turn([at(q) for q in model.ports if isinstance(q, Body)], MOST_DRIVEN)
 
 
 def _in_turn(ways: Iterable[Iterable[tuple[Port, Unknown]]], most: int) -> Iterator[tuple[Port, Unknown]]:

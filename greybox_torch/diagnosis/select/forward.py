@@ -106,7 +106,7 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     One curve can stand for several laws of the same signal, none of which would come near it alone.
     """
     done = with_curve.steps[-1]
-    start = replace(with_curve.at(done.parent), steps=before.steps)
+    start = replace(with_curve.at(done.parent), steps=before.steps, in_place_of=done)
     first = with_first_of_two(study, start, with_curve)
     if first is not None:
         two = yield from only_if(second_step(study, first), partial(_as_far, study, with_curve))

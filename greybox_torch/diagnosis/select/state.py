@@ -31,7 +31,8 @@ class SearchState:
     ``without``: by effect, the current hypothesis refitted without it; empty until that was compared. ``named``: effects with names that
     were found in the place of a free curve that goes farther. ``memory``: the model with a residual with memory alone, where that
     was tried in the place of all that was found, or what was left of it. ``found_before``: what a search with fewer experiments came to.
-    ``made_up_for``: effects that others made up for, each with the hypothesis that it was last in.
+    ``made_up_for``: effects that others made up for, each with the hypothesis that it was last in. ``in_place_of``: the step that took the
+    free curve in whose place the names stand.
     """
 
     plain: Hypothesis
@@ -42,6 +43,7 @@ class SearchState:
     memory: SearchState | None = None
     found_before: Hypothesis | None = None
     made_up_for: tuple[tuple[Attachment, Hypothesis], ...] = ()
+    in_place_of: SelectionStep | None = None
 
     @property
     def memory_step(self) -> SelectionStep | None:

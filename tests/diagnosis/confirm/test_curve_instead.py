@@ -54,6 +54,25 @@ def test_the_best_curve_of_the_first_step_stands_if_held_out_experiments_say_so(
         assert state.steps[-1].taken is curves[0] and state.steps[-1].ranked == (curves[0],)
 
 
+@pytest.mark.parametrize("kept", [True, False])
+def test_the_curve_in_whose_place_names_stood_is_asked(monkeypatch, stub, kept) -> None:
+    """Seen: a real servo's friction, told as a lag and a warm-up in the place of a curve; neither lasted: 63 times the noise, no name."""
+    plain = stub(effects=())
+    curve, lag = candidate(stub, "actuator.unknown", 4.0), candidate(stub, "sensor.lag", 3.9, unknown=False)
+    by_curve = stub(parent=plain, ranked=(curve, lag), taken=curve, screened=())
+    by_name = stub(parent=plain, ranked=(lag,), taken=lag, screened=())
+    monkeypatch.setattr(module, "as_fine_as_pays", lambda study, parent, ranked: ranked)
+    monkeypatch.setattr(module, "sound", lambda study, ranked: True)
+    monkeypatch.setattr(module, "times_noise", lambda *args: 50.0)
+    monkeypatch.setattr(module, "in_order", lambda ranked, settings: ranked)
+    by_it = stub(mismatch=lambda effects: 0.1 if effects else 1.0, holds=True, unstable=())
+    monkeypatch.setattr(module, "judged_anew", lambda study, state, *rest: ({"actuator.unknown": SURE}, by_it))
+    study = stub(settings=DiagnosisSettings(), problem=None, working_on=lambda text: None)
+    state = SearchState(plain, plain, (by_name,), in_place_of=by_curve if kept else None)
+    found = curve_instead(study, state, stub(), stub())
+    assert (found is not None and found[0].current is curve.fitted) is kept
+
+
 @pytest.mark.parametrize(("left", "stands"), [(0.04, True), (0.08, False)])
 def test_beside_a_law_that_lasted_a_curve_has_to_leave_half_of_what_that_leaves(
     monkeypatch, stub, left, stands

@@ -20,8 +20,8 @@ from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.surroundings import Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Input, Output, Parameter, Signals, State
-from greybox_torch.model.driving_states import driving_states
 from greybox_torch.model.exchanges import exchange_between
+from greybox_torch.model.states_at_no_port import driving_states
 from greybox_torch.systems.robot_arm import RobotArm
 
 
@@ -165,3 +165,42 @@ def test_an_exchange_is_offered_at_its_own_port() -> None:
     assert ("plates", "input@flow", "level") in found and ("plates", "level@hot_side", "level") in found
     assert not [way for way in ways(Plates()) if "difference@" in "".join(way)]
     assert ("hot_side", "input@flow", "difference@cold_side") in ways(Lossy())
+
+
+class Battery(GreyBoxModel):
+    """A cell whose voltage falls in proportion to its charge; what its resistance takes is shown beside that."""
+
+    states: ClassVar = [State("soc"), State("sag", "V")]
+    inputs: ClassVar = [Input("current", "A")]
+    outputs: ClassVar = [Output("voltage", "V"), Output("charge")]
+    parameters: ClassVar = [Parameter("Q", 3600.0), Parameter("E", 0.6)]
+    ports: ClassVar = [Balance("store", level="soc")]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return {"soc": (-u.current + port.store) / p.Q, "sag": u.current - x.sag}
+
+    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+        return {"voltage": p.E * x.soc - x.sag, "charge": x.soc}
+
+
+def test_a_curve_over_what_a_sensor_shows_beside_others_is_offered() -> None:
+    """Seen: a real cell's open-circuit voltage by its charge, for which there was no word: without a name, 18 times the noise."""
+    found = {way for way in ways(Battery()) if way[0].startswith("sensor")}
+    assert found == {("sensor.voltage", "state@soc", ""), ("sensor.voltage", "state@sag", "")}, (
+        "the charge is shown alone"
+    )
+
+
+def test_the_curve_is_added_to_the_output_alone() -> None:
+    model = Battery()
+    around = surrounded(model, [1.0, 0.5])
+    augmented = AugmentedModel(model, [attach(model, "sensor.voltage", Unknown("state@soc", 6))], around)
+    p = Signals("parameter", {q.name: torch.tensor(q.value) for q in augmented.declared_parameters})
+    p = p.replaced(**{n: torch.tensor(0.5) for n in p if ".w_" in n})
+    x = Signals("state", {"soc": torch.tensor(0.5), "sag": torch.tensor(0.1)})
+    u = Signals("input", {"current": torch.tensor(1.0)})
+    none = Signals("port", dict.fromkeys((q.name for q in model.all_ports), torch.tensor(0.0)))
+    with_curve, without = augmented.outputs_with(x, u, p, none), model.output(x, u, p)
+    assert float(with_curve["voltage"] - without["voltage"]) > 0.4 and with_curve["charge"] == without["charge"]
+    assert around["sensor.voltage"].ranges["state@soc"].high == pytest.approx(1.0)
+    assert augmented.derivative(x, u, p, none)["soc"] == model.derivative(x, u, p, none)["soc"]

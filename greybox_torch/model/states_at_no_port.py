@@ -1,11 +1,14 @@
-"""States between an actuator and a body that it moves: the current of a coil, a pressure, a filter's."""
+"""States that ports have no signal for: those between an actuator and a body (the current of a coil), and those that a sensor shows."""
 
 from __future__ import annotations
 
+from typing import Any
+
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.own_rate import balanced_state, without_laws
-from greybox_torch.model.ports import Balance, Body, Coupling, Port, Signal
-from greybox_torch.model.states_of import states_of
+from greybox_torch.model.port_forces import no_forces
+from greybox_torch.model.ports import Balance, Body, Coupling, Port, Sensor, Signal
+from greybox_torch.model.states_of import inputs_of, states_of
 
 STATE = "state@"
 """Beginning of the name of a signal that is a state of the model at none of its ports; the state's name follows."""
@@ -18,6 +21,20 @@ def driving_states(model: GreyBoxModel, body: Body) -> list[str]:
     known = set().union(*(states_of(model, s) for q in model.ports for s in _own_signals(q)))
     moving = states_of(model, without_laws(model, body))
     return [s.name for s in model.states if s.name in moving - known]
+
+
+def states_shown(model: GreyBoxModel, sensor: Sensor) -> list[str]:
+    """The states that move what a sensor shows, where it shows more than one of them, or an input as well.
+
+    Of a single one any curve is a curve over the output itself.
+    """
+    none = no_forces(model)
+
+    def shown(x: Any, u: Any, p: Any) -> Any:
+        return model.outputs_with(x, u, p, none)[sensor.output]
+
+    moving = states_of(model, shown)
+    return [s.name for s in model.states if s.name in moving] if len(moving) + len(inputs_of(model, shown)) > 1 else []
 
 
 def _own_signals(port: Port) -> list[Signal]:

@@ -1,0 +1,35 @@
+"""Effects that leave nearly all of the mismatch: they are not what makes it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from greybox_torch.diagnosis.confirm.held_out import Gain
+from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+
+Standing = tuple[SearchState, Mapping[str, Gain], Judgement]
+"""A state, what its effects gain on held-out experiments, and its free runs."""
+
+
+def without_too_little(
+    state: SearchState, gains: Mapping[str, Gain], judged: Judgement, settings: DiagnosisSettings
+) -> tuple[Standing, tuple[str, ...]]:
+    """The state without its effects, and why, where free runs of the validation experiments leave nearly all of the mismatch with them and
+    much more than the noise; else as it is.
+
+    Seen: the clock of a logger that skips, told as a sensor's lag or gain (0.54), which left 91 % of a pendulum's mismatch.
+    """
+    as_it_is: Standing = state, gains, judged
+    if not state.effects or judged.by_windows_alone:
+        return as_it_is, ()
+    share, times, _ = judged.left(True)
+    if not (share > 1.0 - settings.least_removed and times > settings.far_above_noise):
+        return as_it_is, ()
+    removed = max(100.0 * (1.0 - share), 0.0)
+    why = (
+        f"Taken back: free runs of the validation experiments leave all but {removed:.0f} % of the mismatch with what windows bear out, "
+        f"{times:.0f} times the noise: it is not what makes the mismatch."
+    )
+    return (state.at(state.plain), {}, judged.without_effects()), (why,)

@@ -1,0 +1,78 @@
+"""Effects that leave nearly all of the mismatch of free runs are none of the machine's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from greybox_torch.diagnosis.confirm.held_out import Gain
+from greybox_torch.diagnosis.confirm.too_little import without_too_little
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+
+SETTINGS = DiagnosisSettings()
+
+
+@dataclass(frozen=True)
+class FreeRuns:
+    """What free runs leave with the effects: the share of the mismatch, and how many times the noise."""
+
+    share: float
+    times: float
+    by_windows_alone: bool = False
+    effects: bool = True
+
+    def left(self, effects: bool) -> tuple[float, float, str]:
+        assert effects
+        return self.share, self.times, "sweep"
+
+    def without_effects(self) -> FreeRuns:
+        return replace(self, effects=False)
+
+
+@dataclass(frozen=True)
+class State:
+    """A search's state as far as it is asked for here."""
+
+    effects: tuple[str, ...] = ("lag",)
+    plain: tuple[str, ...] = ()
+
+    def at(self, effects: tuple[str, ...]) -> State:
+        return replace(self, effects=effects)
+
+
+def asked(runs: FreeRuns, state: State = State()) -> tuple[Any, tuple[str, ...]]:
+    gains: Any = {"lag": Gain(0.05, 0.01)}
+    return without_too_little(state, gains, runs, SETTINGS)  # type: ignore[arg-type]
+
+
+def test_what_leaves_nearly_all_is_taken_back_and_the_reader_told() -> None:
+    (state, gains, judged), why = asked(FreeRuns(0.91, 41.0))
+    assert state.effects == () and gains == {} and not judged.effects
+    assert len(why) == 1 and "all but 9 % of the mismatch" in why[0] and "41 times the noise" in why[0]
+
+
+def test_what_makes_it_worse_removes_nothing() -> None:
+    (state, *_), why = asked(FreeRuns(1.3, 41.0))
+    assert state.effects == () and "all but 0 %" in why[0]
+
+
+@pytest.mark.parametrize(
+    "runs",
+    [
+        FreeRuns(0.8, 41.0),
+        FreeRuns(0.91, 0.9 * SETTINGS.far_above_noise),
+        FreeRuns(0.91, 41.0, by_windows_alone=True),
+        FreeRuns(np.nan, np.nan),
+    ],
+    ids=["a fifth is removed", "hardly more than noise is left", "windows alone judge", "nothing shows the noise"],
+)
+def test_else_effects_stand(runs: FreeRuns) -> None:
+    (state, gains, judged), why = asked(runs)
+    assert state == State() and "lag" in gains and judged is runs and why == ()
+
+
+def test_without_effects_there_is_nothing_to_take_back() -> None:
+    assert asked(FreeRuns(1.0, 41.0), State(effects=()))[1] == ()
