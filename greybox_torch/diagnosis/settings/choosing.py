@@ -118,9 +118,7 @@ class ScreenSettings:
         chosen_by="start values of a card are right within a factor of ten",
     )
     unbent_share: float = share(
-        0.9,
-        "Share of the gain of a distorted fit from which an undistorted one is preferred.",
-        unit="share of the gain",
+        0.9, "Share of a distorted fit's gain from which an undistorted one is preferred.", unit="share of the gain"
     )
     least_periods: float = number(
         5.0, "Periods within the travel from which an effect is seen to repeat.", unit="periods"
