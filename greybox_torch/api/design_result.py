@@ -102,6 +102,12 @@ class DesignResult(Result):
             f"{self.seconds:.3g} s of {kinds} are expected to bring the right one of {len(self.names)} hypotheses to a probability of "
             f"{self.expected.after:.2f}"
         )
+        if max(self.expected.before) >= WANTED:
+            likely = self.names[int(np.argmax(self.expected.before))]
+            return (
+                f"These recordings tell the hypotheses apart already: {likely} has a probability of {max(self.expected.before):.2f}. To "
+                f"confirm it, {told[0].lower()}{told[1:]}."
+            )
         if self.needed < HARDLY_ANY * self.seconds:
             return f"{told}; for {WANTED:.2f} a small part of it would do."
         return f"{told}; for {WANTED:.2f} it takes {self.needed:.2g} s." if np.isfinite(self.needed) else f"{told}."
@@ -224,7 +230,7 @@ class DesignResult(Result):
         """A row for each hypothesis: its probability now, and the evidence for it against the nearest rival, if it is right."""
         nats = self.expected.nats + np.diag(np.full(len(self.names), np.inf))
         rows: list[list[str | float]] = [
-            [name, p, float(nats[k].min())]
+            [name, p if p >= 1e-4 else "< 0.0001", float(nats[k].min())]
             for k, (name, p) in enumerate(zip(self.names, self.expected.before, strict=True))
         ]
         return ["hypothesis", "probability\nnow", "expected evidence\nif right [nats]"], rows

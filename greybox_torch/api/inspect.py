@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.api.result import HELD_OUT, Result
+from greybox_torch.checking.time_stamps import OddTime, odd_time_stamps
 from greybox_torch.data import DataSet
 from greybox_torch.drafting.contradicted import Contradiction, contradictions
 from greybox_torch.report import notebook
@@ -49,6 +50,11 @@ class InspectionResult(Result):
         """Units on the card that the names of its columns contradict."""
         return contradictions(self.data.path)
 
+    @cached_property
+    def warnings(self) -> list[Contradiction | OddTime]:
+        """Those, and what is odd about time stamps: gaps, and files that differ in their unit."""
+        return [*self.contradicted, *odd_time_stamps(self.data)]
+
     def __repr__(self) -> str:
         return f"<inspection of {self.data.name}: {', '.join(r.name for r in self.data.recordings)}>"
 
@@ -67,7 +73,7 @@ class InspectionResult(Result):
                 for recording in self.data.recordings
             ],
             "model": self.model,
-            "warnings": [str(found) for found in self.contradicted],
+            "warnings": [str(found) for found in self.warnings],
             "figure": str(folder / FIGURE),
         }
 
@@ -120,7 +126,7 @@ class InspectionResult(Result):
 
     def _notes(self) -> list[str]:
         notes = [f"{recording.name}: {note}." for recording in self.data.recordings for note in recording.notes]
-        notes += [f"warning: {self.data.place()}: {found}" for found in self.contradicted]
+        notes += [f"warning: {self.data.place()}: {found}" for found in self.warnings]
         notes += [HELD_OUT] if self.data.held_out_by_default else []
         if self.model is not None:
             notes.append(f"Channels, parameters and start states fit the model {self.model}.")

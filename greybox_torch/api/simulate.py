@@ -27,6 +27,9 @@ from greybox_torch.report import notebook
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+OPPOSITE = -0.8
+"""Correlation of simulated with measured below which an output is told to move the other way: noise and wrong parameters leave less."""
+
 START = "start"
 """The name of the model with its start values."""
 
@@ -73,6 +76,20 @@ class SimulationResult(Result):
     def __len__(self) -> int:
         return len(self.run.simulated)
 
+    @cached_property
+    def warnings(self) -> list[str]:
+        """Outputs that move opposite to what was measured, in every experiment: a sign is wrong on the card or in the model."""
+        told = []
+        for name in (output.name for output in self.run.problem.model.outputs):
+            found = [_correlation(self.data.recordings[e].signals[name], self[run][name]) for e, run in enumerate(self)]
+            known = [one for one in found if np.isfinite(one)]
+            if known and max(known) < OPPOSITE:
+                told.append(
+                    f"{name}: the simulation moves opposite to the measurement in every experiment (correlation {max(known):.2f}). "
+                    "Check the sign of this channel on the card (scale = -1.0 reverses it) and in the model"
+                )
+        return told
+
     def __repr__(self) -> str:
         return f"<simulation of {self.run.problem.model.title} on {self.data.name}: {', '.join(self)}>"
 
@@ -82,12 +99,14 @@ class SimulationResult(Result):
             "tables": [str(folder / f"{stem}.csv") for stem in stems],
             "figures": [str(folder / f"{stem}.png") for stem in stems],
         }
-        return {**free_runs_json(self.data, {self.name: self.run}), **paths}
+        return {**free_runs_json(self.data, {self.name: self.run}), "warnings": self.warnings, **paths}
 
     def show(self, console: Console) -> None:
         console.print(Text(f"{self._title} with its start values", style="bold"))
         print_scores(console, self.data, {self.name: self.run.comparison.scores})
         print_substeps(console, self.run.substeps)
+        for found in self.warnings:
+            console.print(Text(f"warning: {found}.", style="yellow"), soft_wrap=True)
 
     def files(self, folder: Path) -> dict[Path, str | bytes]:
         """A CSV file of an experiment: time, and every output measured and simulated; and a figure of each."""
@@ -100,8 +119,9 @@ class SimulationResult(Result):
 
     def _repr_html_(self) -> str:
         scores = {self.name: self.run.comparison.scores}
+        told = (notebook.sentence(f"warning: {found}.") for found in self.warnings)
         shown = notebook.picture(self.plot(), "simulated and measured outputs over time")
-        return notebook.page(self._title, notebook.table(*score_table(self.data, scores)), shown)
+        return notebook.page(self._title, notebook.table(*score_table(self.data, scores)), *told, shown)
 
     @property
     def _title(self) -> str:
@@ -116,6 +136,14 @@ class SimulationResult(Result):
         buffer = BytesIO()
         np.savetxt(buffer, np.column_stack(columns), fmt="%.10g", delimiter=",", header=header, comments="")
         return buffer.getvalue()
+
+
+def _correlation(measured: np.ndarray, simulated: np.ndarray) -> float:
+    """Of two signals (N,), where both are known; NaN where one of them is constant."""
+    known = np.isfinite(measured) & np.isfinite(simulated)
+    if known.sum() < 2 or min(np.ptp(measured[known]), np.ptp(simulated[known])) == 0:
+        return float("nan")
+    return float(np.corrcoef(measured[known], simulated[known])[0, 1])
 
 
 def simulate(

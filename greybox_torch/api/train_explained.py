@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from rich.console import Console
@@ -62,7 +63,7 @@ def print_explanation(console: Console, explained: Explanation) -> None:
     if rows:
         print_table(
             console,
-            ["law in the\nnetwork's place", "of the curve\nmatched", "held-out error\nto the network's", ""],
+            ["law in the\nnetwork's place", "of the curve\nmatched", "held-out error beside\nthe network's", ""],
             rows,
         )
 
@@ -70,7 +71,14 @@ def print_explanation(console: Console, explained: Explanation) -> None:
 def _row(term: NamedTerm) -> list[str]:
     matched = "" if term.match is None else f"{100 * term.match:.0f} %"
     values = ", ".join(f"{name} {value:.4g}" for name, value in term.parameters.items())
-    return [term.attachment.mechanism.name, matched, f"{100 * term.lost:+.1f} %", values]
+    return [term.attachment.mechanism.name, matched, _beside(term.lost), values]
+
+
+def _beside(lost: float) -> str:
+    """A mean squared error that is a share ``lost`` more than the network's: in percent up to twice as much, beyond that as a multiple."""
+    if not math.isfinite(lost):
+        return "diverges"
+    return f"{1.0 + lost:.3g} times" if lost >= 1.0 else f"{100 * lost:+.1f} %"
 
 
 def _curve_json(curve: SignalCurve, force_unit: str) -> dict[str, Any]:

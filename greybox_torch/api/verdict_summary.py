@@ -46,6 +46,7 @@ def notes(verdict: Verdict) -> list[str]:
     stopped = [] if verdict.complete else [STOPPED, *verdict.not_tried.sentences()]
     left = [] if verdict.left is None else [verdict.left.sentence]
     small = [f"Refinement: {refinement.sentence}." for refinement in verdict.refinements]
+    small += [verdict.share_of_refinements] if verdict.share_of_refinements else []
     return [*(line for effect in verdict.effects for line in _notes(effect)), *left, *small, *stopped]
 
 
@@ -75,6 +76,7 @@ def _deviation(value: float | None) -> str | float:
 def _notes(effect: Effect) -> list[str]:
     head = spoken_at(effect.mechanism, effect.port)
     lines = [f"{head}: {effect.where}"] if effect.where else []
+    lines += [f"{head}: {effect.undetermined}"] if effect.undetermined else []
     advice = f"; to tell them apart: {effect.separating_experiment}" if effect.separating_experiment else ""
     together = () if effect.one_of is None else effect.one_of.members
     if effect.one_of is not None:

@@ -8,10 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.data import DataSet
+from greybox_torch.data.gaps import SAMPLES_LOST as LONGEST
 from greybox_torch.model import GreyBoxModel
-
-LONGEST = 5
-"""Samples that may be missing one after the other before that is told: a lost message or two changes nothing."""
 
 
 @dataclass(frozen=True)

@@ -82,7 +82,10 @@ class ChannelEntry(Entry):
         if self.column is not None and self.expr is not None:
             raise ValueError('both "column" and "expr" are given; expected one of them')
         if self.file_unit is not None and "scale" in self.model_fields_set:
-            raise ValueError('both "scale" and "file_unit" are given; expected one of them')
+            raise ValueError(
+                'both "scale" and "file_unit" are given; expected one of them; scale alone can convert and reverse the sign, '
+                "for example scale = -0.001 from mm to m"
+            )
         if self.file_unit is not None and not self.unit:
             raise ValueError('"file_unit" is given without "unit"; expected both, to convert from one to the other')
         return self

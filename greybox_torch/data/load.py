@@ -16,6 +16,7 @@ from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry, Time
 from greybox_torch.data.checks import check_finite, check_length, check_time
 from greybox_torch.data.dataset import DataSet
 from greybox_torch.data.expression import Expression
+from greybox_torch.data.gaps import longest_gap, without_gaps
 from greybox_torch.data.processing import EVEN, at_times, decimated, derivative, even_grid, unevenness
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.recording import Channel, Recording
@@ -176,18 +177,27 @@ def _processed(
     done = _Processed(time, sample_time, signals)
     jitter = 0.0 if card.time is None else unevenness(time)
     if jitter > EVEN:
-        steps = np.diff(time)
-        done.notes.append(
-            f"time stamps are uneven: steps between {steps.min():.6g} and {steps.max():.6g} s, median {sample_time:.6g} s"
-        )
+        steps, gap = without_gaps(time), longest_gap(time)
+        if gap is not None and card.resample is not None:
+            done.notes.append(f"{gap}, filled with straight lines by resample")
+        if np.abs(steps / sample_time - 1.0).max() > EVEN:
+            done.notes.append(
+                f"time stamps are uneven: steps between {steps.min():.6g} and {steps.max():.6g} s, median {sample_time:.6g} s"
+            )
     if card.resample is not None:
         done.time, done.sample_time = even_grid(time, card.resample, place), card.resample
         done.signals = {name: at_times(done.time, time, values) for name, values in signals.items()}
         done.notes.append(f"resampled to steps of {card.resample:g} s, on straight lines between samples")
     rates = {name: entry.derivative for name, entry in card.channels.items() if entry.derivative is not None}
     if (rates or card.decimate) and card.resample is None and jitter > EVEN:
+        gap = longest_gap(time)
+        found = (
+            ""
+            if gap is None
+            else f" ({gap}; better: one experiment before it and another after it, each with its rows)"
+        )
         raise UserError(
-            f"{place}: derivative and decimate need even time stamps; expected resample = <seconds> as well"
+            f"{place}: derivative and decimate need even time stamps; expected resample = <seconds> as well{found}"
         )
     for name, cutoff in rates.items():
         done.signals[name] = derivative(

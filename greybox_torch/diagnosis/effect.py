@@ -128,6 +128,21 @@ class Effect:
         return {n: v for n, v in self.parameters.items() if not self.memory.curved or n == "T"}
 
     @property
+    def undetermined(self) -> str:
+        """Which parameters of a law have a standard deviation above their value, in a sentence; "" where none has."""
+        known = {
+            n: (v.get("value"), v.get("std")) for n, v in self.shown_parameters.items() if self.mechanism != "unknown"
+        }
+        names = [n for n, (value, std) in known.items() if value is not None and std is not None and std > abs(value)]
+        if not names:
+            return ""
+        they, them = ("it", "it") if len(names) == 1 else ("they", "them")
+        return (
+            f"{', '.join(names)}: the standard deviation is larger than the value; {they} may be zero, or these recordings do not "
+            f"determine {them} beside the other parameters"
+        )
+
+    @property
     def headline(self) -> str:
         """The finding as a headline has it: the statement of what cannot be told apart, or the law and its place."""
         if self.one_of is None:
@@ -140,8 +155,8 @@ class Effect:
     def sentence(self) -> str:
         """What a reader has to know of it where it is no finding."""
         return (
-            f"{spoken_at(self.mechanism, self.port)} accounts for {100 * self.size:.2g} % of the whole mismatch: "
-            "too little to be told from what the laws found lack to be exactly the machine's"
+            f"{spoken_at(self.mechanism, self.port)} accounts for {100 * self.size:.2g} % of the whole mismatch: so little that it may "
+            "only compensate for the inexact form of the other laws"
         )
 
     def as_json(self) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
@@ -151,6 +152,17 @@ class Verdict:
         return bool(self.effects) or self.unexplained is not None
 
     @property
+    def share_of_refinements(self) -> str:
+        """What the refinements have of the explained error, in a sentence: without it the shares of the findings do not add up."""
+        share = 100 * sum(e.explained for e in self.refinements)
+        if not self.effects or share < 0.5:
+            return ""
+        return (
+            f"The refinements have {share:.0f} % of the explained error: it is divided by the logarithm of what each effect removed when "
+            "it was found, so that a late one, which removes a large part of little, counts much."
+        )
+
+    @property
     def sentence(self) -> str:
         """The verdict in one sentence."""
         if not self.effects and self.unexplained is not None:
@@ -161,7 +173,7 @@ class Verdict:
                 if self.complete
                 else "The search was stopped before it could say what."
             )
-            return f"Something is missing from {self.model}: its error is {self.unexplained:.1f} times the noise. {why}"
+            return f"Something is missing from {self.model}: its error is {digits(self.unexplained, 3)} times the noise. {why}"
         if not self.effects and not self.looked:
             return f"Nothing was looked for in {self.model}: the beliefs exclude every hypothesis."
         if not self.effects and not self.complete:

@@ -69,7 +69,7 @@ def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> Non
 
 
 def _plot_signals(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mapping[str, np.ndarray]) -> None:
-    axes.plot(time, measured, color="black", linewidth=1.0, label="measured")
+    axes.plot(time, measured, color="0.75", linewidth=3.0, label="measured")
     for label, values in runs.items():
         axes.plot(time, _finite(values), linewidth=0.9, label=label)
     axes.margins(x=0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -59,7 +60,7 @@ class Explanation:
         if self.terms:
             best = self.terms[0]
             return (
-                f"No law of the library does what the network does: with the nearest, {best.attachment.prefix}, the mean squared error on "
+                f"No law of the library does what the network does: with the closest, {best.attachment.prefix}, the mean squared error on "
                 f"the held-out stretches is {_told(best.lost)}. Keep the network."
             )
         return "No law of the library without memory comes near to what the network has learned. Keep the network."
@@ -167,4 +168,9 @@ def _kinematic(found: Trained) -> list[tuple[Attachment, list[dict[str, float]]]
 
 
 def _told(lost: float) -> str:
+    """How a mean squared error compares with the network's, where it is a share ``lost`` more: words a reader can picture."""
+    if not math.isfinite(lost):
+        return "not finite, as the simulation diverges"
+    if lost >= 1.0:
+        return f"{1.0 + lost:.3g} times the network's"
     return f"{abs(100 * lost):.1f} % {'more' if lost > 0 else 'less'}"

@@ -90,6 +90,9 @@ def make_network(net: str, port: Port, signals: Sequence[str], **options: object
     if port.kind not in made.kinds:
         problem = f"a {net} network belongs at a {' or '.join(made.kinds)}, and this is a {port.kind}; "
         raise ArgumentError("port", port.name, f'{problem}expected another port, or the net "residual"')
+    if made is FrictionNet and signals and "speed" not in signals:
+        read = ",".join(signals)
+        raise ArgumentError("signals", read, 'expected the speed among them, or the net "residual" for other signals')
     return made(signals or USUAL_SIGNALS[port.kind], **options)  # type: ignore[arg-type]
 
 
@@ -102,6 +105,16 @@ def port_named(model: GreyBoxModel, name: str) -> Port:
             "port", name, f"model {model.title} has no such port{did_you_mean(name, ports)}; it has: {known}"
         )
     return ports[name]
+
+
+def check_signals(network: Mechanism, port: Port, around: Surroundings) -> None:
+    """Raises UserError where ``network`` reads a signal that there is not around ``port``."""
+    known = [name for name in around.ranges if name != "delayed" and "@" not in name]
+    for signal in network.needs:
+        if signal not in known:
+            hint = did_you_mean(signal, known)
+            problem = f"there is no such signal at {port.name}{hint}; there is: {', '.join(known)}"
+            raise ArgumentError("signals", signal, problem)
 
 
 def attach_network(
@@ -122,13 +135,7 @@ def attach_network(
         UserError: there is no such port, or no such signal there.
     """
     site = port_named(physics.model, port)
-    around = surroundings[site.name]
-    for signal in network.needs:
-        known = [name for name in around.ranges if name != "delayed" and "@" not in name]
-        if signal not in known:
-            hint = did_you_mean(signal, known)
-            problem = f"there is no such signal at {port}{hint}; there is: {', '.join(known)}"
-            raise ArgumentError("signals", signal, problem)
+    check_signals(network, site, surroundings[site.name])
     attachments = (*others, attach(physics.model, port, network))
     model = AugmentedModel(physics.model, attachments, surroundings)
     return Hybrid(problem_for(physics, model, {}), attachments, surroundings)

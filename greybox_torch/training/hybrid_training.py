@@ -11,19 +11,20 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.data import DataSet
-from greybox_torch.errors import UserError
+from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.estimate.termination import Termination
 from greybox_torch.estimate.uncertainty import uncertainty
-from greybox_torch.model import GreyBoxModel
+from greybox_torch.mechanisms.network import Network
+from greybox_torch.model import GreyBoxModel, Port
 from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 from greybox_torch.training.curriculum import Curriculum, descend
 from greybox_torch.training.gradients import make_gradient
 from greybox_torch.training.gradients.tangents import TangentsGradient
-from greybox_torch.training.hybrid import Hybrid, attach_network, network_at
+from greybox_torch.training.hybrid import USUAL_SIGNALS, Hybrid, attach_network, check_signals, network_at
 from greybox_torch.training.keeper import Keeper
 from greybox_torch.training.physics import Physics, estimate_physics, training_problem, with_physics
 from greybox_torch.training.polish import Polished, polish
@@ -84,8 +85,9 @@ def train_hybrid(
     }
     if resume:
         check_snapshot(_path(snapshot), about)
-    tell(Report("estimating the physics"))
     plain = Simulator.of(model, problem.free_names, SimulationOptions(device))
+    _check_signals_early(problem, plain, site, learner)
+    tell(Report("estimating the physics"))
     alone = physics or estimate_physics(problem, plain, lengths, settings.seed)
     before = load_snapshot(_path(snapshot), about, alone) if resume else None
     alone = alone if before is None else before.physics
@@ -114,6 +116,21 @@ def train_hybrid(
     augmented = _result(polished, simulator)
     seconds = time.perf_counter() - began
     return Trained(result, augmented, hybrid, polished, tuple(state.history), settings, seconds, course)
+
+
+def _check_signals_early(problem: Problem, plain: Simulator, site: Port, learner: Network) -> None:
+    """Refuses a wrong signal before the estimate, which may take minutes, where the model can be simulated with its start values.
+
+    Whether a coupling has a load depends on the parameters: that is left to the check behind the estimate.
+    """
+    if set(learner.needs) <= {*USUAL_SIGNALS[site.kind], "load"}:
+        return
+    try:
+        around = survey(problem.model, problem, plain)[site.name]
+    except NumericalError:
+        return
+    if not set(learner.needs) <= {*around.ranges, "load"}:
+        check_signals(learner, site, around)
 
 
 def _path(snapshot: Path | None) -> Path:

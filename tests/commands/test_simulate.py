@@ -57,6 +57,20 @@ def test_simulate_for_people(motor_folder: Make) -> None:
     assert "simulated_3_sweep.csv" in result.stdout
 
 
+def test_a_reversed_sign_is_told(motor_folder: Make, edit: Edit) -> None:
+    """Seen: a sensor with its sign reversed, searched for two minutes and reported as something without a name."""
+    folder = motor_folder()
+    assert of("simulate", folder)["warnings"] == []
+    edit(
+        folder / "dataset.toml",
+        'speed = { column = "w", unit = "rad/s" }',
+        'speed = { column = "w", unit = "rad/s", scale = -1.0 }',
+    )
+    (told,) = of("simulate", folder)["warnings"]
+    assert told.startswith("speed: the simulation moves opposite to the measurement") and "Check the sign" in told
+    assert "warning: speed: the simulation moves opposite" in greybox("simulate", folder).stdout
+
+
 @pytest.mark.parametrize("command", ["simulate", "residuals"])
 def test_simulation_that_overflows(motor_folder: Make, edit: Edit, command: str) -> None:
     folder = motor_folder()

@@ -118,6 +118,7 @@ def test_summary(motor_folder: Make) -> None:
         (("--net", "fiction"), "--net fiction: unknown"),
         (("--port", "rotary"), "--port rotary: model Motor has no such port"),
         (("--signals", "speed,load"), "--signals load: there is no such signal at rotor"),
+        (("--signals", "angle"), "--signals angle: expected the speed among them"),
         (("--gradient", "adjoint"), "--gradient adjoint: unknown"),
         (("--resume",), "training.safetensors: no such file"),
         (("--units", "0"), ""),
@@ -130,6 +131,13 @@ def test_input_at_fault(options: tuple[str, ...], expected: str, motor_folder: M
     assert result.exit_code == 2
     assert expected in result.stderr and "Traceback" not in result.stderr
     assert (result.stdout, written(folder)) == ("", [])
+
+
+def test_a_wrong_signal_is_refused_before_anything_is_estimated(motor_folder: Make) -> None:
+    folder = motor_folder()
+    result = train(folder, "--net", "residual", "--port", "rotor", "--signals", "speed,sped")
+    assert result.exit_code == 2 and "estimating" not in result.stderr
+    assert '--signals sped: there is no such signal at rotor (did you mean "speed"?)' in result.stderr
 
 
 def test_tensorboard_that_is_not_there(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:

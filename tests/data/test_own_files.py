@@ -118,6 +118,20 @@ def test_uneven_time_stamps_are_told_and_resampled_where_asked(load: Load) -> No
     assert even.notes[1] == "resampled to steps of 0.01 s, on straight lines between samples"
 
 
+def test_a_gap_is_told_where_it_would_be_filled(load: Load) -> None:
+    t = np.delete(np.arange(N + 20) * 0.01, range(15, 35))
+    files = {"a": {"t": t, "u": 2 * t, "y": Y}}
+    (filled,) = load('time = "t"\nresample = 0.01', TWO, **files).recordings
+    assert filled.notes[0] == (
+        "gap in the time stamps: no sample for 0.21 s, from 0.14 to 0.35 s (after sample 14, the first is 0; usual step 0.01 s), "
+        "filled with straight lines by resample"
+    )
+    (as_it_is,) = load('time = "t"', TWO, **files).recordings
+    assert as_it_is.notes == ()  # the commands warn of it
+    with pytest.raises(UserError, match=r"need even time stamps.*gap in the time stamps.*each with its rows"):
+        load('time = "t"\ndecimate = 2', TWO, **files)
+
+
 def test_derivative_and_decimation(load: Load) -> None:
     t = np.arange(400) * 1e-3
     channels = (

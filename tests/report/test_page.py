@@ -114,7 +114,7 @@ def test_an_error_that_nothing_explains(of_kind: Callable[[str], Verdict], about
     """Something is missing, and there is no model with effects to compare with."""
     unexplained = replace(of_kind("nothing"), unexplained=12.0)
     text = Page(render_page(unexplained, about)).text
-    assert "Something is missing" in text and "12.0 times the noise" in text and "that something is missing" in text
+    assert "Something is missing" in text and "12 times the noise" in text and "that something is missing" in text
     assert "Nothing is missing" not in text
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share, negligible
@@ -52,11 +53,11 @@ def sentences(
             f"Held out: {spoken_of.get(prefix, prefix)} removes {100 * gain.share:.1f} % of the squared error that is left without it "
             f"(95 % interval {100 * low:.1f} to {100 * high:.1f} %)."
         )
-    kept = {e.prefix for e in effects}
+    kept = {e.prefix for e in effects} | {a.prefix for a in state.effects}  # refinements are in the model, too
     taken = [done.taken.candidate.attachment for done in state.steps if done.taken is not None]
     lost = [_name(a) for a in taken if f"{a.port}.{a.mechanism.name}" not in kept]
     if lost:
-        lines.append(f"Taken back, as the other experiments or effects do not bear it out: {', '.join(lost)}.")
+        lines.append(f"Removed again, as other experiments or effects do not confirm it: {', '.join(lost)}.")
     if dataset.held_out_by_default:
         lines.append(
             "No experiment had the role 'validation': the last quarter of every experiment was held out for judging."
@@ -90,7 +91,7 @@ def _step_sentence(done: SelectionStep, settings: DiagnosisSettings) -> str:
             else f" By the recordings alone {_name(done.led.candidate.attachment)} would come first; what is believed beforehand decides."
         )
         return (
-            f"{_name(done.taken.candidate.attachment)} lowers the mean squared error by a factor {np.exp(done.taken.gain):.3g}, "
+            f"{_name(done.taken.candidate.attachment)} lowers the mean squared error by a factor {digits(np.exp(done.taken.gain), 3)}, "
             f"{done.taken.significance:.1f} standard errors away from chance.{preferred}"
         )
     if not done.ranked:
@@ -106,13 +107,13 @@ def _step_sentence(done: SelectionStep, settings: DiagnosisSettings) -> str:
 
 def _memory_sentence(done: SelectionStep) -> str:
     """What residuals with memory would do alone, in the place of what was found."""
-    asked = "As neither laws nor curves reach the noise, residuals with one and two hidden states were asked for at every port"
+    asked = "As neither laws nor curves reach the noise, models with memory (one and two hidden states) were fitted at every port"
     if not done.ranked:
-        return f"{asked}; none comes near."
+        return f"{asked}; none comes close to the noise."
     best = done.ranked[0]
     return (
         f"{asked}: the best, {_name(best.candidate.attachment)}, alone lowers the mean squared error of the model as it stands by a factor "
-        f"{np.exp(best.gain):.3g}."
+        f"{digits(np.exp(best.gain), 3)}."
     )
 
 
@@ -166,7 +167,8 @@ def _size(largest: Largest, what: str) -> str:
 
 def _noise(study: Study, state: SearchState) -> str:
     times = times_noise(study.problem, state.current, study.settings)
-    shown = f"Over the windows that show it best the error is {times:.2g} times the noise that the recordings' high-frequency floor shows"
+    over = f"Over the windows that show it best the error is {digits(times)} times the noise"
+    shown = f"{over} that the recordings' high-frequency floor shows"
     if times > study.settings.above_noise:
         return shown + ": more than noise is left."
     return shown + (

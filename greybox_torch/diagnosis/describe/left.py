@@ -8,6 +8,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.describe.residual_tests import Detection
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.verdict import Left
 
 
@@ -28,12 +29,12 @@ def what_is_left(
         if times < noise and (beyond or coloured)
         else "the error is correlated with past inputs, so that part of it is repeatable"
         if beyond
-        else "the error is not white, and no linear function of past inputs"
+        else "the error is not white, but it is not linearly related to past inputs"
         if coloured
         else "the error is white, as noise is"
     )
     size = (
-        f"in {worst} the free run's error is {'as large as' if f'{times:.2g}' == '1' else f'{times:.2g} times'} the noise"
+        f"in {worst} the free run's error is {'as large as' if digits(times) == '1' else f'{digits(times)} times'} the noise"
         if np.isfinite(times)
         else "how much of its error is noise does not show"
     )

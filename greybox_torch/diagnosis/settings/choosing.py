@@ -106,19 +106,19 @@ class ScreenSettings:
     )
     bent_travel: float = ratio(
         3.0,
-        "How many times as far as with the card's values the fitted model has to move a signal for its fit to be taken as bent: then the "
+        "How many times as far as with the card's values the fitted model has to move a signal for its fit to count as distorted: then the "
         "screen looks around the card's values, too.",
         unit="ratio of the largest magnitudes",
         chosen_by="start values of a card are right within tens of per cent",
     )
     bent_parameter: float = ratio(
         30.0,
-        "How many times what it began as (or what part of it) a fitted parameter has to be for the fit to be taken as bent.",
+        "How many times what it began as (or what part of it) a fitted parameter has to be for the fit to count as distorted.",
         unit="ratio to the card's value",
         chosen_by="start values of a card are right within a factor of ten",
     )
     unbent_share: float = share(
-        0.9, "Share of the gain of a bent fit from which one that is not bent goes before it.", unit="share of the gain"
+        0.9, "Share of a distorted fit's gain from which an undistorted one is preferred.", unit="share of the gain"
     )
     least_periods: float = number(
         5.0, "Periods within the travel from which an effect is seen to repeat.", unit="periods"
@@ -180,7 +180,7 @@ class SelectionSettings:
     least_gain: float = share(0.01, "Improvement below which nothing is claimed.", unit=GAIN)
     least_gain_far_above_noise: float = share(
         0.05,
-        "The same where much more than noise is left, or nobody knows how much is noise: some law always bends a little to a real machine.",
+        "The same where much more than noise is left, or nobody knows how much is noise: some law always helps a little.",
         unit=GAIN,
     )
     least_of_richer_form: float = share(

@@ -87,7 +87,7 @@ class ConfirmationSettings:
     )
     least_not_undone: float = share(
         0.003,
-        "What has to be left of what a named law does once all other parameters have undone what they can, or it is taken back.",
+        "What has to be left of what a named law does once all other parameters have compensated what they can; else it is removed again.",
         unit="share of its squared output over the shortest windows",
         chosen_by="laws found rightly keep 0.0075 to 1 of it, a sensor's gain that a spring's stiffness undid 0.00004 to 0.0027",
     )

@@ -54,7 +54,7 @@ class CurveSettings:
     least_share_beside_curve: float = share(
         0.67,
         "Part of what a free curve leaves beyond noise that an effect beside it has to remove, unless it leaves hardly more than noise: a "
-        "curve is never exactly the machine's, and some law takes up what it lacks.",
+        "curve is never exactly the machine's, and some law compensates for what it lacks.",
         unit="share of the mismatch that the curve leaves",
         chosen_by="as `least_of_richer_form`",
     )

@@ -120,6 +120,9 @@ def _parameters(sheets: Sheets, told: Parameters | None) -> None:
         return
     sheets.title("The model's own parameters", 120.0)
     sheets.text("All that are free, ± one standard deviation.", 8.0, colour=QUIET)
+    if told.undetermined:
+        larger = "Where the standard deviation exceeds the value, these recordings do not determine the parameter in that model."
+        sheets.text(larger, 8.0, colour=QUIET)
     rows = [[(plain(row.symbol), row.unit), *((value, "") for value in row.values)] for row in told.rows]
     share = 0.78 / len(told.columns)
     draw_table(sheets, [("Parameter", ""), *told.columns], rows, [0.22, *[share] * len(told.columns)], bold_last=True)
@@ -133,6 +136,8 @@ def _remains(sheets: Sheets, told: Remains | None) -> None:
     rows = [[(f"{row.mechanism} at {row.port}", ""), (row.size, "")] for row in told.refinements]
     if rows:
         draw_table(sheets, [("Refinement", "no finding rests on it"), ("Share of the mismatch", "")], rows, [0.7, 0.3])
+    if told.share:
+        sheets.text(told.share, 8.0, colour=QUIET)
 
 
 def _limits(sheets: Sheets, told: Limits | None) -> None:

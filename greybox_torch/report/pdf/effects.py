@@ -37,6 +37,9 @@ def _card(sheets: Sheets, card: Card) -> None:
     if rows:
         draw_table(sheets, [("Parameter of its law", ""), ("± one standard deviation", "")], rows, [0.5, 0.5])
         sheets.gap(6.0)
+    if card.undetermined:
+        sheets.text(f"{card.undetermined}.", 8.0, colour=QUIET)
+        sheets.gap(4.0)
     facts = [("Explains", f"{card.explained} of the repeatable validation error")]
     facts += [("Ceiling", f"{card.ceiling} of the gain of the best free curve in its place")] if card.ceiling else []
     facts += [("Where", card.where)] if card.where else []

@@ -58,6 +58,7 @@ class Card:
     explained: str
     ceiling: str
     parameters: tuple[ParameterRow, ...]
+    undetermined: str
     shares: tuple[Share, ...]
     experiment: str
     source: str
@@ -93,6 +94,7 @@ def _card(effect: Effect, shown: Responses | None) -> Card:
         explained=text.percent(effect.explained),
         ceiling="" if effect.ceiling is None else text.percent(effect.ceiling),
         parameters=_parameters(effect),
+        undetermined=effect.undetermined,
         shares=_shares(effect),
         experiment=effect.separating_experiment,
         source=effect.source,

@@ -64,10 +64,10 @@ def _height(curve: Curve) -> Scale:
 def _legend(effect: Effect, curve: Curve) -> tuple[Key, ...]:
     if curve.free is None:
         return ()
-    dots = Key(DATA, f"what single stretches of {curve.free.samples} samples ask for")
+    dots = Key(DATA, f"estimates from single windows of {curve.free.samples} samples")
     if effect.mechanism == "unknown":
         return Key("law", "the curve, with two standard deviations on either side"), dots
-    return Key("law", "the law"), Key(BAND, "what the data say in its place, ± two standard deviations"), dots
+    return Key("law", "the law"), Key(BAND, "a free curve in its place, ± two standard deviations"), dots
 
 
 def _caption(effect: Effect, curve: Curve) -> str:
@@ -77,12 +77,12 @@ def _caption(effect: Effect, curve: Curve) -> str:
         spread = "" if curve.spread is None else ", with two standard deviations on either side"
         return f"The effect's own curve{spread}: {over}."
     data = (
-        "Dots are partial residuals: the law plus the constant force that the errors of one stretch of the estimation records ask for, all "
-        "other parameters as fitted."
+        "Dots are partial residuals: the law plus the constant force that best explains the errors of one window of the estimation "
+        "experiments, all other parameters as fitted."
     )
     if effect.mechanism == "unknown":
-        return f"The effect's own curve: {over}. {data}"
-    return f"The law and what the data say without it: {over}. The free curve is drawn where the records come. {data}"
+        return f"The effect's own curve: {over}. Where it has no band there are no data, and it is extrapolated. {data}"
+    return f"The law, and a free curve estimated in its place: {over}. The free curve is drawn only where there are data. {data}"
 
 
 def _alt(curve: Curve) -> str:

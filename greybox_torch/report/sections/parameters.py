@@ -1,4 +1,4 @@
-"""The model's own parameters, before and after: what a model that lacks something had bent them to."""
+"""The model's own parameters, before and after: how far they were biased in a model that lacks something."""
 
 from __future__ import annotations
 
@@ -21,10 +21,11 @@ class Row:
 
 @dataclass(frozen=True)
 class Parameters:
-    """``columns`` are the models: their names, and a few words on each."""
+    """``columns`` are the models: their names, and a few words on each; ``undetermined``: a standard deviation exceeds its value."""
 
     columns: tuple[tuple[str, str], ...]
     rows: tuple[Row, ...]
+    undetermined: bool = False
     template: str = "parameters.html.j2"
 
     @classmethod
@@ -34,7 +35,12 @@ class Parameters:
         columns = (("Start", "the card's values"), ("Refit", "re-estimated as it is"))
         if verdict.effects:
             columns = (*columns, ("Augmented", "with the effects"))
-        return cls(columns, tuple(map(_row, verdict.parameters)))
+        return cls(columns, tuple(map(_row, verdict.parameters)), any(map(_undetermined, verdict.parameters)))
+
+
+def _undetermined(found: Estimate) -> bool:
+    estimates = (found.refit, found.augmented) if found.augmented is not None else (found.refit,)
+    return any(deviation is not None and deviation > abs(value) > 0.0 for value, deviation in estimates)
 
 
 def _row(found: Estimate) -> Row:

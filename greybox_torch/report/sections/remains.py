@@ -19,10 +19,11 @@ class Refinement:
 
 @dataclass(frozen=True)
 class Remains:
-    """The sentence about what is left, and the rows of refinements."""
+    """The sentence about what is left, the rows of refinements, and ``share``: what of the explained error is theirs."""
 
     sentence: str
     refinements: tuple[Refinement, ...]
+    share: str = ""
     template: str = "remains.html.j2"
 
     @classmethod
@@ -33,4 +34,4 @@ class Remains:
             Refinement(text.words(e.mechanism), e.port, f"{100 * e.size:.2g} %")
             for e in sorted(verdict.refinements, key=lambda e: -e.size)
         )
-        return cls(verdict.left.sentence, tuple(rows))
+        return cls(verdict.left.sentence, tuple(rows), verdict.share_of_refinements)

@@ -12,7 +12,7 @@ from greybox_torch.diagnosis.describe.left import what_is_left
     ("past", "colour", "words"),
     [
         (True, True, "the error is correlated with past inputs, so that part of it is repeatable."),
-        (False, True, "the error is not white, and no linear function of past inputs."),
+        (False, True, "the error is not white, but it is not linearly related to past inputs."),
         (False, False, "the error is white, as noise is."),
     ],
 )
@@ -23,7 +23,7 @@ def test_size_and_kind_of_error_are_each_told_of_their_experiments(stub, past, c
     left = what_is_left(judged, found, True, 1.3)
     assert (left.share, left.times_noise) == (0.634, 105.3)
     assert left.sentence == (
-        "63 % of the mismatch remains: in Validation 1 the free run's error is 1.1e+02 times the noise. "
+        "63 % of the mismatch remains: in Validation 1 the free run's error is 110 times the noise. "
         f"On the experiments that it was estimated from, {words}"
     )
 

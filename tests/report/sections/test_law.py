@@ -39,9 +39,9 @@ def test_a_law_over_the_data() -> None:
         ("line", "effect"),
         ("points", "data"),
     ]
-    assert "what the data say without it" in chart.caption and "partial residuals" in chart.caption
+    assert "a free curve estimated in its place" in chart.caption and "partial residuals" in chart.caption
     assert [key.series for key in chart.legend] == ["law", "free", "data"]
-    assert chart.legend[2].label == "what single stretches of 62 samples ask for"
+    assert chart.legend[2].label == "estimates from single windows of 62 samples"
 
 
 def test_the_axis_does_not_follow_what_is_not_known() -> None:

@@ -23,6 +23,13 @@ def test_before_and_after(of_kind: Callable[[str], Verdict], about: About) -> No
     assert '<section id="parameters">' in render_page(verdict, about)
 
 
+def test_deviations_above_their_values_are_commented(of_kind: Callable[[str], Verdict], about: About) -> None:
+    vague = replace(K, refit=(0.4, 4.1))
+    for parameters, commented in (((F_C, K), False), ((F_C, vague), True)):
+        page = render_page(replace(of_kind("found"), parameters=parameters), about)
+        assert ("Where the standard deviation exceeds the value" in page) == commented
+
+
 def test_nothing_missing(of_kind: Callable[[str], Verdict]) -> None:
     told = Parameters.of(replace(of_kind("nothing"), parameters=(replace(F_C, augmented=None),)))
     assert told is not None and told.rows[0].values == ("0.6000", "0.830 ± 0.020") and len(told.columns) == 2

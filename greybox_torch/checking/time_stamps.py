@@ -1,0 +1,73 @@
+"""Time stamps that lead astray: a gap, across which a simulation would have to run blind, and files in different units of time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.data import DataSet, Recording
+from greybox_torch.data.gaps import Gap, longest_gap
+
+_SAME = 0.01  # of a sample time: how far a ratio may lie from a power of 1000
+
+
+@dataclass(frozen=True)
+class OddTime:
+    """What is odd about an experiment's time stamps, and what to write instead, in a sentence each."""
+
+    found: str
+    write: str
+
+    def __str__(self) -> str:
+        return f"{self.found}; expected {self.write}"
+
+
+def odd_time_stamps(data: DataSet) -> Iterator[OddTime]:
+    """Gaps in the time stamps, and experiments whose sample times differ by a thousand, as seconds and milliseconds do."""
+    for recording in data.recordings:
+        gap = longest_gap(recording.time)
+        if gap is not None:
+            yield _gap(recording, gap, _rows_on_the_card(data, recording))
+    whole = [
+        recording for recording in data.recordings if not (data.held_out_by_default and recording.role == "validation")
+    ]
+    first = min(whole, key=lambda recording: recording.sample_time, default=None)
+    for recording in whole:
+        if first is not None and _thousands(recording.sample_time / first.sample_time):
+            yield _unit(recording, first)
+
+
+def _rows_on_the_card(data: DataSet, recording: Recording) -> tuple[int, int]:
+    """The rows of the experiment that the card has, where its last quarter was held out as a recording of its own."""
+    if not data.held_out_by_default:
+        return recording.rows
+    place = data.recordings.index(recording)
+    first = place - place % 2  # two parts of every experiment, one after the other
+    return data.recordings[first].rows[0], data.recordings[first + 1].rows[1]
+
+
+def _gap(recording: Recording, gap: Gap, rows: tuple[int, int]) -> OddTime:
+    """``rows`` and what is written are rows of the file."""
+    start, stop = rows
+    split = recording.rows[0] + gap.after + 1
+    return OddTime(
+        f'[[experiment]] "{recording.name}": {gap}; a simulation across it would hold the last input for all that time',
+        f"two experiments with the same file, one before the gap and one after it: rows = [{start}, {split}] and rows = [{split}, {stop}]",
+    )
+
+
+def _unit(recording: Recording, first: Recording) -> OddTime:
+    ratio = recording.sample_time / first.sample_time
+    return OddTime(
+        f'[[experiment]] "{recording.name}": its sample time is {recording.sample_time:.4g} s, {ratio:.0f} times that of '
+        f'"{first.name}" ({first.sample_time:.4g} s), as if one file counted in seconds and the other in milliseconds',
+        "one unit of time in all files of a card: convert that file's time stamps, or give it a card of its own with time = { column = "
+        '"…", unit = "ms" }',
+    )
+
+
+def _thousands(ratio: float) -> bool:
+    power = round(float(np.log10(ratio)) / 3.0)
+    return power >= 1 and abs(ratio / 1000.0**power - 1.0) < _SAME

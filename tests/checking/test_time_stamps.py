@@ -1,0 +1,92 @@
+"""Gaps in time stamps, and files in different units of time, are told with what to write instead."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from greybox_torch.api.check import check
+from greybox_torch.api.inspect import inspect
+from greybox_torch.checking.time_stamps import OddTime, odd_time_stamps
+from greybox_torch.cli import app
+from greybox_torch.data import DataSet, Recording, load_dataset
+from greybox_torch.data.gaps import longest_gap, without_gaps
+
+EVEN: np.ndarray = np.arange(400) * 0.01
+
+
+def recorded(name: str, time: np.ndarray) -> Recording:
+    return Recording.from_arrays(name, {"voltage": np.sin(time), "speed": np.cos(time)}, time=time)
+
+
+def test_the_longest_gap_is_told_with_place_and_length() -> None:
+    time: np.ndarray = np.delete(EVEN, [*range(100, 110), *range(200, 240)])
+    gap = longest_gap(time)
+    assert gap is not None and (gap.after, gap.count) == (189, 2)
+    assert str(gap) == (
+        "gap in the time stamps: no sample for 0.41 s, from 1.99 to 2.4 s (after sample 189, the first is 0; usual step 0.01 s), "
+        "the longest of 2 gaps"
+    )
+    np.testing.assert_allclose(without_gaps(time), 0.01)
+
+
+@pytest.mark.parametrize(
+    "time",
+    [
+        EVEN,
+        np.delete(EVEN, range(100, 105)),  # a few lost samples
+        np.cumsum(np.tile([0.01] * 9 + [0.2], 40)),  # written whenever something changes
+    ],
+)
+def test_no_gap(time: np.ndarray) -> None:
+    assert longest_gap(time) is None and len(without_gaps(time)) == len(time) - 1
+
+
+def test_rows_before_and_after_the_gap() -> None:
+    time = np.delete(EVEN, range(100, 140))
+    both = [recorded("Steps", time), replace(recorded("Again", EVEN), role="validation")]
+    for odd in (
+        *odd_time_stamps(DataSet(both)),
+        *odd_time_stamps(DataSet(both[:1])),
+    ):  # the latter holds out its last quarter
+        _before_and_after(odd)
+    (late,) = odd_time_stamps(DataSet([recorded("Steps", np.delete(EVEN, range(330, 370)))]))
+    assert "rows = [0, 330] and rows = [330, 360]" in late.write
+
+
+def _before_and_after(odd: OddTime) -> None:
+    assert odd.found.startswith('[[experiment]] "Steps": gap in the time stamps: no sample for 0.41 s')
+    assert "rows = [0, 100] and rows = [100, 360]" in odd.write
+
+
+def test_seconds_beside_milliseconds() -> None:
+    (odd,) = odd_time_stamps(DataSet([recorded("Steps", EVEN), recorded("Sweep", 1000.0 * EVEN)]))
+    assert '"Sweep": its sample time is 10 s, 1000 times that of "Steps" (0.01 s)' in odd.found
+    assert list(odd_time_stamps(DataSet([recorded("Steps", EVEN), recorded("Sweep", 100.0 * EVEN)]))) == []
+
+
+def test_check_inspect_and_simulate_warn(motor_folder: Callable[..., Path]) -> None:
+    folder = motor_folder()
+    path, steps = folder / "dataset.toml", folder / "steps.csv"
+    names, *rows = steps.read_text().splitlines()
+    stamped = [f"t,{names}", *(f"{0.01 * k:.2f},{row}" for k, row in enumerate(rows) if not 100 <= k < 140)]
+    steps.write_text("\n".join(stamped))
+    for other in folder.glob("*.csv"):
+        if other != steps:
+            names, *rows = other.read_text().splitlines()
+            other.write_text("\n".join([f"t,{names}", *(f"{0.01 * k:.2f},{row}" for k, row in enumerate(rows))]))
+    lines = path.read_text().splitlines()
+    path.write_text("\n".join('time = "t"' if line.startswith("sample_time") else line for line in lines))
+    data = load_dataset(path)
+    assert data.model is not None
+    (finding,) = [one for one in check(data.model, data).findings if "gap in the time stamps" in one.found]
+    assert finding.level == "warning" and "rows = [0, 100] and rows = [100, " in finding.write
+    assert any("no sample for 0.41 s" in str(one) for one in inspect(data).warnings)
+    told = CliRunner().invoke(app, ["simulate", str(path), "--out", str(folder / "out")])
+    assert told.exit_code == 0, told.output
+    assert "warning: " in told.stderr and "gap in the time stamps: no sample for 0.41 s" in told.stderr
