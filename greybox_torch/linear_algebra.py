@@ -22,6 +22,8 @@ Returned = TypeVar("Returned")
 RIDGE = 1e-12
 """Share of the largest diagonal entry that is added where a matrix cannot be factored."""
 
+NOTHING = 1e-200
+"""Share of the largest curvature that is none."""
 
 _torch = threading.Lock()
 _within: list[int] = []
@@ -94,6 +96,18 @@ def least_squares(columns: np.ndarray, target: np.ndarray, rcond: float | None =
     sound = sound / scale  # its square overflows later
     found = solve(sound.T @ sound + _ridge(sound.T @ sound), sound.T @ wanted) / scale
     return np.nan_to_num(found, posinf=0.0, neginf=0.0)  # tiny columns and a large target: beyond the largest number
+
+
+def lengths(curvatures: np.ndarray) -> np.ndarray:
+    """The changes (..., d) by which unknowns move a residual by one, from their ``curvatures`` (..., d), the diagonal of JᵀJ.
+
+    Each by itself, whatever the others are: an inertia in kg m², a pressure in Pa and the coefficient of a deflection in um, cubed,
+    are fifty orders of magnitude apart. Where there is no curvature the change is finite, that of a share ``NOTHING`` of the largest.
+
+    Source: J. J. Moré, "The Levenberg-Marquardt algorithm: implementation and theory", 1978: steps that do not depend on units.
+    """
+    largest = curvatures.max(axis=-1, keepdims=True, initial=0.0)
+    return 1.0 / np.sqrt(np.maximum(curvatures, NOTHING * np.maximum(largest, 1e-100)))
 
 
 def eigh(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from greybox_torch.estimate.bounded_step import bounded_step
 from greybox_torch.estimate.termination import Termination
+from greybox_torch.linear_algebra import lengths
 
 Extra = TypeVar("Extra")
 
@@ -159,15 +160,14 @@ def descending(
 
 
 def _diagonal(hessian: np.ndarray, before: np.ndarray | None) -> np.ndarray:
-    """Scales of the unknowns: the largest curvature seen so far, as MINPACK does, never zero."""
+    """Scales of the unknowns: the largest curvature seen so far, as MINPACK does."""
     now = np.diag(hessian)
-    largest = now if before is None else np.maximum(now, before)
-    return np.maximum(largest, 1e-14 * max(float(largest.max()), 1e-300))
+    return now if before is None else np.maximum(now, before)
 
 
 def _step(here: Quadratic, diagonal: np.ndarray, damping: float, lowest: np.ndarray, highest: np.ndarray) -> np.ndarray:
     """The damped step between ``lowest`` and ``highest`` (d,)."""
-    scale = 1.0 / np.sqrt(diagonal)
+    scale = lengths(diagonal)
     matrix = here.hessian * scale[:, None] * scale[None, :]
     matrix[np.diag_indices_from(matrix)] += damping
     return scale * bounded_step(matrix, -here.gradient * scale, lowest / scale, highest / scale)

@@ -8,7 +8,7 @@ import numpy as np
 
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.linear_algebra import solve
+from greybox_torch.linear_algebra import lengths, solve
 from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.simulator import Simulator
@@ -168,7 +168,7 @@ def _steps(
     """Damped Gauss-Newton steps (M, d), zero where a bound holds an unknown and for members that do not simulate."""
     held = ((z <= low) & (gradient > 0)) | ((z >= high) & (gradient < 0)) | ~sound[:, None]
     diagonal = np.where(sound[:, None], np.einsum("mii->mi", hessian), 1.0)
-    scale = 1.0 / np.sqrt(np.maximum(diagonal, 1e-14 * np.maximum(diagonal.max(axis=1, keepdims=True), 1e-300)))
+    scale = lengths(diagonal)
     matrix = np.where(held[:, :, None] | held[:, None, :], 0.0, hessian * scale[:, :, None] * scale[:, None, :])
     each = np.arange(z.shape[1])
     matrix[:, each, each] = np.where(held, 1.0, 1.0 + damping[:, None])

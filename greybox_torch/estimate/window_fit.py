@@ -194,7 +194,8 @@ def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: 
         mean_square, float(np.nanvar(measured, axis=1).mean())
     )  # start values that explode must not freeze all
     spread = np.nanstd(states, axis=0)
-    spread = np.where(spread > 1e-9, spread, max(float(np.nanstd(problem.records.y)), 1e-6))
+    moved = spread > 1e-9 * np.abs(states).max(axis=0)
+    spread = np.where(moved, spread, max(float(np.nanstd(problem.records.y)), 1e-6))
     values = problem.expected[problem.free]
     # What is expected to be next to nothing, as where an output never moves, is of no size by which it could be held.
     sized = values**2 > np.finfo(float).tiny

@@ -8,7 +8,7 @@ import numpy as np
 
 from greybox_torch.estimate.bounded_step import bounded_step
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.linear_algebra import solve
+from greybox_torch.linear_algebra import lengths, solve
 
 
 @dataclass(frozen=True)
@@ -63,13 +63,15 @@ def stepped(
 ) -> tuple[Problem, np.ndarray, float]:
     """The damped Gauss-Newton step within bounds, window starts eliminated, and how much it should lower the cost."""
     diagonal = np.einsum("wii->wi", here.hss)
-    floor = 1e-12 * diagonal.max(initial=0.0)  # a model whose states are all carried has no open ones
+    floor = 1e-12 * diagonal.max(
+        axis=0, initial=0.0
+    )  # of each state by itself: pressures in Pa stand beside positions in m
     damped = here.hss + np.eye(diagonal.shape[1]) * (damping * (diagonal + floor))[:, :, None]
     solved = solve(damped, np.concatenate([here.hsp, here.gs[..., None]], axis=2))
     back, own = solved[..., :-1], solved[..., -1]
     matrix = here.hpp - np.einsum("wsp,wsq->pq", here.hsp, back)
     right = -(here.gp - np.einsum("wsp,ws->p", here.hsp, own))
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(here.hpp), 1e-14 * max(np.diag(here.hpp).max(initial=0.0), 1e-300)))
+    scale = lengths(np.diag(here.hpp))
     scaled = matrix * scale[:, None] * scale[None, :] + damping * np.eye(len(scale))
     now = problem.values[problem.free]
     low, high = ((bound[problem.free] - now) / scale for bound in (problem.lower, problem.upper))

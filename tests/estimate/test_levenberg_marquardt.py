@@ -48,6 +48,21 @@ def test_linear_least_squares_in_badly_scaled_unknowns() -> None:
     np.testing.assert_allclose(found.point, np.linalg.lstsq(a, b, rcond=None)[0], rtol=1e-4)
 
 
+@pytest.mark.parametrize("units", [2.0**-140, 2.0**-40, 2.0**20, 2.0**100])
+def test_the_descent_is_the_same_in_any_units(units: float) -> None:
+    """Seen: a belt's stiffness by the cube of a deflection in m, whose optimum was never reached: its curvature is 1e-22 of the others'."""
+    scale = np.array([1.0, units])
+    own = minimise(rosenbrock, np.array([-1.2, 1.0]), -OPEN, OPEN)
+
+    def evaluate(z: np.ndarray) -> Quadratic[None]:
+        found = rosenbrock(z / scale)
+        return Quadratic(found.cost, found.gradient / scale, found.hessian / np.outer(scale, scale), None)
+
+    other = minimise(evaluate, np.array([-1.2, units]), -OPEN, OPEN)
+    assert own is not None and other is not None and other.iterations == own.iterations
+    np.testing.assert_allclose(other.point / scale, own.point, rtol=1e-6)
+
+
 def test_optimum_at_a_bound() -> None:
     """Within z0 ≤ 0.5 the valley's lowest point is on the bound, at z1 = z0²."""
     found = minimise(rosenbrock, np.array([-1.2, 1.0]), -OPEN, np.array([0.5, np.inf]))

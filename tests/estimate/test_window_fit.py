@@ -13,6 +13,7 @@ from greybox_torch.estimate.rival import Rival
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.simulation.simulator import Simulator
+from greybox_torch.simulation.windows import cut
 
 UNITS = {"voltage": "V", "speed": "rad/s"}
 TIGHT = Settings(iterations=60, tolerance=1e-12, trials=10)
@@ -37,7 +38,7 @@ class TwoGains(GreyBoxModel):
         return {"speed": x.speed}
 
 
-def recorded(data_set: Any, extra: float) -> Problem:
+def recordings(data_set: Any, extra: float) -> Any:
     """Steps of random height, simulated exactly: dx/dt = 2 u + extra u³ − 3 x, a little noise."""
     draw = np.random.default_rng(4)
     voltage = np.repeat(draw.uniform(-2, 2, 40), 25)
@@ -45,7 +46,11 @@ def recorded(data_set: Any, extra: float) -> Problem:
     for k in range(999):
         level = (2.0 * voltage[k] + extra * voltage[k] ** 3) / 3.0
         speed[k + 1] = level + (speed[k] - level) * decayed
-    data = data_set(UNITS, [{"voltage": voltage, "speed": speed + 0.001 * draw.normal(size=1000)}])
+    return data_set(UNITS, [{"voltage": voltage, "speed": speed + 0.001 * draw.normal(size=1000)}])
+
+
+def recorded(data_set: Any, extra: float) -> Problem:
+    data = recordings(data_set, extra)
     return make_problem(data, TwoGains(), data.estimation())
 
 
@@ -106,3 +111,44 @@ def test_what_the_recordings_do_not_determine_returns_to_what_was_expected(data_
     problem = make_problem(data, WithSpare(), data.estimation())
     found = fitted(problem.with_values(np.array([2.0, 0.7, 3.0, 50.0])))
     assert found.problem.values == pytest.approx([2.0, 0.7, 3.0, 1.0], rel=5e-3)
+
+
+def pushed(width: float, pressure: float) -> GreyBoxModel:
+    """dx/dt = gain u + extra (u / width)³ − decay x + P / pressure; what no sensor shows, P, falls by itself."""
+
+    class Pushed(TwoGains):
+        states = [*TwoGains.states, State("pressure", initial=0.0)]
+        parameters = [
+            Parameter("gain", 1.0, lower=0.0),
+            Parameter("extra", 0.0),
+            Parameter("decay", 1.0, lower=0.0),
+            Parameter("fall", 2.0, lower=0.1),
+        ]
+
+        def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+            speed = p.gain * u.voltage + p.extra * (u.voltage / width) ** 3 - p.decay * x.speed
+            return {"speed": speed + x.pressure / pressure, "pressure": -p.fall * x.pressure}
+
+    return Pushed()
+
+
+@pytest.mark.parametrize(("width", "pressure"), [(2.0**20, 1.0), (2.0**-20, 1.0), (1.0, 2.0**40), (2.0**14, 2.0**-40)])
+def test_a_fit_is_the_same_in_any_units(data_set: Any, width: float, pressure: float) -> None:
+    """What the cube of a small deflection, or a pressure in Pa, does to the outputs is tiny beside what others do."""
+
+    def at(width: float, pressure: float) -> WindowFit:
+        data, model = recordings(data_set, 0.7), pushed(width, pressure)
+        problem = make_problem(data, model, data.estimation())
+        begun = np.random.default_rng(0).normal(size=(len(cut(problem.records, 100).start), 2)) * [1.0, pressure]
+        found = None
+        for _ in range(3):
+            simulator = Simulator.of(model, problem.free_names)
+            found = fit_windows(problem, simulator, 100, settings=TIGHT, starts=begun)
+            assert found is not None
+            problem, begun = found.problem, found.starts
+        assert found is not None
+        return found
+
+    own, other = at(1.0, 1.0), at(width, pressure)
+    assert other.mean_square == pytest.approx(own.mean_square, rel=1e-6)
+    assert other.problem.values / [1.0, width**3, 1.0, 1.0] == pytest.approx(own.problem.values, rel=1e-4)

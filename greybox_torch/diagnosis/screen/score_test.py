@@ -175,7 +175,7 @@ class Projected:
         rows = packed.rows(np.arange(d, d + n_base))
         own = rows[:, :, d : d + n_base]
         diagonal = np.einsum("wii->wi", own)
-        least = 1e-12 * diagonal.max(initial=0.0) + 1e-300  # windows that failed are all zero
+        least = 1e-12 * diagonal.max(axis=0, initial=0.0) + 1e-300  # of each state; windows that failed are all zero
         lower = cholesky(own + np.eye(n_base) * (1e-9 * diagonal + least)[:, :, None])
         keep = np.append(np.arange(d), d + n_base)
         return Projected(packed, solve(lower, rows[:, :, keep]), keep)
