@@ -40,5 +40,6 @@ def what_is_left(
     )
     whole = "The model as it stands is recommended"
     if effects:
-        whole = f"{100 * share:.2g} % of the mismatch remains" if shown else "As much remains as without it"
+        part = "Less than 0.01" if share < 1e-4 else digits(100 * share)
+        whole = f"{part} % of the mismatch remains" if shown else "As much remains as without it"
     return Left(share, times, f"{whole}: {size}. On the experiments that it was estimated from, {how}.")

@@ -34,6 +34,15 @@ def test_an_error_of_the_size_of_the_noise(stub) -> None:
     assert "in Run 2 the free run's error is as large as the noise." in left.sentence
 
 
+@pytest.mark.parametrize(
+    ("share", "words"), [(3.2e-7, "Less than 0.01 %"), (0.0, "Less than 0.01 %"), (0.0123, "1.2 %"), (2.5, "250 %")]
+)
+def test_shares_are_plain_numbers(stub, share, words) -> None:
+    """Seen: "2.2e-05 % of the mismatch remains"."""
+    left = what_is_left(stub(left=lambda effects: (share, 2.0, "Run 2")), [], True, 1.3)
+    assert left.sentence.startswith(f"{words} of the mismatch remains")
+
+
 def test_where_noise_is_not_known(stub) -> None:
     left = what_is_left(stub(left=lambda effects: (1.0, np.nan, "")), [], False, 1.3)
     assert left.sentence.startswith(
