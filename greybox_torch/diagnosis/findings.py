@@ -15,6 +15,7 @@ from greybox_torch.deadline import Deadline, until
 from greybox_torch.diagnosis.confirm.curve_instead import curve_instead
 from greybox_torch.diagnosis.confirm.holding import Judged, holding
 from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.confirm.memory_instead import memory_instead
 from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
 from greybox_torch.diagnosis.confirm.standing import findings
 from greybox_torch.diagnosis.confirm.too_little import without_too_little
@@ -82,7 +83,8 @@ def _finished(study: Study, state: SearchState, deadline: Deadline) -> tuple[tup
 def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
     """Effects taken back, the weakest first, until those left hold on the validation experiments, and whether there was time for that.
 
-    Where there is none, what was found first is left if that holds by itself, else nothing. Where none holds, or little, a free curve may.
+    Where there is none, what was found first is left if that holds by itself, else nothing. Where none holds, or little, a free curve may,
+    or else an unknown that remembers.
     """
     study, state, others = selection.study, selection.state, selection.others
     study.working_on("judging on the validation experiments")
@@ -94,6 +96,8 @@ def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
         found, _ = or_else(lambda: holding(study, state, others, selection.gains, judged), lambda: None)
         if found is not None and _curve_is_asked(state, found):
             curve, whole = or_else(partial(curve_instead, study, found[0], others, found[2]), lambda: None)
+            if curve is None and whole and not found[0].effects:
+                curve, whole = or_else(partial(memory_instead, study, state, others, found[2]), lambda: None)
     if found is None:
         return _found_first(study, state, judged)  # free runs of its own, for which time was left beyond that
     if curve is None:

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from greybox_torch.diagnosis.digits import digits
+
 
 @dataclass(frozen=True)
 class Memory:
@@ -33,7 +35,7 @@ class Memory:
     @property
     def told(self) -> str:
         """How long it remembers, as a sentence has it."""
-        return f"with a memory of about {self.seconds:.2g} s"
+        return f"with a memory of about {digits(self.seconds)} s"
 
     @property
     def phase(self) -> np.ndarray:
