@@ -22,8 +22,8 @@ Returned = TypeVar("Returned")
 RIDGE = 1e-12
 """Share of the largest diagonal entry that is added where a matrix cannot be factored."""
 
-NOTHING = 1e-200
-"""Share of the largest curvature that is none."""
+HARDLY, NOTHING = 1e-14, 1e-200
+"""Shares of the largest contribution to a residual, squared, and of the largest curvature."""
 
 _torch = threading.Lock()
 _within: list[int] = []
@@ -98,16 +98,24 @@ def least_squares(columns: np.ndarray, target: np.ndarray, rcond: float | None =
     return np.nan_to_num(found, posinf=0.0, neginf=0.0)  # tiny columns and a large target: beyond the largest number
 
 
-def lengths(curvatures: np.ndarray) -> np.ndarray:
+def lengths(curvatures: np.ndarray, values: np.ndarray) -> np.ndarray:
     """The changes (..., d) by which unknowns move a residual by one, from their ``curvatures`` (..., d), the diagonal of JᵀJ.
 
-    Each by itself, whatever the others are: an inertia in kg m², a pressure in Pa and the coefficient of a deflection in um, cubed,
-    are fifty orders of magnitude apart. Where there is no curvature the change is finite, that of a share ``NOTHING`` of the largest.
+    Each by itself, whatever the others are: an inertia in kg m², a pressure in Pa and a coefficient of (1e-6 m)³ are fifty orders of
+    magnitude apart. What hardly matters at its own size (a share ``HARDLY`` of what the unknown that matters most does at its own) is no
+    longer than as if it did that much; of an unknown that is zero no size is known.
+
+    Args:
+        values: of the unknowns (..., d), by which their sizes are known.
 
     Source: J. J. Moré, "The Levenberg-Marquardt algorithm: implementation and theory", 1978: steps that do not depend on units.
     """
-    largest = curvatures.max(axis=-1, keepdims=True, initial=0.0)
-    return 1.0 / np.sqrt(np.maximum(curvatures, NOTHING * np.maximum(largest, 1e-100)))
+    squares = np.square(values)
+    most = HARDLY * (curvatures * squares).max(axis=-1, keepdims=True, initial=0.0)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        floor = np.where(squares > 0, most / squares, 0.0)
+    nothing = NOTHING * np.maximum(curvatures.max(axis=-1, keepdims=True, initial=0.0), 1e-100)
+    return 1.0 / np.sqrt(np.maximum(curvatures, np.maximum(np.nan_to_num(floor, posinf=0.0), nothing)))
 
 
 def eigh(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from greybox_torch.linear_algebra import cholesky, eigh, least_squares, on_one_thread, solve
+from greybox_torch.linear_algebra import HARDLY, cholesky, eigh, least_squares, lengths, on_one_thread, solve
 
 MATRIX = np.array([[4.0, 1.0], [1.0, 3.0]])
 RIGHT = np.array([1.0, 2.0])
@@ -103,3 +103,19 @@ def test_of_two_diagnoses_in_two_threads_both_have_their_threads_back() -> None:
     finally:
         ended.set()
         torch.set_num_threads(before)
+
+
+def test_lengths_do_not_depend_on_units() -> None:
+    """Every unknown by its own curvature, the cube of a small deflection too; of what is nothing a finite one."""
+    units = np.array([1.0, 1e9, 1e-30, 1.0])
+    curvatures, values = np.array([4.0, 100.0, 1.0, 0.0]), np.array([1.0, 0.0, 2.0, 0.0])
+    own = lengths(curvatures, values)
+    np.testing.assert_allclose(own[:3], [0.5, 0.1, 1.0])
+    assert np.isfinite(own[3])
+    np.testing.assert_allclose(lengths(curvatures / units**2, values * units)[:3], (own * units)[:3])
+
+
+def test_what_hardly_matters_at_its_own_size_goes_no_farther_than_what_does() -> None:
+    """A network's weight behind another that is nearly zero: along its own curvature it would go to 1e9."""
+    assert lengths(np.array([1.0, 1e-18]), np.array([1.0, 0.5]))[1] == pytest.approx(0.5 / np.sqrt(HARDLY))
+    assert lengths(np.array([1.0, 1e-18]), np.array([1.0, 0.0]))[1] == pytest.approx(1e9)

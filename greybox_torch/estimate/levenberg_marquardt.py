@@ -134,7 +134,7 @@ def descending(
         diagonal = _diagonal(here.hessian, diagonal)
         moved = False
         for _ in range(settings.trials):
-            step = _step(here, diagonal, damping, lower - point, upper - point)
+            step = _step(here, lengths(diagonal, point), damping, lower - point, upper - point)
             trial = yield from _shortened(point, step, lower, upper)
             taken = trial - point
             predicted = -(here.gradient @ taken) - 0.5 * taken @ here.hessian @ taken
@@ -165,9 +165,8 @@ def _diagonal(hessian: np.ndarray, before: np.ndarray | None) -> np.ndarray:
     return now if before is None else np.maximum(now, before)
 
 
-def _step(here: Quadratic, diagonal: np.ndarray, damping: float, lowest: np.ndarray, highest: np.ndarray) -> np.ndarray:
-    """The damped step between ``lowest`` and ``highest`` (d,)."""
-    scale = lengths(diagonal)
+def _step(here: Quadratic, scale: np.ndarray, damping: float, lowest: np.ndarray, highest: np.ndarray) -> np.ndarray:
+    """The damped step between ``lowest`` and ``highest`` (d,), the unknowns in units of ``scale`` (d,)."""
     matrix = here.hessian * scale[:, None] * scale[None, :]
     matrix[np.diag_indices_from(matrix)] += damping
     return scale * bounded_step(matrix, -here.gradient * scale, lowest / scale, highest / scale)

@@ -71,9 +71,9 @@ def stepped(
     back, own = solved[..., :-1], solved[..., -1]
     matrix = here.hpp - np.einsum("wsp,wsq->pq", here.hsp, back)
     right = -(here.gp - np.einsum("wsp,ws->p", here.hsp, own))
-    scale = lengths(np.diag(here.hpp))
-    scaled = matrix * scale[:, None] * scale[None, :] + damping * np.eye(len(scale))
     now = problem.values[problem.free]
+    scale = lengths(np.diag(here.hpp), now)
+    scaled = matrix * scale[:, None] * scale[None, :] + damping * np.eye(len(scale))
     low, high = ((bound[problem.free] - now) / scale for bound in (problem.lower, problem.upper))
     taken = scale * bounded_step(scaled, right * scale, low, high)
     values = problem.values.copy()
