@@ -87,8 +87,7 @@ def test_an_input_that_changes_a_loss_is_offered_at_a_balance(surroundings) -> N
     curves = (a for a in found if a.port == "motor_heat" and isinstance(a.mechanism, Unknown))
     at_heat = {(a.mechanism.signal, a.mechanism.factor) for a in curves}
     changed = {("level", factor) for factor in ("", "input@main", "input@tail", "rate@motor_heat")}
-    by_input = {(signal, factor) for signal in ("input@main", "input@tail") for factor in ("", "level")}
-    assert at_heat == {*changed, *by_input}
+    assert at_heat == {*changed, *((f"input@{name}", factor) for name in ("main", "tail") for factor in ("", "level"))}
 
 
 class Cell(GreyBoxModel):
