@@ -98,19 +98,19 @@ def least_squares(columns: np.ndarray, target: np.ndarray, rcond: float | None =
     return np.nan_to_num(found, posinf=0.0, neginf=0.0)  # tiny columns and a large target: beyond the largest number
 
 
-def lengths(curvatures: np.ndarray, values: np.ndarray) -> np.ndarray:
+def lengths(curvatures: np.ndarray, sizes: np.ndarray | None = None) -> np.ndarray:
     """The changes (..., d) by which unknowns move a residual by one, from their ``curvatures`` (..., d), the diagonal of JᵀJ.
 
     Each by itself, whatever the others are: an inertia in kg m², a pressure in Pa and a coefficient of (1e-6 m)³ are fifty orders of
     magnitude apart. What hardly matters at its own size (a share ``HARDLY`` of what the unknown that matters most does at its own) is no
-    longer than as if it did that much; of an unknown that is zero no size is known.
+    longer than as if it did that much.
 
     Args:
-        values: of the unknowns (..., d), by which their sizes are known.
+        sizes: of the unknowns (..., d), where they are known: zero for those of which none is.
 
     Source: J. J. Moré, "The Levenberg-Marquardt algorithm: implementation and theory", 1978: steps that do not depend on units.
     """
-    squares = np.square(values)
+    squares = np.square(np.zeros_like(curvatures) if sizes is None else sizes)
     most = HARDLY * (curvatures * squares).max(axis=-1, keepdims=True, initial=0.0)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         floor = np.where(squares > 0, most / squares, 0.0)

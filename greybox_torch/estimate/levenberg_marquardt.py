@@ -134,7 +134,7 @@ def descending(
         diagonal = _diagonal(here.hessian, diagonal)
         moved = False
         for _ in range(settings.trials):
-            step = _step(here, lengths(diagonal, point), damping, lower - point, upper - point)
+            step = _step(here, lengths(diagonal), damping, lower - point, upper - point)
             trial = yield from _shortened(point, step, lower, upper)
             taken = trial - point
             predicted = -(here.gradient @ taken) - 0.5 * taken @ here.hessian @ taken

@@ -168,7 +168,7 @@ def _steps(
     """Damped Gauss-Newton steps (M, d), zero where a bound holds an unknown and for members that do not simulate."""
     held = ((z <= low) & (gradient > 0)) | ((z >= high) & (gradient < 0)) | ~sound[:, None]
     diagonal = np.where(sound[:, None], np.einsum("mii->mi", hessian), 1.0)
-    scale = lengths(diagonal, z)
+    scale = lengths(diagonal)
     matrix = np.where(held[:, :, None] | held[:, None, :], 0.0, hessian * scale[:, :, None] * scale[:, None, :])
     each = np.arange(z.shape[1])
     matrix[:, each, each] = np.where(held, 1.0, 1.0 + damping[:, None])

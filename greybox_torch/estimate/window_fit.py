@@ -90,6 +90,8 @@ def fit_windows(
     if here is None:
         return None
     hold = _weak_hold(problem, states, here.mean_square, windows.steps, size)
+    expected = np.abs(problem.expected[problem.free])
+    sizes = expected if size is None else np.where(expected > 0, expected, 1.0)  # weights of a network: of order one
     here = held(here, hold)
     evaluations, accepted_steps, growth, change, along = 1, 0, 2.0, 1.0, None
     for iteration in range(settings.iterations):
@@ -97,7 +99,7 @@ def fit_windows(
             break
         accepted = False
         for _ in range(settings.trials):
-            trial, trial_states, predicted = stepped(problem, here, states, damping)
+            trial, trial_states, predicted = stepped(problem, here, states, damping, sizes)
             if predicted <= NEGLIGIBLE * settings.tolerance * here.cost:
                 break
             there = None
@@ -190,12 +192,10 @@ def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: 
     of many begins, it would still get there by and by).
     """
     measured = problem.records.y * problem.weights[:, None]
-    mean_square = min(
-        mean_square, float(np.nanvar(measured, axis=1).mean())
-    )  # start values that explode must not freeze all
+    mean_square = min(mean_square, float(np.nanvar(measured, axis=1).mean()))  # what explodes must not freeze all
     spread = np.nanstd(states, axis=0)
-    moved = spread > 1e-9 * np.abs(states).max(axis=0)
-    spread = np.where(moved, spread, max(float(np.nanstd(problem.records.y)), 1e-6))
+    least = max(float(np.nanstd(problem.records.y)), 1e-6)
+    spread = np.where(spread > 1e-9 * np.abs(states).max(axis=0), spread, least)
     values = problem.expected[problem.free]
     # What is expected to be next to nothing, as where an output never moves, is of no size by which it could be held.
     sized = values**2 > np.finfo(float).tiny

@@ -59,9 +59,13 @@ def held(found: WindowModel, hold: Hold) -> WindowModel:
 
 
 def stepped(
-    problem: Problem, here: WindowModel, states: np.ndarray, damping: float
+    problem: Problem, here: WindowModel, states: np.ndarray, damping: float, sizes: np.ndarray
 ) -> tuple[Problem, np.ndarray, float]:
-    """The damped Gauss-Newton step within bounds, window starts eliminated, and how much it should lower the cost."""
+    """The damped Gauss-Newton step within bounds, window starts eliminated, and how much it should lower the cost.
+
+    Args:
+        sizes: of the free parameters (n_free,), zero where none is known.
+    """
     diagonal = np.einsum("wii->wi", here.hss)
     floor = 1e-12 * diagonal.max(
         axis=0, initial=0.0
@@ -72,7 +76,7 @@ def stepped(
     matrix = here.hpp - np.einsum("wsp,wsq->pq", here.hsp, back)
     right = -(here.gp - np.einsum("wsp,ws->p", here.hsp, own))
     now = problem.values[problem.free]
-    scale = lengths(np.diag(here.hpp), now)
+    scale = lengths(np.diag(here.hpp), sizes)
     scaled = matrix * scale[:, None] * scale[None, :] + damping * np.eye(len(scale))
     low, high = ((bound[problem.free] - now) / scale for bound in (problem.lower, problem.upper))
     taken = scale * bounded_step(scaled, right * scale, low, high)
