@@ -74,7 +74,8 @@ def _found(card: Card) -> Iterator[Contradiction]:
             if name == TIME and card.time is not None:
                 told = _time_in(column)
                 if told and _differ(told, card.time.unit):
-                    yield Contradiction(f"{where}{TIME}", column, told, card.time.unit, f'unit = "{told}"')
+                    write = f'time = {{ column = "{column}", unit = "{told}" }}, which converts the stamps to s, if the equations are in s'
+                    yield Contradiction(f"{where}{TIME}", column, told, card.time.unit, write)
             elif name in card.channels:
                 yield from _of_channel(f'{where}channel "{name}"', column, card.channels[name], columns)
 

@@ -33,5 +33,6 @@ def _measuring_signal(model: GreyBoxModel, state: State, records: Records) -> np
             break
     raise UserError(
         f"model {model.title}, state '{state.name}': initial is 'measured', but no output shows it and not exactly one output or input is "
-        f"in '{state.unit}'; expected an output that is this state, or exactly one signal in the same unit"
+        f"in '{state.unit}'; expected an output that is this state, exactly one signal in the same unit, or a number to begin with "
+        "(initial=0.0)"
     )
