@@ -8,6 +8,7 @@ from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Balance, value_of
 from greybox_torch.model.random_points import random_points
+from greybox_torch.model.signals_elsewhere import difference
 
 NEAR = 1e-9
 """Relative difference between what is the same."""
@@ -26,13 +27,7 @@ def _stands_between(model: GreyBoxModel, between: Balance, one: Balance, other: 
     """Whether a balance is what two others exchange, in either direction, seen at random points."""
     *points, p = random_points(model)
     x, u = model.named_signals(*points)
-    level, apart = (
-        torch.as_tensor(v)
-        for v in (
-            value_of(between.level, x, u, p),
-            value_of(one.level, x, u, p) - value_of(other.level, x, u, p),
-        )
-    )
+    level, apart = (torch.as_tensor(value_of(s, x, u, p)) for s in (between.level, difference(one, other)))
     if not any(torch.allclose(level, sign * apart, rtol=NEAR) for sign in (1.0, -1.0)):
         return False
     none, force = no_forces(model), torch.ones((), dtype=torch.float64)

@@ -7,7 +7,7 @@ from typing import Any
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.own_rate import balanced_state, without_laws
 from greybox_torch.model.port_forces import no_forces
-from greybox_torch.model.ports import Balance, Body, Coupling, Port, Sensor, Signal
+from greybox_torch.model.ports import Body, Sensor
 from greybox_torch.model.states_of import inputs_of, states_of
 
 STATE = "state@"
@@ -18,7 +18,8 @@ def driving_states(model: GreyBoxModel, body: Body) -> list[str]:
     """The states that move a body's rate and are no port's own: neither its position, speed, deflection nor level depends on them."""
     if balanced_state(model, body) is None:
         return []
-    known = set().union(*(states_of(model, s) for q in model.ports for s in _own_signals(q)))
+    own = (s for q in model.ports for name, s in q.signals.items() if name != "load")  # what a body carries is a force
+    known = set().union(*(states_of(model, s) for s in own))
     moving = states_of(model, without_laws(model, body))
     return [s.name for s in model.states if s.name in moving - known]
 
@@ -35,12 +36,3 @@ def states_shown(model: GreyBoxModel, sensor: Sensor) -> list[str]:
 
     moving = states_of(model, shown)
     return [s.name for s in model.states if s.name in moving] if len(moving) + len(inputs_of(model, shown)) > 1 else []
-
-
-def _own_signals(port: Port) -> list[Signal]:
-    """The signals of a port by which states are told there: not what a body carries, which is a force."""
-    if isinstance(port, Body):
-        return [s for s in (port.speed, port.position) if s is not None]
-    if isinstance(port, Coupling):
-        return [port.deflection, port.rate]
-    return [port.level] if isinstance(port, Balance) else []

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-from greybox_torch.diagnosis.confirm.far_better import judged_anew, leaves_far_less
-from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
+from greybox_torch.diagnosis.confirm.far_better import Standing, judged_anew, leaves_far_less
+from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, sound
@@ -17,9 +16,7 @@ from greybox_torch.diagnosis.study import Study
 from greybox_torch.simulation.side_by_side import side_by_side
 
 
-def curve_instead(
-    study: Study, state: SearchState, others: HeldOut | None, judged: Judgement
-) -> tuple[SearchState, Mapping[str, Gain], Judgement] | None:
+def curve_instead(study: Study, state: SearchState, others: HeldOut | None, judged: Judgement) -> Standing | None:
     """The free curve that led the first step of ``state``, drawn as finely as pays, in the place of what was left of that; None where free
     runs do not leave half of what that leaves or less with it, or windows do not bear it out beyond chance.
 

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
-from greybox_torch.diagnosis.confirm.far_better import judged_anew, leaves_far_less
-from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
+from greybox_torch.diagnosis.confirm.far_better import Standing, judged_anew, leaves_far_less
+from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.select.memory import linear_residual
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 
 
-def memory_instead(
-    study: Study, searched: SearchState, others: HeldOut | None, judged: Judgement
-) -> tuple[SearchState, Mapping[str, Gain], Judgement] | None:
+def memory_instead(study: Study, searched: SearchState, others: HeldOut | None, judged: Judgement) -> Standing | None:
     """The model with a residual with memory alone, where that was not asked; None where free runs do not leave half of the mismatch or less
     with it, or windows do not bear it out beyond chance.
 

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from greybox_torch.diagnosis.confirm.far_better import Standing
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
-
-Standing = tuple[SearchState, Mapping[str, Gain], Judgement]
-"""A state, what its effects gain on held-out experiments, and its free runs."""
 
 
 def without_too_little(
