@@ -7,19 +7,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from greybox_torch.estimate.beginnings import cost_of, fits_of, tolerable, well_begun
 from greybox_torch.estimate.free_run import FreeRun, simulate
 from greybox_torch.estimate.global_search import look_around
 from greybox_torch.estimate.levenberg_marquardt import Descending, Optimum, Settings, answered, descending
 from greybox_torch.estimate.logarithmic import descending_on_logarithms
-from greybox_torch.estimate.metrics import fit_percent
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.simulators import fine_enough
 from greybox_torch.estimate.termination import Termination
 from greybox_torch.estimate.window_fit import fit_windows
 from greybox_torch.simulation.simulator import Simulator
-
-TOLERABLE = 30.0
-"""Fit in % from which a simulation is a place to begin a descent on whole records."""
 
 POOR = 2.0
 """Start values are poor where their error is larger than this many times that of the optimum they lead to."""
@@ -92,8 +89,18 @@ def descend(problem: Problem, options: DescentOptions, starts: int | None) -> De
     """
     simulator = options.fine_enough(problem)
     fits = fits_of(problem, simulate(problem, simulator))
+    own, cost = well_begun(problem, simulator)
+    if not tolerable(fits):
+        of_own = fits_of(own, simulate(own, simulator))
+        problem, fits = (own, of_own) if tolerable(of_own) else (problem, fits)
     begin, before = (problem, 0) if tolerable(fits) else _by_windows(problem, options, simulator)
-    return or_elsewhere(problem, fits, _whole_records(begin, options, before), options, starts)
+    found = no_worse(_whole_records(begin, options, before), own, cost, options)
+    return or_elsewhere(problem, fits, found, options, starts)
+
+
+def no_worse(found: Descent | None, own: Problem, cost: float, options: DescentOptions) -> Descent | None:
+    """What was ``found``, or what the start values lead to directly where that is worse than they are: ``own``, well begun, of ``cost``."""
+    return found if found is not None and found.optimum.model.cost <= cost else improved(found, own, options)
 
 
 def or_elsewhere(
@@ -116,25 +123,9 @@ def or_elsewhere(
     return found
 
 
-def tolerable(fits: np.ndarray) -> bool:
-    """Whether start values that simulate with ``fits`` in % are a place to begin a descent on whole records."""
-    return bool(fits.min() > TOLERABLE)
-
-
 def improved(found: Descent | None, begin: Problem, options: DescentOptions) -> Descent | None:
     """The better of what was found and the optimum that a descent on whole records reaches from the values of ``begin``."""
     return _better(found, _whole_records(begin, options, 0))
-
-
-def fits_of(problem: Problem, simulated: Sequence[np.ndarray]) -> np.ndarray:
-    """Fit in % of every output of every experiment, simulated (N_e, n_y)."""
-    return np.array(
-        [
-            fit_percent(problem.records.y[k, problem.records.span(e)], run[:, k])
-            for e, run in enumerate(simulated)
-            for k in range(run.shape[1])
-        ]
-    )
 
 
 def _trusted(before: np.ndarray, found: Descent) -> bool:
@@ -186,16 +177,10 @@ def _whole_records(
         finer = options.fine_enough(there)
         if finer.substeps <= found.run.simulator.substeps:
             return found
-        astray = _cost(problem, finer) < _cost(there, finer)
+        astray = cost_of(problem, finer) < cost_of(there, finer)
         problem, methods = (problem, methods) if astray else (there, methods[-1:])
         found = _optimum(FreeRun(problem, finer), options, found.evaluations, methods)
     return found
-
-
-def _cost(problem: Problem, simulator: Simulator) -> float:
-    run = FreeRun(problem, simulator)
-    here = run.quadratic(run.start)
-    return float("inf") if here is None else here.cost
 
 
 def _optimum(run: FreeRun, options: DescentOptions, before: int, methods: Sequence[Method]) -> Descent | None:

@@ -79,8 +79,9 @@ def fit_records(
     """Estimate the free parameters and start states of ``problem`` by simulation-error least squares.
 
     Start values that simulate the records tolerably are refined on whole records at once; others are first improved on short
-    windows with free start states, then on longer ones. Where the error then turns out to be less than half of what it was at the
-    start values, they were poor, and another valley may be deeper: many more start values are drawn around them and tried.
+    windows with free start states, then on longer ones. They are judged with the start states given, and, where these do not simulate, with
+    those estimated on the first tenth of each record; no estimate is worse than that. Where the error turns out to be less than half of
+    what it was at the start values, they were poor, and another valley may be deeper: many more are drawn around them and tried.
     Where parameters start at zero, the model without them is estimated as well; where that is better, the estimation begins there.
 
     Args:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from greybox_torch.estimate.beginnings import fits_of, tolerable
 from greybox_torch.estimate.descent import (
     FINER,
     METHODS,
@@ -16,14 +17,14 @@ from greybox_torch.estimate.descent import (
     DescentOptions,
     by_methods,
     descend,
-    fits_of,
     improved,
+    no_worse,
     or_elsewhere,
-    tolerable,
 )
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.together.answering import answered_together
 from greybox_torch.estimate.together.free_runs import FreeRuns, alike, whole
+from greybox_torch.estimate.together.initial import well_begun_together
 from greybox_torch.estimate.together.substeps import with_fine_steps
 
 Told = Callable[[str], None]
@@ -61,9 +62,11 @@ def descend_together(
             + (f", {len(group) - len(begun)} alone" if len(begun) < len(group) else "")
         )
         found = _whole_records(runs, begun, own)
+        well_begun = dict(zip(begun, well_begun_together(runs, begun), strict=True))
         for k, m in enumerate(group):
             if k in found:
-                result[m] = or_elsewhere(problems[m], fits[k], found[k], own, starts)
+                no_worse_found = no_worse(found[k], *well_begun[k], own)
+                result[m] = or_elsewhere(problems[m], fits[k], no_worse_found, own, starts)
             else:
                 result[m] = descend(problems[m], own, starts)
     return result

@@ -47,3 +47,18 @@ def estimate_initial_together(
     for m, initial in rows.items():
         result[m] = problems[m].with_values(problems[m].values, initial)
     return result
+
+
+def well_begun_together(runs: FreeRuns, machines: Sequence[int]) -> list[tuple[Problem, float]]:
+    """As :func:`greybox_torch.estimate.beginnings.well_begun` for each of some ``machines`` of ``runs``."""
+    given, substeps = [runs.problems[m] for m in machines], tuple(runs.substeps[m] for m in machines)
+    estimated = estimate_initial_together(given, runs.simulator, substeps)
+    before, after = (_costs(FreeRuns(tuple(each), runs.simulator, substeps)) for each in (given, estimated))
+    return [(other, b) if b < a else (one, a) for one, other, a, b in zip(given, estimated, before, after, strict=True)]
+
+
+def _costs(runs: FreeRuns) -> list[float]:
+    """The costs of whole records; infinite where the simulation overflows."""
+    found = runs.quadratics({m: run.start for m, run in enumerate(runs.runs)})
+    here = [found[m] for m in range(len(runs.runs))]
+    return [float("inf") if each is None else each.cost for each in here]
