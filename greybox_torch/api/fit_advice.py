@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from greybox_torch.api.scores import Scores
+from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import held_out_scores, mean_fit, of_moving_outputs
+from greybox_torch.estimate.problem import Problem
 
 WORSE = 1.0
 """Points of the mean fit in % by which an estimate counts as worse than the values that it began with."""
@@ -13,11 +15,12 @@ WORSE = 1.0
 DIAGNOSE = "`greybox diagnose` says what."
 
 
-def fit_advice(scores: Scores) -> str | None:
-    """A sentence where the estimate simulates the validation experiments badly, so that the model lacks something; else None.
+def fit_advice(scores: Scores, begun: str) -> str | None:
+    """A sentence where the estimate simulates the validation experiments badly; else None.
 
     Args:
         scores: of the models "start" and "refit"; without validation experiments, those of estimation count.
+        begun: which values the estimation began with, see :func:`begun_with`.
     """
     judging = {name: of_moving_outputs(held_out_scores(scores[name])) for name in ("start", "refit")}
     before, after = mean_fit(judging["start"]), mean_fit(judging["refit"])
@@ -32,7 +35,22 @@ def fit_advice(scores: Scores) -> str | None:
         )
     if np.isfinite(before) and after < before - WORSE:
         return (
-            f"The estimate simulates the {on} experiments worse than the values of the card (mean fit {after:.3g} % for {before:.3g} %): "
-            f"its parameters make up for something that the model lacks. {DIAGNOSE}"
+            f"The estimate simulates the {on} experiments worse than {begun} did (mean fit {after:.3g} % for {before:.3g} %). Either "
+            "it has ended in another valley of the error, which more start values leave (--starts 128, in Python starts=128), or its "
+            f"parameters make up for something that the model lacks: {DIAGNOSE}"
         )
     return None
+
+
+def begun_with(problem: Problem, data: DataSet) -> str:
+    """Which values an estimation begins with: those that the model holds, else the card's, else the declared ones."""
+    free = set(problem.free_names)
+    held = free & set(problem.model.held_values())
+    carded = {name for name, entry in data.parameters.items() if entry.value is not None} & free - held
+    sources = (
+        (held, "held by the model (of a checkpoint, a result or set_values)"),
+        (carded, "of the card"),
+        (free - held - carded, "of the model file"),
+    )
+    named = [source for names, source in sources if names]
+    return f"the start values {' and '.join(named)}" if named else "the start values"

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from greybox_torch.api.estimated import EstimatedParameter, EstimatedStart, estimated_parameters, estimated_starts
 from greybox_torch.api.estimated_model import EstimatedModel
-from greybox_torch.api.fit_advice import fit_advice
+from greybox_torch.api.fit_advice import begun_with, fit_advice
 from greybox_torch.api.fit_json import estimation_json, identifiability_json, profile_json, status
 from greybox_torch.api.fit_summary import beginnings, parameter_table, print_estimate, warnings
 from greybox_torch.api.free_runs import plot_simulated
@@ -136,7 +136,7 @@ class FitResult(EstimatedModel):
     @property
     def _advice(self) -> list[str]:
         """What the free runs say about the model itself: a sentence, or none."""
-        said = fit_advice(self._scores)
+        said = fit_advice(self._scores, begun_with(self.estimation.problem, self.data))
         return [] if said is None else [said]
 
     @property

@@ -5,8 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greybox_torch.api.fit_advice import fit_advice
+import greybox_torch as gt
+from greybox_torch.api.fit_advice import begun_with, fit_advice
 from greybox_torch.estimate.comparison import Score
+from greybox_torch.estimate.problem import make_problem
+from tests.api.motor import Motor
+from tests.api.test_fit_many import motors
+
+BEGUN = "the start values of the card"
 
 
 def scores(role: str, *fits: float) -> list[Score]:
@@ -16,7 +22,7 @@ def scores(role: str, *fits: float) -> list[Score]:
 def said(before: tuple[float, ...], after: tuple[float, ...], role: str = "validation") -> str | None:
     """With an estimation experiment beside that is always simulated well."""
     well = scores("estimation", 99.0)
-    return fit_advice({"start": [*well, *scores(role, *before)], "refit": [*well, *scores(role, *after)]})
+    return fit_advice({"start": [*well, *scores(role, *before)], "refit": [*well, *scores(role, *after)]}, BEGUN)
 
 
 @pytest.mark.parametrize(
@@ -29,7 +35,8 @@ def test_nothing_is_said_of_an_estimate_that_predicts_no_worse(before, after) ->
 def test_an_estimate_that_predicts_worse_than_its_start_is_said_to() -> None:
     """Seen: a conveyor with dry friction left out, fitted; nothing but the table showed that validation had become worse."""
     told = said((90.0, 80.0), (40.0, 20.0))
-    assert told is not None and "(mean fit 30 % for 85 %)" in told and "greybox diagnose" in told
+    assert told is not None and "worse than the start values of the card did (mean fit 30 % for 85 %)" in told
+    assert "--starts 128" in told and "greybox diagnose" in told, "seen: the diagnosis then found nothing missing"
 
 
 def test_a_model_that_cannot_follow_the_machine_is_said_to() -> None:
@@ -51,6 +58,24 @@ def test_without_validation_the_estimation_experiments_count() -> None:
 
 def test_of_outputs_that_never_move_nothing_is_said() -> None:
     still, bad = Score("one", "validation", "y", -np.inf, 1.0), Score("one", "validation", "z", -40.0, 1.0)
-    assert fit_advice({"start": [still], "refit": [still]}) is None
-    told = fit_advice({"start": [still, bad], "refit": [still, bad]})
+    assert fit_advice({"start": [still], "refit": [still]}, BEGUN) is None
+    told = fit_advice({"start": [still, bad], "refit": [still, bad]}, BEGUN)
     assert told is not None and "(mean fit -40 %)" in told
+
+
+def test_where_the_start_values_came_from_is_named() -> None:
+    """Seen: "worse than the values of the card" of an estimate begun with a checkpoint's, without a value on the card."""
+    (data,) = motors(1)
+
+    def of(model: gt.GreyBoxModel, **card: float) -> str:
+        parameters = {name: {"value": value} for name, value in card.items()}
+        own = gt.DataSet(data.recordings, parameters=parameters)
+        return begun_with(make_problem(own, model, own.estimation()), own)
+
+    held = Motor()
+    held.set_values({"J": 0.02})
+    free = Motor()
+    assert of(free, J=0.03, b=0.1) == "the start values of the card"
+    assert of(held).startswith("the start values held by the model (of a checkpoint, a result or set_values)")
+    assert "of the card" not in of(held, J=0.03) and of(held, J=0.03).endswith(" and of the model file")
+    assert of(free) == "the start values of the model file"
