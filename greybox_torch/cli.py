@@ -15,7 +15,19 @@ import typer
 from greybox_torch import __version__
 from greybox_torch.commands import after_diagnosis, first_steps, many_machines
 from greybox_torch.commands.exit_codes import Commands
-from greybox_torch.commands.option_types import DataSetFile, Device, Json, Model, Out, Pdf, Precision, Seed, Settings
+from greybox_torch.commands.option_types import (
+    Checkpoint,
+    DataSetFile,
+    Device,
+    Json,
+    Model,
+    Out,
+    Pdf,
+    Precision,
+    Seed,
+    Settings,
+    Starts,
+)
 from greybox_torch.commands.options import Options
 
 app = typer.Typer(
@@ -88,16 +100,8 @@ def fit(
         list[str] | None,
         typer.Option(metavar="PARAMETER", help="Add its profile likelihood: 95 % interval, figure. Repeatable."),
     ] = None,
-    starts: Annotated[
-        int | None,
-        typer.Option(
-            min=1,
-            max=4096,
-            metavar="N",
-            help="How many start values to try, drawn around those given.",
-            show_default="those given; many where they are poor",
-        ),
-    ] = None,
+    starts: Starts = None,
+    checkpoint: Checkpoint = None,
     model: Model = None,
     out: Out = None,
     seed: Seed = 0,
@@ -108,7 +112,7 @@ def fit(
     """Estimate the free parameters and initial states, and write them as a checkpoint."""
     from greybox_torch.commands import fit
 
-    fit.run(dataset, Options(model, out, seed, device, json, precision), profile or [], starts)
+    fit.run(dataset, Options(model, out, seed, device, json, precision), profile or [], starts, checkpoint)
 
 
 @app.command()
@@ -133,9 +137,7 @@ def compare(
 @app.command()
 def residuals(
     dataset: DataSetFile,
-    checkpoint: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Results of fit, train or diagnose, not the start values.")
-    ] = None,
+    checkpoint: Checkpoint = None,
     model: Model = None,
     out: Out = None,
     seed: Seed = 0,

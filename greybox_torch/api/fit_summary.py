@@ -38,7 +38,7 @@ def statistics(found: Estimation) -> dict[str, str]:
     several = " (each output's error over its spread)" if len(found.problem.model.outputs) > 1 else ""
     return {
         "termination": found.termination.value,
-        "iterations": str(found.iterations),
+        "iterations": f"{found.iterations} (of the descent that ended here; not of windows, of a search, or of descents that were left)",
         "evaluations": str(found.evaluations),
         "mean squared error": f"{found.mse:.6g}{several}",
         "final prediction error": f"{found.fpe:.6g}",

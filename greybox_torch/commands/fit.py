@@ -11,15 +11,29 @@ from rich.text import Text
 from greybox_torch.api.fit import fit
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.task import load_task
+from greybox_torch.restored import load_beside
 
 
-def run(dataset: Path, options: Options, profiled: Sequence[str] = (), starts: int | None = None) -> None:
-    """Estimates, and writes fit.json, the checkpoint `model`, and figures of the profiles that were asked for."""
+def run(
+    dataset: Path,
+    options: Options,
+    profiled: Sequence[str] = (),
+    starts: int | None = None,
+    checkpoint: Path | None = None,
+) -> None:
+    """Estimates, and writes fit.json, the checkpoint `model`, and figures of the profiles that were asked for.
+
+    Args:
+        checkpoint: begins with the model of earlier results, effects included, and their values; with the start values else.
+    """
     task = load_task(dataset, options, writes_model="fit")
+    model, data = task.model, task.data
+    if checkpoint is not None:
+        model, data = load_beside(checkpoint, model, data)
     log = Console(stderr=True, highlight=False)
     found = fit(
-        task.model,
-        task.data,
+        model,
+        data,
         starts=starts,
         seed=options.seed,
         profiles=profiled,

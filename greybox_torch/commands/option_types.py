@@ -1,4 +1,4 @@
-"""The options of the command line that several commands take: how they are written, and what help says of them."""
+"""Options of the command line, those that several commands take among them: how they are written, and what help says of them."""
 
 from __future__ import annotations
 
@@ -11,6 +11,10 @@ DataSetFile = Annotated[Path, typer.Argument(metavar="DATASET.toml", help="The d
 Model = Annotated[
     str | None,
     typer.Option(metavar="NAME", help='A built-in system, or "my_motor.py:Motor"; wins over the model in the card.'),
+]
+Checkpoint = Annotated[
+    Path | None,
+    typer.Option(metavar="RESULTS", help="Results of fit, train or diagnose, to take the place of the start values."),
 ]
 Out = Annotated[
     Path | None,
@@ -28,6 +32,16 @@ Settings = Annotated[
     Path | None,
     typer.Option(
         metavar="FILE.toml", help="Thresholds and budgets of the search, by name; win over those on the card."
+    ),
+]
+Starts = Annotated[
+    int | None,
+    typer.Option(
+        min=1,
+        max=4096,
+        metavar="N",
+        help="How many start values to try, drawn around those given.",
+        show_default="those given; many where they are poor",
     ),
 ]
 Pdf = Annotated[bool, typer.Option("--pdf", help="Also write the report for print, report.pdf.")]

@@ -7,6 +7,7 @@ import json
 import pytest
 
 import greybox_torch as gt
+from greybox_torch.estimate.termination import Termination
 from tests.commands.fitting import Edit, Make, fit
 
 
@@ -127,3 +128,14 @@ def test_substeps_are_told(motor_folder: Make, edit: Edit) -> None:
     steps = json.loads(result.stdout)["substeps"]
     assert steps > 1
     assert f"Each sample is simulated in {steps} Runge-Kutta steps" in result.stderr
+
+
+def test_iterations_say_what_they_count(motor_folder: Make) -> None:
+    """Seen: "iterations: 20" under a log of many series of more."""
+    assert "(of the descent that ended here; not of windows, of a search" in fit(motor_folder()).stdout
+
+
+def test_at_the_iteration_limit_it_says_how_to_go_on() -> None:
+    assert "`greybox fit DATASET.toml --checkpoint RESULTS`, in Python fit(result, data)" in (
+        Termination.iteration_limit.value
+    )
