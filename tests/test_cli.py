@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -84,3 +87,23 @@ def test_no_warning_of_a_library_reaches_the_terminal(monkeypatch: pytest.Monkey
     result = CliRunner().invoke(app, ["inspect", "dataset.toml"])
     assert (result.exit_code, result.output) == (0, "")
     assert (list(warnings.filters), list(logging.getLogger().handlers)) == before
+
+
+@pytest.mark.parametrize(
+    ("command", "function", "given"),
+    [("fit", "fit", "dataset.toml"), ("diagnose", "diagnose", "dataset.toml"), ("design", "design", "")],
+)
+def test_ctrl_c_says_that_nothing_is_written(
+    motor_folder: Callable[..., Path], monkeypatch: pytest.MonkeyPatch, command: str, function: str, given: str
+) -> None:
+    """Seen: "interrupted" alone, after minutes, and no word on whether there were results."""
+
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    folder = motor_folder()
+    monkeypatch.setattr(import_module(f"greybox_torch.commands.{command}"), function, stopped)
+    result = CliRunner().invoke(app, [command, str(folder / given), "--out", str(folder / "out")])
+    assert result.exit_code == 130
+    assert result.stderr.endswith("interrupted; nothing is written\n")
+    assert not (folder / "out").exists()

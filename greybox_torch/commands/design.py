@@ -7,7 +7,7 @@ from pathlib import Path
 from greybox_torch.api.design import design
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.progress import stages
-from greybox_torch.commands.results_folder import check_folder
+from greybox_torch.commands.results_folder import check_folder, nothing_written
 from greybox_torch.errors import UserError
 
 FOLDER = "design"
@@ -19,7 +19,7 @@ def run(results: Path, precision: str | None, seconds: float | None, options: Op
         raise UserError(f"{results}: no such folder; expected results of greybox diagnose")
     folder = options.out if options.out is not None else results / FOLDER
     check_folder(folder)
-    with stages("designing the next recording") as progress:
+    with nothing_written(), stages("designing the next recording") as progress:
         found = design(
             results, precision=precision, seconds=seconds, model=options.model, seed=options.seed, progress=progress
         )

@@ -7,6 +7,7 @@ from pathlib import Path
 from greybox_torch.api.diagnose import diagnose
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.progress import diagnosing
+from greybox_torch.commands.results_folder import nothing_written
 from greybox_torch.commands.task import load_task
 from greybox_torch.diagnosis.settings import settings_from_file, settings_from_mapping
 
@@ -19,7 +20,7 @@ def run(
     own = settings_from_mapping(task.data.diagnosis, task.data.place("[diagnosis]"))
     if settings is not None:
         own = settings_from_mapping(settings_from_file(settings), str(settings), own)
-    with diagnosing(f"diagnosing {task.data.name}") as hear:
+    with nothing_written(), diagnosing(f"diagnosing {task.data.name}") as hear:
         found = diagnose(
             task.model,
             task.data,

@@ -45,8 +45,8 @@ class Commands(TyperGroup):
                 raise
             _no_more_output()
             raise _stop(f"error: standard output: cannot be written: {error.strerror}", 2) from None
-        except KeyboardInterrupt:
-            raise _stop("interrupted", 130) from None
+        except KeyboardInterrupt as stop:
+            raise _stop("; ".join(["interrupted", *map(str, stop.args)]), 130) from None
 
 
 @contextmanager

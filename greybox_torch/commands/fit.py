@@ -10,6 +10,8 @@ from rich.text import Text
 
 from greybox_torch.api.fit import fit
 from greybox_torch.commands.options import Options
+from greybox_torch.commands.progress import news
+from greybox_torch.commands.results_folder import nothing_written
 from greybox_torch.commands.task import load_task
 from greybox_torch.restored import load_beside
 
@@ -26,19 +28,20 @@ def run(
     Args:
         checkpoint: begins with the model of earlier results, effects included, and their values; with the start values else.
     """
-    task = load_task(dataset, options, writes_model="fit")
-    model, data = task.model, task.data
-    if checkpoint is not None:
-        model, data = load_beside(checkpoint, model, data)
-    log = Console(stderr=True, highlight=False)
-    found = fit(
-        model,
-        data,
-        starts=starts,
-        seed=options.seed,
-        profiles=profiled,
-        device=task.device,
-        precision=task.precision,
-        progress=lambda line: log.print(Text(line), soft_wrap=True),
-    )
+    with nothing_written():
+        task = load_task(dataset, options, writes_model="fit")
+        model, data = task.model, task.data
+        if checkpoint is not None:
+            model, data = load_beside(checkpoint, model, data)
+        log = Console(stderr=True, highlight=False)
+        found = fit(
+            model,
+            data,
+            starts=starts,
+            seed=options.seed,
+            profiles=profiled,
+            device=task.device,
+            precision=task.precision,
+            progress=news(lambda line: log.print(Text(line), soft_wrap=True)),
+        )
     options.finish(found, task.folder)

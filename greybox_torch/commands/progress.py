@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -73,7 +74,22 @@ def _findings(console: Console, first: str) -> Callable[[Standing], None]:
 
 
 LINE_SECONDS = 5.0
-"""Time between two lines on the course of a training, where there is no terminal."""
+"""Time between two lines on the course of a computation that say nothing else new."""
+
+
+def news(write: Callable[[str], None]) -> Callable[[str], None]:
+    """Passes lines on to ``write``, but for those that differ from the last in the number of the iteration alone: one every few seconds."""
+    before, due = "", 0.0
+
+    def tell(line: str) -> None:
+        nonlocal before, due
+        said, now = re.sub(r", iteration \d+:", "", line), time.perf_counter()
+        if said == before and now < due:
+            return
+        before, due = said, now + LINE_SECONDS
+        write(line)
+
+    return tell
 
 
 @contextmanager

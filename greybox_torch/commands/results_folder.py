@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from greybox_torch.errors import UserError
@@ -45,3 +47,12 @@ def check_folder(folder: Path) -> None:
         raise UserError(
             f"--out {folder}: nothing can be written in {nearest} ({error.strerror or error}); expected a folder for results"
         ) from None
+
+
+@contextmanager
+def nothing_written() -> Iterator[None]:
+    """What Ctrl-C says in the block: that there are no results. For a command that writes all that it finds at the end."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt("nothing is written") from None
