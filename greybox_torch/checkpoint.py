@@ -22,10 +22,13 @@ from safetensors.numpy import load, save
 from greybox_torch import __version__
 from greybox_torch.checkpoint_card import SCHEMA, CheckpointCard, read_checkpoint_card
 from greybox_torch.errors import NumericalError, UserError
-from greybox_torch.files import json_text, write_all
+from greybox_torch.files import absolute, json_text, write_all
 from greybox_torch.reading import read_bytes
 
 _SUFFIXES = (".safetensors", ".json")
+
+IN_RESULTS = "model"
+"""What the checkpoint in a folder of results is called."""
 
 
 @dataclass(frozen=True)
@@ -84,18 +87,18 @@ def checkpoint_files(stem: Path, checkpoint: Checkpoint) -> dict[Path, str | byt
 
 
 def load_checkpoint(path: str | PathLike[str]) -> Checkpoint:
-    """The checkpoint at `path`: either of its two files, or what their names have in common.
+    """The checkpoint at `path`: either of its two files, what their names have in common, or the folder of results that it is in.
 
     Raises:
         UserError: a file is missing or damaged, the two do not belong together, a newer version has written them, the card lacks a
             field, there are tensors too many or too few, or a value is not a finite number.
     """
-    tensors, card = _halves(Path(path))
+    path = _found(Path(path))
+    tensors, card = _halves(path)
     for half, other in ((tensors, card), (card, tensors)):
         if not _is_there(half):
             what = f"its other half {other} is there" if _is_there(other) else "nor is its other half"
-            inside = Path(path) / "model"
-            hint = f"; the folder has one, {inside}" if _is_there(inside.with_suffix(".json")) else ""
+            hint = f"; {path} is a folder without results (model.json)" if _is_there(path) and path.is_dir() else ""
             raise UserError(f"checkpoint {half}: no such file ({what}); expected {tensors.name} and {card.name}{hint}")
     content = read_checkpoint_card(card)
     return Checkpoint(
@@ -147,9 +150,15 @@ def _is_there(half: Path) -> bool:
         return False
 
 
+def _found(path: Path) -> Path:
+    """`path`, or the checkpoint `model` in it where it is a folder of results and not a checkpoint's name itself."""
+    inside, itself = _halves(path / IN_RESULTS), _halves(path) if path.name not in ("", "..") else ()
+    return path / IN_RESULTS if any(map(_is_there, inside)) and not any(map(_is_there, itself)) else path
+
+
 def checkpoint_name(path: Path) -> str:
-    """What the checkpoint at `path` is called: the file name without what tells its two halves apart."""
-    return _halves(path)[0].stem
+    """What the checkpoint at `path` is called: the file name without what tells its two halves apart, or the folder's name."""
+    return _halves(path if path.name not in ("", "..") else absolute(path))[0].stem
 
 
 def check_same_parameters(path: Path, checkpoint: Checkpoint, title: str, names: Sequence[str]) -> None:

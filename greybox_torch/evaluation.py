@@ -90,7 +90,8 @@ def evaluate(
     """Simulate all experiments of ``data`` with the card's values, or with the model of a checkpoint.
 
     Args:
-        checkpoint: what `greybox fit`, `train` or `diagnose` have written: either of its two files, or what their names have in common.
+        checkpoint: what `greybox fit`, `train` or `diagnose` have written: either of its two files, what their names have in
+            common, or the folder that it is in.
         model: wins over the model that the card names; either stands in for a checkpoint's whose class is not where it was.
 
     Raises:

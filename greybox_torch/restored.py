@@ -40,7 +40,7 @@ def load(path: str | PathLike[str], model: GreyBoxModel | str | None = None) -> 
     """The model that a fit, a training or a diagnosis has saved: with its effects, holding its values, to be used like any other.
 
     Args:
-        path: either of the checkpoint's two files, or what their names have in common.
+        path: either of the checkpoint's two files, what their names have in common, or the folder of results that it is in.
         model: the plain model, or how to load it ("my_motor.py:Motor"). Not needed where it is a built-in system, or of a class that this
             session has already defined. A model file that only the checkpoint names is never run: a checkpoint may come from anywhere.
 
@@ -48,7 +48,7 @@ def load(path: str | PathLike[str], model: GreyBoxModel | str | None = None) -> 
         UserError: the checkpoint is damaged, is of a model that is not at hand, or is not one of ``model``.
 
     Examples:
-        ``greybox_torch.simulate(greybox_torch.load("results/model"), data)``
+        ``greybox_torch.simulate(greybox_torch.load("results"), data)``
     """
     return load_saved_model(path, model).model
 

@@ -89,3 +89,28 @@ def test_nowhere_to_write(tmp_path: Path) -> None:
     (tmp_path / "taken").touch()
     with pytest.raises(UserError, match="cannot be written"):
         save_checkpoint(tmp_path / "taken" / "model", MOTOR)
+
+
+def test_a_folder_of_results_stands_for_the_checkpoint_in_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seen: `greybox compare dataset.toml found` said that found/model was there, and that it expected found.json."""
+    save_checkpoint(tmp_path / "found" / "model", MOTOR)
+    assert load_checkpoint(tmp_path / "found").values == MOTOR.values
+    monkeypatch.chdir(tmp_path / "found")
+    for path in (Path(), Path("../found")):
+        assert load_checkpoint(path).values == MOTOR.values
+        assert checkpoint_name(path) == "found"
+
+
+def test_a_checkpoint_beside_a_folder_of_its_name_is_meant_itself(tmp_path: Path) -> None:
+    save_checkpoint(tmp_path / "found" / "model", MOTOR)
+    save_checkpoint(tmp_path / "found", replace(MOTOR, title="Itself"))
+    assert load_checkpoint(tmp_path / "found").title == "Itself"
+
+
+def test_a_folder_without_one_is_said_to_be_without(tmp_path: Path) -> None:
+    (tmp_path / "found").mkdir()
+    with pytest.raises(UserError, match=r"found\.safetensors: no such file.*; .*found is a folder without results"):
+        load_checkpoint(tmp_path / "found")
+    (tmp_path / "found" / "model.json").write_text("{}")
+    with pytest.raises(UserError, match=r"model\.safetensors: no such file \(its other half .*model\.json is there"):
+        load_checkpoint(tmp_path / "found")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from greybox_torch.api.export import export
+from greybox_torch.checkpoint import IN_RESULTS
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.results_folder import check_folder
 from greybox_torch.data import DataSet, load_dataset
@@ -13,13 +14,10 @@ from greybox_torch.model import GreyBoxModel
 from greybox_torch.restored import load, load_beside
 from greybox_torch.systems import load_model
 
-CHECKPOINT = "model"
-"""The name of the checkpoint in a folder of results."""
-
 
 def run(results: Path, to: str, dataset: Path | None, name: str | None, step: float | None, options: Options) -> None:
     """Writes the files to --out, by default beside the checkpoint."""
-    stem = results / CHECKPOINT if results.is_dir() else results
+    stem = results / IN_RESULTS if results.is_dir() else results
     folder = options.out if options.out is not None else stem.parent / to
     check_folder(folder)
     model, data = _loaded(stem, dataset, options)

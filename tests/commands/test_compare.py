@@ -120,3 +120,11 @@ def test_checkpoint_that_is_damaged(motor_folder: Make) -> None:
     result = greybox("compare", folder, str(folder / "nowhere"))
     assert result.exit_code == 2
     assert "nowhere.safetensors: no such file" in result.stderr
+
+
+def test_folders_of_results_are_taken(motor_folder: Make) -> None:
+    folder = motor_folder()
+    saved(folder, "good/model")
+    found = of("compare", folder, str(folder / "good"))
+    assert [m["name"] for m in found["models"]] == ["start", "good"]
+    assert of("residuals", folder, "--checkpoint", str(folder / "good"))["model"]["name"] == "good"
