@@ -12,6 +12,7 @@ from functools import partial
 from typing import Any
 
 from greybox_torch.deadline import Deadline, until
+from greybox_torch.diagnosis.confirm.curve_beside_laws import sized_by_free_runs
 from greybox_torch.diagnosis.confirm.curve_instead import curve_instead
 from greybox_torch.diagnosis.confirm.holding import Judged, holding
 from greybox_torch.diagnosis.confirm.judgement import Judgement
@@ -100,9 +101,11 @@ def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
                 curve, whole = or_else(partial(memory_instead, study, state, others, found[2]), lambda: None)
     if found is None:
         return _found_first(study, state, judged)  # free runs of its own, for which time was left beyond that
-    if curve is None:
-        return (*found[:4], found[4] and whole)
-    return (*curve, found[3], whole)
+    if curve is not None:
+        return (*curve, found[3], whole)
+    with until(selection.schedule.judging):
+        sized, in_time = or_else(partial(sized_by_free_runs, study, found[0], others, *found[1:3]), lambda: found[1])
+    return (found[0], sized, *found[2:4], found[4] and whole and in_time)
 
 
 def _curve_is_asked(searched: SearchState, found: Judged) -> bool:

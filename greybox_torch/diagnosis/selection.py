@@ -28,6 +28,7 @@ from greybox_torch.diagnosis.select.other_values import other_values
 from greybox_torch.diagnosis.select.plain_model import fit_plain_model, squared_errors, weighted_by_noise
 from greybox_torch.diagnosis.select.search import search
 from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.select.wider_ranges import over_wider_ranges
 from greybox_torch.diagnosis.stopping import best_so_far, or_else
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study
@@ -105,6 +106,8 @@ def find(
     study, state, complete = _searched(study, state, before, schedule.searching)
     if complete and (other := _from_other_values(study, state, schedule.searching)):
         study, state, complete = _searched(*other, before, schedule.searching)
+    if complete and (wider := _over_wider_ranges(study, state, schedule.searching)):
+        study, state, complete = _searched_from(*wider, before, schedule.searching)
     clock.lap(SEARCH)
     searched = state.current
     others = HeldOut(some.dataset, study) if dataset.validation() else None
@@ -142,18 +145,32 @@ def _searched(
 ) -> tuple[Study, SearchState, bool]:
     """The study with what is known of the ports, the best state, and whether the search ended by itself."""
 
+    begun = study, state
+    offer_all(study, state)
+    with until(deadline):
+        begun, complete = or_else(partial(_weighted, study, state), lambda: begun)
+    return _searched_from(*begun, before, deadline) if complete else (*begun, False)
+
+
+def _searched_from(
+    study: Study, state: SearchState, before: SearchState | None, deadline: Deadline
+) -> tuple[Study, SearchState, bool]:
+    """The same where what is known of the ports is in the study."""
+
     def told(better: SearchState) -> None:
         effects = [e.named for e in better.effects]
         study.journal.found(effects, size(better.plain.fits, better.plain.fits, better.current.fits, study.settings))
 
-    begun, complete = (study, state), True
-    offer_all(study, state)
     with until(deadline):
-        begun, complete = or_else(partial(_weighted, study, state), lambda: begun)
-        if complete:
-            best, complete = best_so_far(search(*begun, before), begun[1], told)
-            return begun[0], best, complete
-    return *begun, complete
+        best, complete = best_so_far(search(study, state, before), state, told)
+    return study, best, complete
+
+
+def _over_wider_ranges(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState] | None:
+    """Where a search begins anew, as a curve's signal moves beyond its range with what was found; None where it does not."""
+    with until(deadline):
+        found, _ = or_else(partial(over_wider_ranges, study, state), lambda: None)
+    return found
 
 
 def _from_other_values(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState] | None:

@@ -28,7 +28,7 @@ Judged = tuple[SearchState, Mapping[str, Gain], Judgement]
 def longer_windows(study: Study, state: SearchState, judged: Judgement, searched: Hypothesis) -> SearchBudget | None:
     """The budget with windows twice as long beside the others.
 
-    None where free runs leave little, or windows show it, or none are longer.
+    None where free runs leave little, or windows show it, or none are longer. Little is what disturbances may leave and nobody sees.
 
     Args:
         searched: what the search came to, before held-out experiments judged: where it leaves noise alone over windows, free runs may have
@@ -37,6 +37,8 @@ def longer_windows(study: Study, state: SearchState, judged: Judgement, searched
     settings, budget = study.settings, study.budget
     share, times, _ = judged.left(bool(state.effects))
     if not (times > settings.far_above_noise and share > settings.slow_share):
+        return None
+    if times < settings.far_above_disturbances and judged.mismatch_share < settings.obvious_mismatch:
         return None
     by_windows = (times_noise(study.problem, h, settings) for h in (state.current, searched))
     if min(by_windows) > settings.above_noise:

@@ -18,7 +18,8 @@ from greybox_torch.diagnosis.study import Study
 
 
 def shown_by_free_runs(study: Study, state: SearchState, gains: Mapping[str, Gain], judged: Judgement) -> set[str]:
-    """The effects that held-out windows bear out beyond chance and that are the same in every experiment, where free runs need them.
+    """The effects, none too small for a finding, that held-out windows bear out beyond chance and that are the same in every experiment,
+    where free runs need them.
 
     None where free runs leave what disturbances may make without the effects, or more than a quarter of that with them.
     """
@@ -28,5 +29,6 @@ def shown_by_free_runs(study: Study, state: SearchState, gains: Mapping[str, Gai
     if judged.unstable or not (times > settings.far_above_disturbances and share <= settings.slow_share):
         return set()
     asked = [e for e in state.effects if e.prefix in gains]
-    sure = [e for e in asked if gains[e.prefix].errors_away > settings.held_out_beyond_chance]
+    large = [e for e in asked if not gains[e.prefix].size < settings.least_size]
+    sure = [e for e in large if gains[e.prefix].errors_away > settings.held_out_beyond_chance]
     return {e.prefix for e in sure if constant_effect(study, state, judged, e)}

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
-from greybox_torch.diagnosis.confirm.within_tolerance import is_timing, within_tolerance
+from greybox_torch.diagnosis.confirm.within_tolerance import is_timing, within_noise_of_sensor, within_tolerance
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.size import size
@@ -65,7 +65,7 @@ def refinements(
     study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], sizes: Mapping[str, float]
 ) -> set[str]:
     """The effects that are too small to be findings, or that small and not confirmed by held-out experiments beyond chance, and shifts in
-    time by next to nothing of a sampling interval.
+    time by next to nothing of a sampling interval, and curves of a sensor that are hardly more than its noise.
 
     Where the model leaves little more than noise: those that do not account for most of what is beyond it on the held-out experiments, and
     those that no model is exact to. No machine is exactly its model. A sensor's filter, a converter's steps and a wear of a few thousandths
@@ -75,15 +75,15 @@ def refinements(
     beside it (a class of seven, 0.97), a twentieth of it.
 
     Of two laws of friction at one body, or of one spring, the smaller one has to be larger than other effects: it may be what the other
-    lacks. So has any law at the port of a larger one, where more than noise is left in spite of both. Of two hystereses of one motion the
-    smaller one is a refinement, however large.
+    lacks. So has any law at the port of a larger one, where more than noise is left in spite of both, and a free curve beside a larger law
+    wherever that is: it draws what any of them lacks. Of two hystereses of one motion the smaller one is a refinement, however large.
 
     Args:
         sizes: of every effect, from :func:`sizes`.
     """
     told = others is not None and not all(g.unexercised(study.settings) for g in gains.values())
     small = _too_small(study, state, others, gains, sizes)
-    small |= {e.prefix for e in state.effects if is_timing(study, state, e)}
+    small |= {e.prefix for e in state.effects if is_timing(study, state, e) or within_noise_of_sensor(study, state, e)}
     parts = {p for p in state.prefixes if told and sizes[p] < study.settings.least_of_little}
     rest = [e for e in state.effects if e.prefix not in small | parts]
     little = parts | {e.prefix for e in rest if within_tolerance(study, state, e, sizes[e.prefix])}
@@ -118,6 +118,7 @@ def _too_small(
         if any(_one_hysteresis(study.problem.model, e, own) for e in larger):
             return True
         lacks = any(not completed or _of_one_kind(e.mechanism, own.mechanism) for e in larger if e.port == own.port)
+        lacks |= bool(larger) and own.mechanism.free
         return lacks and sizes[prefix] < settings.least_size_beside_larger
 
     return {p for p in state.prefixes if not sizes[p] >= least(p) or doubtful(p) or part_of_another(p)}

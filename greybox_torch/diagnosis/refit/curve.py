@@ -118,17 +118,32 @@ def over_its_range(
 
 def absorbed(fitted: Hypothesis, law: Attachment, surroundings: Mapping[str, Surroundings]) -> dict[str, float] | None:
     """The values without a law, its force handed to the free curve of the same signal at its port; None where there is no such curve."""
-    around, mechanism = surroundings[law.port], law.mechanism
-    same = (e for e in fitted.effects if e is not law and e.port == law.port and isinstance(e.mechanism, Unknown))
+    same = (e for e in fitted.effects if e is not law and may_be_drawn(law, e, surroundings))
     curve = next(same, None)
-    if curve is None or mechanism.kinematic or mechanism.states(around):
+    if curve is None:
         return None
-    unknown = curve.mechanism
-    assert isinstance(unknown, Unknown)
-    if unknown.factor or not set(mechanism.needs) <= {unknown.signal}:
-        return None
+    around = surroundings[curve.port]
     grid, target = _drawn(fitted, curve, around)
-    return _without(fitted, law) | _heights(curve, around, grid, target + _force(fitted, law, {unknown.signal: grid}))
+    force = target + force_of(fitted, law, {_signal(curve): grid})
+    return _without(fitted, law) | _heights(curve, around, grid, force)
+
+
+def drawing(
+    fitted: Hypothesis, law: Attachment, curve: Attachment, surroundings: Mapping[str, Surroundings]
+) -> dict[str, float]:
+    """The values of a hypothesis with a free curve in the place of a law, whose force it draws over the signal's range."""
+    around = surroundings[curve.port]
+    grid = _grid(curve, around)
+    force = force_of(fitted, law, {_signal(curve): grid})
+    return _without(fitted, law) | _heights(curve, around, grid, np.broadcast_to(force, POINTS))
+
+
+def may_be_drawn(law: Attachment, curve: Attachment, surroundings: Mapping[str, Surroundings]) -> bool:
+    """Whether an effect is a free curve that draws a law: of the same signal at the same port, and the law remembers nothing."""
+    around, mechanism, unknown = surroundings[law.port], law.mechanism, curve.mechanism
+    if curve.port != law.port or not isinstance(unknown, Unknown) or mechanism.kinematic or mechanism.states(around):
+        return False
+    return not unknown.factor and set(mechanism.needs) <= {unknown.signal}
 
 
 def _heights(curve: Attachment, around: Surroundings, grid: torch.Tensor, force: np.ndarray) -> dict[str, float]:
@@ -141,14 +156,22 @@ def _heights(curve: Attachment, around: Surroundings, grid: torch.Tensor, force:
 
 def _drawn(fitted: Hypothesis, curve: Attachment, around: Surroundings) -> tuple[torch.Tensor, np.ndarray]:
     """Values of the curve's signal over its range, and the learned force there."""
-    unknown = curve.mechanism
-    assert isinstance(unknown, Unknown)
-    span = around.ranges[unknown.signal]
-    grid = torch.linspace(span.low, span.high, POINTS, dtype=torch.float64)
-    return grid, _force(fitted, curve, {unknown.signal: grid})
+    grid = _grid(curve, around)
+    return grid, force_of(fitted, curve, {_signal(curve): grid})
 
 
-def _force(fitted: Hypothesis, effect: Attachment, signals: Mapping[str, torch.Tensor]) -> np.ndarray:
+def _grid(curve: Attachment, around: Surroundings) -> torch.Tensor:
+    """Values of the curve's signal over its range."""
+    span = around.ranges[_signal(curve)]
+    return torch.linspace(span.low, span.high, POINTS, dtype=torch.float64)
+
+
+def _signal(curve: Attachment) -> str:
+    assert isinstance(curve.mechanism, Unknown)
+    return curve.mechanism.signal
+
+
+def force_of(fitted: Hypothesis, effect: Attachment, signals: Mapping[str, torch.Tensor]) -> np.ndarray:
     """The force of an effect without memory at signals (N,); a single number where it depends on none."""
     assert isinstance(fitted.model, AugmentedModel)
     p = parameter_signals(fitted.values())

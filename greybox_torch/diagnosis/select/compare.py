@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.refit.curves_from_laws import curves_from_laws
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, judged
 from greybox_torch.diagnosis.refit.refitted import polished
 from greybox_torch.diagnosis.refit.restarts import restarts
@@ -47,9 +48,8 @@ def compare(
     rest = [r for r in ranked if all(r is not one for one in front)]
     fitted = [*polish, *(r.fitted for r in rest)]
     both = zip([*front, *rest], fitted, strict=True)
-    return Comparison(
-        parent, tuple(in_order([judged(r.candidate, parent, one, study.settings) for r, one in both], study.settings))
-    )
+    compared = [judged(r.candidate, parent, one, study.settings) for r, one in both]
+    return Comparison(parent, tuple(in_order(curves_from_laws(study, parent, compared), study.settings)))
 
 
 def _front(study: Study, ranked: Sequence[RankedCandidate]) -> list[RankedCandidate]:

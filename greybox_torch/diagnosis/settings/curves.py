@@ -70,6 +70,13 @@ class CurveSettings:
     curve_gain_ratio: float = ratio(
         1.5, "How many times the gain of the best name a free curve must gain to be preferred.", unit="times the gain"
     )
+    beyond_its_range: float = share(
+        0.2,
+        "How far a curve's signal has to move, with what was found, beyond where the model as it stands moved it for a search over the "
+        "wider range.",
+        unit="share of the range that the curve is drawn over",
+        chosen_by="a curve has a bump beyond either end: what is nearer it follows",
+    )
     widest_dry_friction: float = share(
         0.07,
         "Width of the change of sign from which friction grows with speed, and is not dry: a curve says what it is.",

@@ -54,10 +54,13 @@ def test_disturbances_that_add_up_are_no_law(sled_run, machines) -> None:
     assert any("what acts slowly was looked for" in line for line in verdict.evidence)
 
 
-def judgement(stub, share: float = 1.0, times: float = 10.0, *, plain: float = 1e3, **errors: float) -> Any:
+def judgement(
+    stub, share: float = 1.0, times: float = 10.0, *, plain: float = 1e3, spread: float = 0.1, **errors: float
+) -> Any:
     """Free runs that leave ``errors`` by experiment; of the model as it stands, ``plain`` in each."""
     return stub(
         left=lambda effects: (share, times, "run 2"),
+        mismatch_share=spread,
         judges=set(errors),
         unstable=frozenset(),
         mismatch=lambda effects, among=None: sum(errors[name] if effects else plain for name in among or errors),
@@ -89,6 +92,15 @@ def test_longer_windows_are_searched_where_free_runs_alone_show_more_than_noise(
     longer = longer_windows(study, stub(effects=(), current=by_windows), judgement(stub, share, times), before)
     assert (longer is not None) is searched
     assert longer is None or longer.window_factors == (1, 4, 16, 32)
+
+
+@pytest.mark.parametrize(("times", "spread", "searched"), [(6.0, 0.003, False), (6.0, 0.1, True), (12.0, 0.003, True)])
+def test_not_where_disturbances_may_leave_it_and_nobody_sees_it(monkeypatch, stub, times, spread, searched) -> None:
+    monkeypatch.setattr(module, "times_noise", lambda problem, fitted, settings: 1.1)
+    problem = stub(records=stub(lengths=np.array([4096])))
+    study, fitted = stub(settings=SETTINGS, budget=SearchBudget(), problem=problem), stub()
+    runs = judgement(stub, times=times, spread=spread)
+    assert (longer_windows(study, stub(effects=(), current=fitted), runs, fitted) is not None) is searched
 
 
 def test_short_records_have_longer_windows_too(monkeypatch, stub) -> None:
