@@ -33,8 +33,11 @@ class ByDirection(Mechanism):
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
         return () if self.by_direction else ((type(self)(True), {**values, "asymmetry": 0.0}),)
 
-    def plainer(self) -> Mechanism | None:
-        return type(self)(**{**self.options(), "by_direction": False}) if self.by_direction else None
+    def plainer(self, values: Mapping[str, float]) -> tuple[Mechanism, Mapping[str, float]] | None:
+        if not self.by_direction:
+            return None
+        alike = {name: value for name, value in values.items() if name != "asymmetry"}
+        return type(self)(**{**self.options(), "by_direction": False}), alike
 
     def nearest(
         self, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray

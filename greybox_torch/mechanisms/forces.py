@@ -8,11 +8,9 @@ from typing import Any
 import numpy as np
 import torch
 
-from greybox_torch.mechanisms.degenerate import beyond, is_angle, not_a_frequency_of_the_record, not_seen_to_repeat
+from greybox_torch.mechanisms.degenerate import beyond, not_a_frequency_of_the_record
 from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
-from greybox_torch.mechanisms.order_of_curve import order_of_curve
-from greybox_torch.mechanisms.waves import HARMONICS, amplitudes, amplitudes_up_to, wave_parameters, waves
 from greybox_torch.model import Parameter, Signals, State
 
 KNOWN_PLACE = 0.01
@@ -41,9 +39,6 @@ RIGID = 0.95
 FAR_ABOVE = 2.0
 """Times the highest frequency of the inputs, where nothing rings: modes were told at 3 and more for gains, real ones are below 0.8."""
 
-LIKE_WEIGHT = 0.02
-"""By how much an order may differ from once per turn for a ripple to be no other law than weight: what a model lacks shifts it so far."""
-
 
 class ConstantBias(LinearLaw):
     """A constant b."""
@@ -59,54 +54,6 @@ class ConstantBias(LinearLaw):
 
     def law(self, s: Signals, size: Any) -> Any:
         return size
-
-
-class TorqueRipple(Mechanism):
-    """a cos nθ + b sin nθ with an order n above one, and ``harmonics`` of it: a_k cos knθ + b_k sin knθ."""
-
-    name = "torque_ripple"
-    kinds = ("body",)
-    needs = ("position",)
-    nature = "a force that depends on position"
-    explanation = "The drive's force varies periodically with position (cogging, commutation)."
-    source = "T. M. Jahns, W. L. Soong, IEEE Trans. Industrial Electronics 43(2), 1996"
-    experiment = "slow constant speed over several turns, in both directions"
-
-    def __init__(self, order: float = 2.0, harmonics: int = 1) -> None:
-        self.order, self.harmonics = order, harmonics
-
-    def parameters(self, around: Surroundings) -> list[Parameter]:
-        return wave_parameters(around, self.order, self.harmonics)
-
-    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        return waves(s.position, p, self.harmonics)
-
-    def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(amplitudes_up_to(self.harmonics), {"order": self.order})]
-
-    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
-        """With harmonics of the order found, and as the second harmonic of half of it, or the third of a third of it."""
-        if self.harmonics > 1:
-            return ()
-
-        def as_harmonic(k: int) -> tuple[TorqueRipple, Mapping[str, float]]:
-            base = values["order"] / k
-            found = dict(zip(amplitudes(k), (values["a"], values["b"]), strict=True))
-            return TorqueRipple(base, 2 * HARMONICS), {"order": base, **found}
-
-        return (TorqueRipple(values["order"], HARMONICS), dict(values)), as_harmonic(2), as_harmonic(3)
-
-    def nearest(
-        self, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
-    ) -> Mechanism:
-        order = order_of_curve(signals["position"].numpy(), force, weight)
-        return self if order is None else TorqueRipple(order)
-
-    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        order = values["order"]
-        if is_angle(around) and abs(order - 1.0) < LIKE_WEIGHT:
-            return f"order = {order:.4g}: once per turn is what weight does"
-        return not_seen_to_repeat(order, around)
 
 
 class EndStop(Mechanism):

@@ -187,8 +187,8 @@ class Mechanism:
         """Forms of the law with more parameters, and where to begin, for where it was found at ``values`` and more than noise is left."""
         return ()
 
-    def plainer(self) -> Mechanism | None:
-        """The form with fewer parameters, of the same names, of which this one is a :meth:`richer` one; None where there is none."""
+    def plainer(self, values: Mapping[str, float]) -> tuple[Mechanism, Mapping[str, float]] | None:
+        """The form with fewer parameters of which this one is a :meth:`richer` one, and where to begin it; None where there is none."""
         return None
 
     def as_two(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:

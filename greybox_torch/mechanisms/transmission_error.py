@@ -7,7 +7,14 @@ from typing import Any
 
 from greybox_torch.mechanisms.degenerate import not_seen_to_repeat
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
-from greybox_torch.mechanisms.waves import HARMONICS, amplitudes_up_to, slope_of_waves, wave_parameters, waves
+from greybox_torch.mechanisms.waves import (
+    HARMONICS,
+    amplitudes_up_to,
+    slope_of_waves,
+    strongest_wave,
+    wave_parameters,
+    waves,
+)
 from greybox_torch.model import Parameter, Signals
 
 
@@ -67,6 +74,14 @@ class TransmissionError(Mechanism):
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
         """With harmonics of the order found."""
         return () if self.harmonics > 1 else ((TransmissionError(values["order"], HARMONICS), dict(values)),)
+
+    def plainer(self, values: Mapping[str, float]) -> tuple[Mechanism, Mapping[str, float]] | None:
+        """Its strongest wave alone."""
+        if self.harmonics == 1:
+            return None
+        beside = {n: v for n, v in values.items() if n not in amplitudes_up_to(self.harmonics)}
+        alone = strongest_wave(values, self.harmonics)
+        return TransmissionError(alone["order"]), beside | alone
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         fixed = {"order": self.order, **({"damping": 0.0} if "speed" in around.ranges else {})}

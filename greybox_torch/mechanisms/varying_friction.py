@@ -8,10 +8,10 @@ from typing import Any
 import torch
 
 from greybox_torch.mechanisms.degenerate import not_a_time_of_the_record, not_seen_to_repeat
-from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.linear_law import Of
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.sign_change import DryLaw, smooth_sign, width_parameter, widths
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.waves import HARMONICS, amplitudes_up_to, wave_parameters, waves
 from greybox_torch.model import Parameter, Signals
 

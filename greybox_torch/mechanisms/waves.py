@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from typing import Any
 
 import torch
@@ -25,6 +27,15 @@ def amplitudes(k: int) -> tuple[str, str]:
 def amplitudes_up_to(harmonics: int) -> tuple[str, ...]:
     """The names of all amplitudes."""
     return tuple(name for k in range(1, harmonics + 1) for name in amplitudes(k))
+
+
+def strongest_wave(values: Mapping[str, float], harmonics: int) -> dict[str, float]:
+    """The order and the amplitudes of the largest wave of a sum, by its own names."""
+    size = {k: math.hypot(*(values[n] for n in amplitudes(k))) for k in range(1, harmonics + 1)}
+    largest = max(size, key=lambda k: size[k])
+    return dict(zip(amplitudes(1), (values[n] for n in amplitudes(largest)), strict=True)) | {
+        "order": largest * values["order"]
+    }
 
 
 def wave_parameters(around: Surroundings, order: float, harmonics: int, unit: str | None = None) -> list[Parameter]:

@@ -11,9 +11,9 @@ from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.stored import attachment_json, restored_model
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.transmission import Backlash
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulation.eager import EagerStepper

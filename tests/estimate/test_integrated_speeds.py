@@ -12,9 +12,9 @@ from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.window_fit import carried_starts
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.sensor import SensorBias, SensorLag
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.model import GreyBoxModel, Parameter
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import cut

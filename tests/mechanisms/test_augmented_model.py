@@ -8,10 +8,11 @@ import torch
 
 from greybox_torch.mechanisms.actuator import InputDelay, InputLag, TorqueSaturation
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.sensor import SensorGain, SensorLag
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.transmission import Backlash
 from greybox_torch.mechanisms.varying_friction import FrictionWarmup
 from greybox_torch.model import Signals

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.library import LEARNED, LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism
 from greybox_torch.mechanisms.surroundings import Surroundings
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.mechanisms.unknown_fading import UnknownFading

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from greybox_torch.mechanisms.balance import LinearLeak, ThresholdFlow
-from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndStop, TorqueRipple
+from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndStop
 from greybox_torch.mechanisms.gravity import Gravity
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 

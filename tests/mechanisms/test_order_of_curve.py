@@ -8,9 +8,9 @@ import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.matching import matching_laws
 from greybox_torch.mechanisms.order_of_curve import order_of_curve
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 
 POSITION = np.linspace(-1.5, 2.0, 400)
 

@@ -8,10 +8,10 @@ from greybox_torch.diagnosis.screen.further_curves import further_curves
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.attachment import Attachment, attach
-from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.gravity import Gravity
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.mechanisms.unknown_fading import UnknownFading

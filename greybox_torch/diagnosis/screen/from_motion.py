@@ -27,7 +27,7 @@ from greybox_torch.estimate.equation_error import EquationError
 from greybox_torch.estimate.motion_equations import MotionEquations
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms.attachment import Attachment, attach
-from greybox_torch.mechanisms.forces import TorqueRipple
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Body
 

@@ -17,8 +17,8 @@ from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.linear_algebra import solve
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Body
 from greybox_torch.simulation.side_by_side import side_by_side

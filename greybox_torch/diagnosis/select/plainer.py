@@ -1,11 +1,13 @@
 """A law in a form with fewer parameters, once others stand beside it.
 
 Where an effect is still missing, the difference between the two directions of a law takes up a part of it. Seen: a dead zone with an offset
-of the torque behind it, found as a zone that lies nearly on one side (0.84) with a third of the offset, as the two make up for one another.
+of the torque behind it, found as a zone that lies nearly on one side (0.84) with a third of the offset, as the two make up for one another;
+a drum's ripple of four periods a turn, taken before its friction was, as two periods with five harmonics of which one was any.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from greybox_torch.diagnosis.refit.ranked import judged
@@ -20,19 +22,25 @@ from greybox_torch.mechanisms.attachment import Attachment
 def with_plainer_forms(study: Study, state: SearchState) -> SearchState:
     """The state with each of its laws in a plainer form, where that comes as far beside the others."""
     for effect in state.effects if len(state.effects) > 1 else ():
-        plainer = effect.mechanism.plainer()
+        start = f"{effect.prefix}."
+        own = {n.removeprefix(start): v for n, v in state.current.values().items() if n.startswith(start)}
+        plainer = effect.mechanism.plainer(own)
         if plainer is not None:
-            state = _in_form(study, state, effect, replace(effect, mechanism=plainer))
+            law, begun = replace(effect, mechanism=plainer[0]), {f"{start}{n}": v for n, v in plainer[1].items()}
+            state = _in_form(study, state, effect, law, begun)
     return state
 
 
-def _in_form(study: Study, state: SearchState, effect: Attachment, law: Attachment) -> SearchState:
-    """The state with ``law`` in the place of ``effect``; as it is where that does not come as far."""
+def _in_form(
+    study: Study, state: SearchState, effect: Attachment, law: Attachment, begun: Mapping[str, float]
+) -> SearchState:
+    """The state with ``law``, which begins with the values ``begun``, in the place of ``effect``; as it is where that is not as good."""
     done = state.step_of(effect.prefix)
     if done is None or done.taken is None:
         return state
     study.working_on(f"refitting {effect.prefix} in a plainer form")
-    found = fit(study, state.with_law(effect, law), [state.current.values()], state.current.fits[0])
+    rest = {n: v for n, v in state.current.values().items() if not n.startswith(f"{effect.prefix}.")}
+    found = fit(study, state.with_law(effect, law), [{**rest, **begun}], state.current.fits[0])
     if found is None or not comes_as_far(study, found, state.current):
         return state
     form = judged(replace(done.taken.candidate, attachment=law), done.parent, found, study.settings)

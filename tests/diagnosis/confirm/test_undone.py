@@ -11,10 +11,10 @@ from greybox_torch.diagnosis.confirm import undone
 from greybox_torch.diagnosis.confirm.undone import not_undone
 from greybox_torch.mechanisms.actuator import TorqueSaturation
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.sensor import SensorGain
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.unknown import Unknown
 
 NAMES = ("k", "sensor.sensor_gain.gain_error", "b")

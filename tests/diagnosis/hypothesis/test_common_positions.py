@@ -13,7 +13,8 @@ from greybox_torch.diagnosis.hypothesis.start_positions import placed
 from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.estimate.problem import problem_for
 from greybox_torch.mechanisms.attachment import attach
-from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.forces import ConstantBias
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.simulation.simulator import Simulator
 
 from ..conftest import STEP

@@ -14,7 +14,8 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import problem_for
 from greybox_torch.mechanisms.attachment import attach
-from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.forces import ConstantBias
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.simulation.simulator import Simulator
 
 SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()

@@ -16,8 +16,9 @@ from greybox_torch.diagnosis.select.posterior import shared
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.actuator import InputBias
 from greybox_torch.mechanisms.attachment import Attachment, attach
-from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.gravity import Gravity
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.unknown import Unknown
 
 SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()

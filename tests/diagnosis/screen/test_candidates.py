@@ -11,9 +11,10 @@ from greybox_torch.diagnosis.screen.candidates import candidates, periodic_candi
 from greybox_torch.diagnosis.screen.shortlist import identity_of
 from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.attachment import attach
-from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.transmission import Backlash
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown

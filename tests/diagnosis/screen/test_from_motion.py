@@ -17,9 +17,10 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.mechanisms.actuator import InputLag
 from greybox_torch.mechanisms.attachment import Attachment, attach
-from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.sensor import SensorGain
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.systems.load import load_model
 
 

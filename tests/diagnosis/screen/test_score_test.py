@@ -9,8 +9,8 @@ from scipy.signal import lfilter
 from greybox_torch.diagnosis.screen.candidates import candidates
 from greybox_torch.diagnosis.screen.score_test import Screen, ScreenScore
 from greybox_torch.mechanisms.attachment import attach
-from greybox_torch.mechanisms.forces import TorqueRipple
 from greybox_torch.mechanisms.library import LIBRARY
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 
 
 @pytest.fixture(scope="module")

@@ -24,9 +24,10 @@ from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.actuator import InputDelay, InputGain, InputLag
 from greybox_torch.mechanisms.attachment import attach
-from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorLag
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 
 from ..conftest import STEP, found, turned

@@ -24,9 +24,10 @@ from greybox_torch.diagnosis.select.posterior import (
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.forces import ConstantBias, TorqueRipple
+from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorLag
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 
 SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
 
