@@ -12,6 +12,7 @@ from greybox_torch.checking.examine import examine
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.checking.missing_inputs import MissingInput, missing_inputs
 from greybox_torch.checking.not_finite import not_finite_at_start
+from greybox_torch.checking.shared_rows import SharedRows, shared_rows
 from greybox_torch.checking.source import source_of
 from greybox_torch.checking.time_stamps import OddTime, odd_time_stamps
 from greybox_torch.data import DataSet
@@ -55,9 +56,9 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
     with users_code(_file(given), f"model {name}", "checking it"):
         examined = examine(given)
     findings, values = list(examined.findings), dict[str, float]()
-    told: list[Contradiction | OddTime | MissingInput] = []
+    told: list[Contradiction | OddTime | SharedRows | MissingInput] = []
     if data is not None:
-        told += [*contradictions(data.path), *odd_time_stamps(data)]
+        told += [*contradictions(data.path), *odd_time_stamps(data), *shared_rows(data)]
     if data is not None and examined.model is not None and not any(f.level == "error" for f in findings):
         more, values = _with_data(data, examined.model)
         findings += more

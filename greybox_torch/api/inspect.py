@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.api.result import HELD_OUT, Result
+from greybox_torch.checking.shared_rows import SharedRows, shared_rows
 from greybox_torch.checking.time_stamps import OddTime, odd_time_stamps
 from greybox_torch.data import DataSet
 from greybox_torch.drafting.contradicted import Contradiction, contradictions
@@ -51,9 +52,9 @@ class InspectionResult(Result):
         return contradictions(self.data.path)
 
     @cached_property
-    def warnings(self) -> list[Contradiction | OddTime]:
-        """Those, and what is odd about time stamps: gaps, and files that differ in their unit."""
-        return [*self.contradicted, *odd_time_stamps(self.data)]
+    def warnings(self) -> list[Contradiction | OddTime | SharedRows]:
+        """Those, what is odd about time stamps, and rows that are both estimated from and judged on."""
+        return [*self.contradicted, *odd_time_stamps(self.data), *shared_rows(self.data)]
 
     def __repr__(self) -> str:
         return f"<inspection of {self.data.name}: {', '.join(r.name for r in self.data.recordings)}>"

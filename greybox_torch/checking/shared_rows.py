@@ -1,0 +1,70 @@
+"""Rows of a file that parameters are estimated from and that results are judged on as well."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+from math import inf
+from pathlib import Path
+
+from greybox_torch.data import DataSet
+from greybox_torch.data.card import read_card
+from greybox_torch.data.card_channels import ExperimentEntry
+
+
+@dataclass(frozen=True)
+class SharedRows:
+    """``shared`` says which rows of which file the experiments ``estimated`` and ``judged`` both have. ``held_out``: the card names no
+    validation, and the last quarter of each is judged.
+    """
+
+    estimated: str
+    judged: str
+    shared: str
+    held_out: bool
+
+    @property
+    def found(self) -> str:
+        """What is there, in a sentence."""
+        one, other = ("", "") if self.held_out else (" (estimation)", " (validation)")
+        also = ", and the last quarter of each is held out" if self.held_out else ""
+        return (
+            f'[[experiment]] "{self.estimated}"{one} and "{self.judged}"{other} both have {self.shared}{also}: '
+            "results are judged on samples that they were estimated from"
+        )
+
+    @property
+    def write(self) -> str:
+        """What to write instead."""
+        return "rows that do not overlap, or another file for one of them"
+
+    def __str__(self) -> str:
+        return f"{self.found}; expected {self.write}"
+
+
+def shared_rows(data: DataSet) -> Iterator[SharedRows]:
+    """Of every two experiments on the card of which one is judged on samples of the other; none where data are from memory."""
+    if data.path is None or not data.path.is_file():
+        return
+    held_out = data.held_out_by_default
+    for one, other in combinations(read_card(data.path).experiment, 2):
+        alike = one.rows == other.rows if held_out else one.role == other.role  # nothing of one is judged on the other
+        if alike or one.columns != other.columns:  # other columns: runs that stand side by side in one file
+            continue
+        first, second = (one, other) if one.role == "estimation" else (other, one)
+        shared = _shared(one, other, data.path.parent)
+        if shared:
+            yield SharedRows(first.name, second.name, shared, held_out)
+
+
+def _shared(one: ExperimentEntry, other: ExperimentEntry, folder: Path) -> str:
+    """The rows that two experiments share, in words; empty where there are none, or where no card can say which row is in which file."""
+    files = [[(folder / file).resolve() for file in experiment.file] for experiment in (one, other)]
+    common = [file for file in files[0] if file in files[1]]
+    joined = files[0] != files[1] and any(len(e.file) > 1 and e.rows for e in (one, other))
+    (start, stop), (begin, end) = (e.rows or (0, inf) for e in (one, other))
+    start, stop = max(start, begin), min(stop, end)
+    if not common or joined or start >= stop:
+        return ""
+    return f"all of {common[0].name}" if stop == inf else f"rows [{start}, {stop}] of {common[0].name}"
