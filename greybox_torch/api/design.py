@@ -12,8 +12,8 @@ from greybox_torch.api.arguments import check_seconds, check_seed
 from greybox_torch.api.design_loops import entries_of, loops_for
 from greybox_torch.api.design_result import DesignResult
 from greybox_torch.api.diagnosis_result import DiagnosisResult
-from greybox_torch.api.expected import Expected
-from greybox_torch.api.hypotheses import Hypotheses, Kept, hypotheses_of, read_hypotheses, to_tell_apart
+from greybox_torch.api.expected import NOTHING, Expected, decided
+from greybox_torch.api.hypotheses import Hypotheses, Kept, hypotheses_of, left_out_told, read_hypotheses, to_tell_apart
 from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
 from greybox_torch.estimate.problem import with_card
 from greybox_torch.experiment_design.aim import Aim, Trial
@@ -27,6 +27,7 @@ from greybox_torch.experiment_design.search import MOST_SAMPLES, frequencies, sa
 from greybox_torch.experiment_design.simulated import predictions, within
 from greybox_torch.linear_algebra import on_one_thread
 
+_OR_A_PARAMETER = "or a parameter whose standard deviation is to shrink: --precision PARAMETER (in Python: precision=)"
 RANDOM = 5
 """Random multisines of the same power that the best input (or set point) is compared with."""
 
@@ -109,11 +110,17 @@ def _aim(held: Hypotheses, precision: str | None, loops: Sequence[Loop]) -> Aim:
             hint = did_you_mean(precision, free)
             raise ArgumentError("precision", precision, f"expected a free parameter{hint}: {', '.join(free)}")
         return Aim((one,), free.index(precision))
-    group = to_tell_apart(held.findings)
-    if group is None:
+    group, left_out = to_tell_apart(held)
+    told = "".join(f". {sentence.rstrip('.')}" for sentence in left_out_told(left_out))
+    if len(group) < 2:
         raise UserError(
-            "the diagnosis left no rivals to tell apart; expected a finding with named alternatives, or a parameter to sharpen: "
-            "--precision (in Python: precision=)"
+            f"the diagnosis left no rivals to tell apart; expected a finding with named alternatives, {_OR_A_PARAMETER}{told}"
+        )
+    if decided([kept.probability for kept in group]):
+        best = max(group, key=lambda kept: kept.probability)
+        raise UserError(
+            f"already decided, there is nothing to record: {best.name} has a probability of {best.probability:.2f}, each rival less than "
+            f"{NOTHING:g}; expected a finding that is open, {_OR_A_PARAMETER}{told}"
         )
     return Aim(tuple(_contender(kept, held, loops) for kept in group))
 
@@ -136,12 +143,13 @@ def _result(
     names = list(limits.inputs)
     reached = [one.driven([best.commands], float(time[1] - time[0]))[0] for one in aim.contenders]
     shares = tuple(c.probability for c in aim.contenders)
-    nats, random = np.zeros((len(shares),) * 2), None
+    nats, random, left_out = np.zeros((len(shares),) * 2), None, ()
     before = after = None
     if aim.parameter is None:
         assert best.nats is not None
         nats = best.nats
         random = _by_random_inputs(aim, limits, time, best, seed)
+        left_out = left_out_told(to_tell_apart(held)[1])
     else:
         one = aim.contenders[0]
         after = aim.deviation_after(along[0][0], 0)
@@ -170,6 +178,7 @@ def _result(
         set_points={output: best.commands[names.index(name)] for name, output in follows.items()},
         driven=tuple({name: u[names.index(name)] for name in follows} for u in reached),
         on_one_input=tuple(p.y[0] for p in along[0]),
+        left_out=left_out,
     )
 
 

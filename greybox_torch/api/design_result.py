@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.api.design_files import CARD, FIGURE, INPUT, RECORDED, card_text, columns_of, csv_text
-from greybox_torch.api.expected import Expected
+from greybox_torch.api.expected import WANTED, Expected
 from greybox_torch.api.result import Result
 from greybox_torch.data import DataSet
 from greybox_torch.experiment_design.excitation import Excitation
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SCHEMA = "greybox-design/1"
-WANTED = 0.95
 HARDLY_ANY = 0.01
 """Part of a recording below which its length is not told: evidence grows with time on the whole, not period by period."""
 
@@ -43,6 +42,7 @@ class DesignResult(Result):
     Where a controller drives inputs, ``follows`` names the output that each of them follows, ``set_points`` (N,) by output are what is
     designed, and ``driven`` (N,) by input what that makes of them under each hypothesis; ``inputs`` are then those under the first one.
     ``on_one_input`` (N, n_y) is what each hypothesis predicts on these.
+    ``left_out`` says which rivals are not among the hypotheses.
     """
 
     data: DataSet
@@ -68,6 +68,7 @@ class DesignResult(Result):
     set_points: Mapping[str, np.ndarray] = field(default_factory=dict)
     driven: tuple[Mapping[str, np.ndarray], ...] = ()
     on_one_input: tuple[np.ndarray, ...] = ()
+    left_out: tuple[str, ...] = ()
 
     @property
     def seconds(self) -> float:
@@ -97,7 +98,10 @@ class DesignResult(Result):
                 + "."
             )
         if not self.expected.decides:
-            return f"No {self._what} within the limits was found that tells these hypotheses apart: {', '.join(self.names)}."
+            return (
+                f"No {self._what} within the limits was found that tells these hypotheses apart, whichever is right: "
+                f"{', '.join(self.names)}."
+            )
         told = (
             f"{self.seconds:.3g} s of {kinds} are expected to bring the right one of {len(self.names)} hypotheses to a probability of "
             f"{self.expected.after:.2f}"
@@ -154,19 +158,17 @@ class DesignResult(Result):
     @property
     def notes(self) -> list[str]:
         """What else a reader has to know."""
-        lines = [
-            f"No {self._what} within the limits was found that tells {a} from {b} in {self.seconds:.3g} s."
-            for a, b in self.alike
-        ]
-        if self.alike and self.parameter is None and self.expected.decides:
-            lines.append("Those count as one in the probability that is expected.")
-        if self.expected.random is not None and self.parameter is None:
-            lines.append(f"A random multisine of the same power{self._as_set_points}: {self.expected.random:.2f}.")
+        lines = [*self.left_out, *self._told_apart]
         if self.limits.seconds > 1.001 * self.seconds:
             lines.append(
                 f"Designed for the first {self.seconds:.3g} of {self.limits.seconds:.3g} s; "
                 "repeated, it says more in proportion to the time."
             )
+        if self.parameter is None and not self.expected.decides:
+            return [
+                *lines,
+                f"{INPUT} holds the best that was found; it is not worth recording. Wider limits or more seconds may help.",
+            ]
         for name, output in self.follows.items():
             lines.append(
                 f"Simulated under feedback: the controller drives {name}, so that {output} follows its set point, which {INPUT} holds. "
@@ -178,6 +180,18 @@ class DesignResult(Result):
             f"Record it, save it as {RECORDED} beside {CARD}, and diagnose the old recordings together with it."
         )
         return lines
+
+    @property
+    def _told_apart(self) -> Iterator[str]:
+        """Which hypotheses stay alike where others are told apart, and what a random input would do."""
+        if self.parameter is not None or not self.expected.decides:
+            return
+        for a, b in self.alike:
+            yield f"No {self._what} within the limits was found that tells {a} from {b} in {self.seconds:.3g} s, whichever is right."
+        if self.alike:
+            yield "Those count as one in the probability that is expected."
+        if self.expected.random is not None:
+            yield f"A random multisine of the same power{self._as_set_points}: {self.expected.random:.2f}."
 
     def files(self, folder: Path) -> dict[Path, str | bytes]:
         """The input as CSV, a figure, and a card for the new recording."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,15 @@ from greybox_torch.experiment_design.separation import expected_probability, sec
 AS_IN_A_DIAGNOSIS = DiagnosisSettings()
 VISIBLE = AS_IN_A_DIAGNOSIS.visible_divergence
 """Nats below which two hypotheses cannot be told apart, as in a diagnosis."""
+WANTED = 0.95
+NOTHING = AS_IN_A_DIAGNOSIS.least_alternative
+"""Probability below which a rival is next to nothing, and a diagnosis does not list it."""
+
+
+def decided(probabilities: Sequence[float]) -> bool:
+    """Whether there is nothing left to decide: one hypothesis has what is wanted, and every other one next to nothing."""
+    best, *others = sorted(probabilities, reverse=True)
+    return best >= WANTED and all(p < NOTHING for p in others)
 
 
 @dataclass(frozen=True)

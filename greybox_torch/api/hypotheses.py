@@ -5,15 +5,17 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from greybox_torch.api.expected import NOTHING
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.errors import UserError
 from greybox_torch.files import json_text
+from greybox_torch.mechanisms.attached import attached
 from greybox_torch.mechanisms.stored import stored_effects
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
@@ -151,7 +153,32 @@ def _kept(folder: Path, entry: Mapping[str, Any], own: GreyBoxModel, data: DataS
     )
 
 
-def to_tell_apart(findings: Sequence[Sequence[Kept]]) -> Sequence[Kept] | None:
-    """The hypotheses of the finding that is least sure; None where none has a rival."""
-    open_ones = [group for group in findings if len(group) > 1]
-    return min(open_ones, key=lambda group: group[0].probability, default=None)
+def to_tell_apart(held: Hypotheses) -> tuple[Sequence[Kept], Sequence[Kept]]:
+    """The hypotheses of the finding that is least sure, nothing where none has a rival; and the rivals of all findings that are left out.
+
+    The finding is the recommended model, which has all effects. A rival that was fitted when another of these was still missing would be
+    told from it by that one, so it is left out.
+    """
+    best, final = held.recommended, _effects(held.recommended.model)
+    groups, left_out = [], []
+    for first, *rivals in held.findings:
+        group = [replace(first, model=best.model, starts=best.starts)]
+        for rival in rivals:
+            lacking = final - _effects(rival.model)
+            (group if len(lacking) <= 1 else left_out).append(rival)  # one is the finding itself
+        groups.append(group)
+    open_ones = [group for group in groups if len(group) > 1]
+    return min(open_ones, key=lambda group: group[0].probability, default=()), left_out
+
+
+def left_out_told(left_out: Sequence[Kept]) -> tuple[str, ...]:
+    """Which rivals are left out and why, a sentence for each that a diagnosis would list."""
+    return tuple(
+        f"Left out is {kept.name} (probability {kept.probability:.2g}), which was fitted when other effects were still missing."
+        for kept in left_out
+        if kept.probability >= NOTHING
+    )
+
+
+def _effects(model: GreyBoxModel) -> set[str]:
+    return {attachment.prefix for attachment in attached(model)[1]}

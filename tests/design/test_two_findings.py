@@ -1,0 +1,85 @@
+"""The next recording after a diagnosis that found two effects, of which the first was taken when the second was still missing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import greybox_torch as gt
+from greybox_torch.api.design_result import DesignResult
+from greybox_torch.api.diagnosis_result import DiagnosisResult
+from greybox_torch.api.expected import Expected, decided
+from greybox_torch.api.hypotheses import hypotheses_of, left_out_told, to_tell_apart
+from greybox_torch.diagnosis.describe.rivals import Rival
+from greybox_torch.errors import UserError
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.forces import ConstantBias
+from greybox_torch.mechanisms.friction import CoulombFriction, QuadraticDrag
+
+FIRST, SECOND = "rotor.coulomb_friction", "rotor.quadratic_drag"
+
+
+@pytest.fixture
+def two_found(undecided: DiagnosisResult) -> DiagnosisResult:
+    """Dry friction, then a drag. A constant torque in place of the first was fitted without the drag, in place of the second with dry
+    friction.
+    """
+    alone, torque = (replace(r, initial={"steps": {"speed": 9.0}}) for r in undecided.found.rivals)
+    final = beside(alone, QuadraticDrag(), SECOND, 0.6)
+    other = beside(alone, ConstantBias(), SECOND, 0.3)
+    found = replace(undecided.found, model=final.model, values=dict(final.values), rivals=(alone, torque, final, other))
+    return replace(undecided, found=found)
+
+
+def beside(alone: Rival, law, finding: str, probability: float) -> Rival:
+    """A hypothesis with dry friction and another law."""
+    assert isinstance(alone.model, AugmentedModel)
+    both = [Attachment("rotor", CoulombFriction()), Attachment("rotor", law)]
+    made = AugmentedModel(alone.model.plain, both, alone.model.surroundings)
+    held = {p.name: alone.values.get(p.name, p.value) for p in made.declared_parameters}
+    return Rival(finding, "rotor", law.name, probability, made, held, {"steps": {"speed": 9.0}})
+
+
+def test_hypotheses_differ_in_one_effect_and_begin_as_the_final_model(two_found: DiagnosisResult) -> None:
+    group, left_out = to_tell_apart(hypotheses_of(two_found))
+    assert [kept.name for kept in group] == ["quadratic drag at rotor", "constant bias at rotor"]
+    assert group[0].model is two_found.model and group[0].starts == two_found.initial == {"steps": {"speed": 2.0}}
+    assert [kept.name for kept in left_out] == ["constant bias at rotor"]
+    (told,) = left_out_told(left_out)
+    assert told.startswith("Left out is constant bias at rotor (probability 0.47), which was fitted when other effects")
+
+
+def test_design_begins_as_the_final_model(two_found: DiagnosisResult) -> None:
+    found = gt.design(two_found, seconds=0.5, limits={"speed": {"lower": -1e4, "upper": 1e4}})
+    assert found.start == {"speed": 2.0} and len(found.left_out) == 1
+    assert found.left_out[0] in found.notes
+
+
+def test_what_is_decided_is_not_recorded(two_found: DiagnosisResult) -> None:
+    *_, final, other = two_found.found.rivals
+    sure = replace(two_found.found, rivals=(replace(final, probability=0.97), replace(other, probability=1e-5)))
+    with pytest.raises(UserError, match=r"already decided.*quadratic drag at rotor.*0\.97.*--precision PARAMETER"):
+        gt.design(replace(two_found, found=sure))
+
+
+@pytest.mark.parametrize(
+    ("probabilities", "is_decided"),
+    [((0.97, 1e-5), True), ((0.96, 0.01), False), ((0.9, 1e-5), False), ((0.002, 0.96, 0.001), True)],
+)
+def test_decided(probabilities: tuple[float, ...], is_decided: bool) -> None:
+    assert decided(probabilities) is is_decided
+
+
+def test_nothing_is_asked_for_where_nothing_is_told_apart(undecided: DiagnosisResult, tmp_path: Path) -> None:
+    """One of two hypotheses could be excluded, the other not: that is no decision, and the sentences have to agree on it."""
+    found = gt.design(undecided, seconds=0.5)
+    nats = np.array([[0.0, 26.0], [2.5, 0.0]])
+    alike: DesignResult = replace(found, expected=Expected((0.5, 0.47), nats, nats))
+    assert "tells these hypotheses apart, whichever is right: " in alike.sentence
+    told = " ".join(alike.notes)
+    assert "not worth recording" in told
+    assert not any(words in told for words in ("Record it", "random multisine", "No input"))
