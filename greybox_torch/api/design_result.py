@@ -198,7 +198,7 @@ class DesignResult(Result):
         return {
             folder / INPUT: csv_text(self.time, columns_of(self.inputs, self.set_points, self.follows)),
             folder / FIGURE: notebook.png(self.plot()),
-            folder / CARD: card_text(self.data, self.time, self.reference),
+            folder / CARD: card_text(self.data, self.time, self.reference, folder),
         }
 
     def plot(self) -> Figure:
