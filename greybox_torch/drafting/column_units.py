@@ -10,7 +10,12 @@ _BRACKETS = re.compile(r"[\[(]\s*([^\[\]()]{1,20})\s*[\])]\s*$")
 _ENDINGS = {
     "rpm": "rpm", "deg": "deg", "degs": "deg/s", "dps": "deg/s", "rad": "rad", "rads": "rad/s", "radps": "rad/s", "nm": "N m",
     "mnm": "mN m", "mm": "mm", "ma": "mA", "mv": "mV", "bar": "bar", "degc": "degC", "kw": "kW",
+    "kn": "kN", "knm": "kN m", "mrad": "mrad", "cm": "cm", "km": "km", "um": "um", "µm": "um", "kg": "kg", "ms": "ms", "us": "us",
+    "kv": "kV", "kj": "kJ", "hz": "Hz", "khz": "kHz", "hpa": "hPa", "kpa": "kPa", "mpa": "MPa", "mbar": "mbar",
+    "kmh": "km/h", "kph": "km/h",
 }  # fmt: skip
+_AS_WRITTEN = ("mN", "MN", "mW", "MW", "mJ", "MJ", "Pa")
+"""Units of which small letters would be another one, or no unit. A letter alone is none: x_m was measured, F_N is normal to something."""
 
 
 def unit_in(column: str) -> str:
@@ -19,7 +24,9 @@ def unit_in(column: str) -> str:
     if bracketed and _is_unit(bracketed[1]) and not bracketed[1].isdigit():
         return bracketed[1]
     _, underscore, last = column.rpartition("_")
-    return _ENDINGS.get(last.lower(), "") if underscore else ""
+    if not underscore:
+        return ""
+    return last if last in _AS_WRITTEN else _ENDINGS.get(last.lower(), "")
 
 
 def without_unit(column: str) -> str:

@@ -34,6 +34,14 @@ TOLD = {
     'a = { column = "q_deg", unit = "rad/s", derivative = 5.0 }': ("deg", "rad/s"),
     'a = { column = "i_A", unit = "V" }': ("A", "V"),
     'a = { column = "torque_Nm", unit = "rad" }': ("N m", "rad"),
+    'a = { column = "rope_force_kN", unit = "N" }': ("kN", "N"),
+    'a = { column = "M_knm", unit = "N m" }': ("kN m", "N m"),
+    'a = { column = "p_MPa", unit = "Pa" }': ("MPa", "Pa"),
+    'a = { column = "p_Pa", unit = "bar" }': ("Pa", "bar"),
+    'a = { column = "level_cm", unit = "m" }': ("cm", "m"),
+    'a = { column = "speed_kmh", unit = "m/s" }': ("km/h", "m/s"),
+    'a = { column = "drive_power_MW", unit = "kW" }': ("MW", "kW"),
+    'a = { column = "x_um", unit = "m/s", derivative = 5.0 }': ("um", "m/s"),
     'a = { column = "T [degC]", unit = "K" }': ("degC", "K"),
 }
 SILENT = [
@@ -44,6 +52,17 @@ SILENT = [
     'a = { column = "n_rpm", unit = "rad/s", scale = 0.10472 }',
     'a = { column = "n_rpm", unit = "1/min" }',
     'a = { column = "n_rpm" }',
+    'a = { column = "rope_force_kN", unit = "N", file_unit = "kN" }',
+    'a = { column = "rope_force_kN", unit = "kN" }',
+    'a = { column = "position_m", unit = "m" }',
+    'a = { column = "x_m", unit = "mm" }',  # measured
+    'a = { column = "F_N", unit = "kN" }',  # normal to a surface
+    'a = { column = "x_mm", unit = "mm" }',
+    'a = { column = "u_V", unit = "V" }',
+    'a = { column = "flow_in", unit = "m^3/s" }',
+    'a = { column = "u_cm", unit = "V" }',  # common mode
+    'a = { column = "v_kn", unit = "m/s" }',  # knots, which nobody would guess
+    'a = { column = "force_mn", unit = "N" }',
     'a = { column = "u(t)", unit = "V" }',
     'a = { column = "flow (in)", unit = "m^3/s" }',
     'a = { column = "temp (min)", unit = "degC" }',
