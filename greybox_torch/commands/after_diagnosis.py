@@ -20,7 +20,11 @@ def declare(app: typer.Typer) -> None:
 def design(
     results: Annotated[Path, typer.Argument(metavar="RESULTS", help="The folder that greybox diagnose has written.")],
     precision: Annotated[
-        str | None, typer.Option(metavar="PARAMETER", help="Shrink this parameter's standard deviation instead.")
+        str | None,
+        typer.Option(
+            metavar="PARAMETER",
+            help="A parameter's name: shrink its standard deviation instead. Not that of numbers, as in fit and simulate.",
+        ),
     ] = None,
     seconds: Annotated[
         float | None, typer.Option(min=1e-9, metavar="SECONDS", help="How long the recording may be.")
