@@ -9,23 +9,19 @@ from typing import Any
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
-from documentation import card_fields, command_line, gallery, settings_table
+from documentation import gallery
 from documentation.linked_files import linked_files, links_within_the_site
+from documentation.written import WRITTEN
 
 ROOT = Path(__file__).parents[1]
-
-WRITTEN = {
-    "reference/command_line.md": command_line.page,
-    "reference/card_fields.md": card_fields.page,
-    "reference/settings.md": settings_table.page,
-    "reference/mechanisms.md": gallery.page,
-}
-"""Pages by their place on the site, and what writes them."""
 
 
 def on_files(files: Files, config: Any) -> Files:
     """Add what is written, and what stands elsewhere in the repository."""
     for place, write in WRITTEN.items():
+        told = files.get_file_from_path(place)
+        if told is not None:  # docs/ says there how to get the page
+            files.remove(told)
         files.append(File.generated(config, place, content=write()))
     for name, picture in gallery.pictures().items():
         files.append(File.generated(config, f"reference/{name}", content=picture))
