@@ -100,7 +100,7 @@ class DesignResult(Result):
         if not self.expected.decides:
             return (
                 f"No {self._what} within the limits was found that tells these hypotheses apart, whichever is right: "
-                f"{', '.join(self.names)}."
+                f"{', '.join(self.names[k] for k in self.expected.in_question)}."
             )
         told = (
             f"{self.seconds:.3g} s of {kinds} are expected to bring the right one of {len(self.names)} hypotheses to a probability of "

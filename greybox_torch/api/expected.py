@@ -42,9 +42,15 @@ class Expected:
         return np.minimum(self.nats, self.nats.T) < VISIBLE
 
     @property
+    def in_question(self) -> list[int]:
+        """Indices of the hypotheses that are not next to nothing; all of them where that is one alone."""
+        found = [k for k, p in enumerate(self.before) if p >= NOTHING]
+        return found if len(found) > 1 else list(range(len(self.before)))
+
+    @property
     def decides(self) -> bool:
-        """Whether it tells any of them apart."""
-        return not bool(self.alike.all())
+        """Whether it tells any of those in question apart."""
+        return not bool(self.alike[np.ix_(self.in_question, self.in_question)].all())
 
     @property
     def after(self) -> float:

@@ -83,3 +83,11 @@ def test_nothing_is_asked_for_where_nothing_is_told_apart(undecided: DiagnosisRe
     told = " ".join(alike.notes)
     assert "not worth recording" in told
     assert not any(words in told for words in ("Record it", "random multisine", "No input"))
+
+
+def test_what_is_next_to_nothing_decides_nothing() -> None:
+    """Two that stay alike hold all the probability: a third that is told from them makes no decision."""
+    nats = np.array([[0.0, 0.1, 400.0], [0.6, 0.0, 400.0], [400.0, 400.0, 0.0]])
+    assert not Expected((0.49, 0.48, 1e-6), nats, None).decides
+    assert Expected((0.49, 0.28, 0.2), nats, None).decides
+    assert Expected((0.9, 1e-4, 1e-6), nats, None).decides
