@@ -107,7 +107,7 @@ def find(
     if complete and (other := _from_other_values(study, state, schedule.searching)):
         study, state, complete = _searched(*other, before, schedule.searching)
     if complete and (wider := _over_wider_ranges(study, state, schedule.searching)):
-        study, state, complete = _searched_from(*wider, before, schedule.searching)
+        study, state, complete = _searched_from(*wider, state, schedule.searching)
     clock.lap(SEARCH)
     searched = state.current
     others = HeldOut(some.dataset, study) if dataset.validation() else None
@@ -167,7 +167,7 @@ def _searched_from(
 
 
 def _over_wider_ranges(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState] | None:
-    """Where a search begins anew, as a curve's signal moves beyond its range with what was found; None where it does not."""
+    """Where what was found is estimated anew, as its curve's signal moves beyond its range with it; None where it does not."""
     with until(deadline):
         found, _ = or_else(partial(over_wider_ranges, study, state), lambda: None)
     return found

@@ -16,6 +16,7 @@ from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.matching import MOST_LAWS, force_columns, kinematic_laws, matching_laws, worth_a_refit
 from greybox_torch.mechanisms.matching_pairs import matching_pair
 from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.mechanisms.reads import reads_nothing_but
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.signals import parameter_signals
@@ -139,11 +140,13 @@ def drawing(
 
 
 def may_be_drawn(law: Attachment, curve: Attachment, surroundings: Mapping[str, Surroundings]) -> bool:
-    """Whether an effect is a free curve that draws a law: of the same signal at the same port, and the law remembers nothing."""
+    """Whether an effect is a free curve that draws a law: of the same signal at the same port, and the law remembers nothing and reads
+    nothing else, as the play of a gear reads the rate at which it is damped.
+    """
     around, mechanism, unknown = surroundings[law.port], law.mechanism, curve.mechanism
     if curve.port != law.port or not isinstance(unknown, Unknown) or mechanism.kinematic or mechanism.states(around):
         return False
-    return not unknown.factor and set(mechanism.needs) <= {unknown.signal}
+    return not unknown.factor and reads_nothing_but(mechanism, around, unknown.signal)
 
 
 def _heights(curve: Attachment, around: Surroundings, grid: torch.Tensor, force: np.ndarray) -> dict[str, float]:

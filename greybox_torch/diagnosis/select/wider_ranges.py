@@ -1,4 +1,4 @@
-"""A search begun anew over the ranges that signals have with what was found, where a free curve's signal moves beyond its range."""
+"""What was found estimated anew over the ranges that signals have with it, where a free curve's signal moves beyond its range."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ from greybox_torch.estimate.surroundings import surroundings_along
 from greybox_torch.estimate.window_fit import states_along
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
+
+RARE = 0.0005
+"""Share of the samples of a state, at either end, that say nothing of where it moves."""
 
 
 def over_wider_ranges(study: Study, state: SearchState) -> tuple[Study, SearchState] | None:
@@ -34,11 +37,15 @@ def over_wider_ranges(study: Study, state: SearchState) -> tuple[Study, SearchSt
 
 
 def _ranges_with(study: Study, fitted: Hypothesis) -> dict[str, Surroundings]:
-    """Where the signals around every port of the model as it stands move with the effects of a hypothesis, over its middle windows."""
-    model, over = study.problem.model, fitted.fits[min(1, len(fitted.fits) - 1)]
+    """Where the signals around every port of the model as it stands move with the effects of a hypothesis, but for rare values.
+
+    Over its longest windows, which begin least often: where a state that no sensor shows begins, a window may not say.
+    """
+    model, over = study.problem.model, fitted.fits[-1]
     names = [s.name for s in fitted.model.states]
-    own = [names.index(s.name) for s in model.states]
-    return surroundings_along(model, over.problem, states_along(over, fitted.simulator)[:, own])
+    states = states_along(over, fitted.simulator)[:, [names.index(s.name) for s in model.states]]
+    low, high = np.quantile(states, [RARE, 1.0 - RARE], axis=0)
+    return surroundings_along(model, over.problem, np.clip(states, low, high))
 
 
 def _beyond(study: Study, signals: tuple[str, ...], drawn: Surroundings, now: Surroundings) -> bool:
