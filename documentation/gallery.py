@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
-
 from documentation.law_picture import picture
 from greybox_torch.mechanisms.library import BUILT_IN, LIBRARY
 from greybox_torch.mechanisms.mechanism import Mechanism
@@ -36,7 +34,6 @@ def page() -> str:
 
 
 def _entry(mechanism: type[Mechanism]) -> list[str]:
-    law = " ".join(inspect.cleandoc(mechanism.__doc__ or "").split("\n\n")[0].split())
     also = [PORTS[kind].removeprefix("At a").removeprefix("n").strip() for kind in mechanism.kinds[1:]]
     lines = [
         "",
@@ -46,7 +43,7 @@ def _entry(mechanism: type[Mechanism]) -> list[str]:
         "",
         mechanism.explanation,
         "",
-        f"Law: {law}",
+        f"Law: {mechanism.described()}.",
         "",
     ]
     if mechanism.experiment:

@@ -16,7 +16,10 @@ from greybox_torch.diagnosis.verdict import STOPPED, Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.tables import print_table
 
-_COLUMNS = ["port", "mechanism", "probability", "explains [%]", "parameter", "value", "std", "unit"]
+_COLUMNS = ["port", "mechanism", "probability", "size [%]", "parameter", "value", "std", "unit"]
+
+
+SIZE = "size: the part of the error of the model without effects that leaving the effect out brings back; the parts need not add up"
 
 
 def print_verdict(console: Console, data: DataSet, title: str, verdict: Verdict) -> None:
@@ -46,8 +49,7 @@ def notes(verdict: Verdict) -> list[str]:
     stopped = [] if verdict.complete else [STOPPED, *verdict.not_tried.sentences()]
     left = [] if verdict.left is None else [verdict.left.sentence]
     small = [f"Refinement: {refinement.sentence}." for refinement in verdict.refinements]
-    small += [verdict.share_of_refinements] if verdict.share_of_refinements else []
-    return [*(line for effect in verdict.effects for line in _notes(effect)), *left, *small, *stopped]
+    return [SIZE, *(line for effect in verdict.effects for line in _notes(effect)), *left, *small, *stopped]
 
 
 def verdict_scores(verdict: Verdict) -> dict[str, tuple[Score, ...]]:
@@ -58,7 +60,8 @@ def verdict_scores(verdict: Verdict) -> dict[str, tuple[Score, ...]]:
 
 def _rows(effect: Effect) -> Iterator[list[str | float]]:
     """A line for every parameter of a law or a response; one for a curve, whose heights mean little one by one."""
-    first: list[str | float] = [effect.port, effect.mechanism, effect.probability, 100.0 * effect.explained]
+    size = float(f"{100.0 * effect.size:.3g}") if math.isfinite(effect.size) else ""
+    first: list[str | float] = [effect.port, effect.mechanism, effect.probability, size]
     if not effect.shown_parameters:
         yield [*first, f"curve over {', times '.join(effect.signals)}", "", "", ""]
         return
@@ -75,7 +78,8 @@ def _deviation(value: float | None) -> str | float:
 
 def _notes(effect: Effect) -> list[str]:
     head = spoken_at(effect.mechanism, effect.port)
-    lines = [f"{head}: {effect.where}"] if effect.where else []
+    lines = [f"{head}: {effect.equation}"] if effect.equation else []
+    lines += [f"{head}: {effect.where}"] if effect.where else []
     lines += [f"{head}: {effect.undetermined}"] if effect.undetermined else []
     advice = f"; to tell them apart: {effect.separating_experiment}" if effect.separating_experiment else ""
     together = () if effect.one_of is None else effect.one_of.members

@@ -110,6 +110,9 @@ class Effect:
     form: str = ""
     """Of an unknown effect that is no curve over one signal: what it is instead, as a noun."""
 
+    equation: str = ""
+    """What it adds at its port, as one would write it into the model's class, or in words where that is no formula; "" for a curve."""
+
     made_up_for: str = ""
     """Where the recordings do not show it, as the re-estimated model makes up for it: how that is known, in words."""
 
@@ -172,6 +175,8 @@ class Effect:
             "explained": self.explained,
             "alternatives": [a.as_json() for a in self.alternatives],
         }
+        if self.equation:
+            result["equation"] = self.equation
         if self.one_of is not None:
             result["one_of"] = self.one_of.as_json()
         if self.ceiling is not None:

@@ -152,17 +152,6 @@ class Verdict:
         return bool(self.effects) or self.unexplained is not None
 
     @property
-    def share_of_refinements(self) -> str:
-        """What the refinements have of the explained error, in a sentence: without it the shares of the findings do not add up."""
-        share = 100 * sum(e.explained for e in self.refinements)
-        if not self.effects or share < 0.5:
-            return ""
-        return (
-            f"The refinements have {share:.0f} % of the explained error: it is divided by the logarithm of what each effect removed when "
-            "it was found, so that a late one, which removes a large part of little, counts much."
-        )
-
-    @property
     def sentence(self) -> str:
         """The verdict in one sentence."""
         if not self.effects and self.unexplained is not None:

@@ -94,7 +94,7 @@ class InputBias(LinearLaw):
 
 
 class InputGain(LinearLaw):
-    """The input that acts is (1 + g) u."""
+    """The input that acts is (1 + gain_error) u."""
 
     name = "input_gain"
     kinds = ("actuator",)
@@ -115,7 +115,7 @@ NEARLY_CLAMP = 0.05
 
 
 class TorqueSaturation(ByDirection):
-    """The input that acts is limited: u / (1 + |u / l|^n)^(1/n), with n = 1 / ``softness``.
+    """The input that acts is limited: u / (1 + |u / limit|^n)^(1/n), with n = 1 / ``softness``.
 
     As soft as iron that saturates (a softness of 0.3 to 1), or a clamp (a softness of zero). ``by_direction``, with an ``asymmetry`` a, the
     limit l is (1 + a) ``limit`` for positive inputs and (1 − a) ``limit`` for negative ones. With ``limited_power`` it falls as 1 / speed

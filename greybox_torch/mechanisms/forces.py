@@ -130,7 +130,7 @@ class EndStop(Mechanism):
 
 
 class AdditionalMode(Mechanism):
-    """A further mass m on the body by a spring m ω² and a damper 2 ζ ω m."""
+    """A further ``mass`` m on the body by a spring m ω² and a damper 2 ζ ω m."""
 
     name = "additional_mode"
     kinds = ("body",)

@@ -207,6 +207,12 @@ class Mechanism:
         """Whether the recordings have the signals that it needs."""
         return set(self.needs) - {"delayed"} <= set(around.ranges)
 
+    @classmethod
+    def described(cls) -> str:
+        """The law as the first paragraph of the class's documentation has it; "" where there is none."""
+        first = inspect.cleandoc(cls.__doc__ or "").split("\n\n")[0]
+        return " ".join(first.replace("``", "").split()).rstrip(".")
+
     def options(self) -> dict[str, Any]:
         """What the constructor was told, by argument, so that the same mechanism can be made again."""
         return {name: vars(self)[name] for name in inspect.signature(type(self)).parameters if name in vars(self)}

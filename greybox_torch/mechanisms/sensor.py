@@ -102,7 +102,7 @@ class SensorBias(LinearLaw):
 
 
 class SensorGain(LinearLaw):
-    """The recorded output is (1 + g) y."""
+    """The recorded output is (1 + gain_error) y."""
 
     name = "sensor_gain"
     kinds = ("sensor",)

@@ -111,7 +111,7 @@ class Backlash(Mechanism):
 
 
 class HystereticSpring(Mechanism):
-    """F r with r = z / z_0 and dz/dt = δ' − |δ'| r (1 − m + m |r|), an elasto-slip element in parallel with the spring.
+    """F r with r = z / z_0 and dz/dt = δ' − |δ'| r (1 − m + m |r|) with the ``sharpness`` m, an elasto-slip element beside the spring.
 
     ``sharpness`` m leads from the exponent 1 of Bouc and Wen (0), where slip sets in gradually, to their exponent 2 (1).
     """

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from greybox_torch.api.verdict_summary import notes
+from greybox_torch.api.verdict_summary import SIZE, effect_table, notes
 from greybox_torch.diagnosis.verdict import MOST_NAMED, STOPPED, NotTried
 from tests.diagnosis.test_verdict import BACKLASH, verdict
 
@@ -45,12 +45,15 @@ def test_parameters_that_are_not_determined_are_told() -> None:
     assert replace(BACKLASH, parameters={"F_0": {"value": 1.0, "std": None, **entry}}).undetermined == ""
 
 
-def test_what_refinements_explain_is_told() -> None:
-    """Seen: friction that "explains 65 %" with 0.001 % of the mismatch left; a refinement had the rest."""
-    small = replace(BACKLASH, mechanism="nonlinear_stiffness", explained=0.348, size=0.0007)
-    told = notes(replace(verdict(BACKLASH), refinements=(small,)))
-    assert told[-1].startswith("The refinements have 35 % of the explained error")
-    assert not any("refinements have" in line for line in notes(verdict(BACKLASH)))
+def test_the_size_of_an_effect_is_told_and_its_equation() -> None:
+    """Seen: friction without which all of the mismatch is back "explains 14 %", a ripple of size 0.29 "explains 86 %"."""
+    effect = replace(BACKLASH, size=0.28778, explained=0.8587, equation="port.gear_spring += -F_c")
+    heads, rows = effect_table(verdict(effect))
+    assert heads[3] == "size [%]" and rows[0][3] == 28.8
+    assert effect_table(verdict(replace(effect, size=float("nan"))))[1][0][3] == ""
+    told = notes(verdict(effect))
+    assert told[0] == SIZE and told[1] == "backlash at gear_spring: port.gear_spring += -F_c"
+    assert SIZE not in notes(verdict())
 
 
 def test_of_many_candidates_their_number_is_told() -> None:

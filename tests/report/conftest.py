@@ -33,6 +33,8 @@ BACKLASH = Effect(
     explanation="There is play: within a gap the coupling transmits nothing.",
     source="M. Nordin, P.-O. Gutman, Automatica 38(10), 2002",
     separating_experiment="reversals at low torque",
+    size=0.9,
+    equation="the spring at gear_spring sees 0",
 )
 
 UNKNOWN = replace(

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import Gain
+from greybox_torch.diagnosis.describe.equation import equation
 from greybox_torch.diagnosis.describe.indistinguishable import one_of
 from greybox_torch.diagnosis.describe.law_over_data import over_data
 from greybox_torch.diagnosis.describe.memory import remembered, settled_curve
@@ -53,11 +55,11 @@ def describe(
     hypothesis = state.current
     assert isinstance(hypothesis.model, AugmentedModel)
     floor = min(f.mean_square for f in hypothesis.fits) * max(1, len(study.problem.records.first))
-    whole = max(0.0, (sums[0] - sums[1]) / max(sums[0] - floor, 1e-300))
+    whole = min(1.0, max(0.0, (sums[0] - sums[1]) / max(sums[0] - floor, 1e-300)))
     parts, left = _parts(state), LeftInFreeRuns(_left(sums), missed)
     return tuple(
         replace(
-            _effect(study, state, hypothesis.model, e, final, min(1.0, whole * part), gains.get(e.prefix), left),
+            _effect(study, state, hypothesis.model, e, final, whole * part, gains.get(e.prefix), left),
             size=sizes.get(e.prefix, float("nan")),
         )
         for e, part in zip(hypothesis.effects, parts, strict=True)
@@ -97,19 +99,19 @@ def _effect(
     mechanism, around = attachment.mechanism, study.surroundings[attachment.port]
     curve = settled_curve(attachment, around, final) or over_data(study, state.current, attachment, final.problem)
     members = None if taken is None else one_of(model.base, taken, probability, study.settings, study.beliefs)
+    parameters = _parameters(model, attachment, final)
+    named = partial(signal_name, model.base, site)
     return Effect(
         port=attachment.port,
         mechanism=Unknown.name if mechanism.free else mechanism.name,
         probability=probability,
-        signals=tuple(signal_name(model.base, site, s) for s in mechanism.signals()),
+        signals=tuple(named(s) for s in mechanism.signals()),
         where=where(profiles, timelines),
-        parameters=_parameters(model, attachment, final),
+        parameters=parameters,
         explained=round(explained, 4),
         alternatives=alternatives,
         curve=as_named(curve, model.base, site),
-        memory=remembered(attachment, around, final, signal_name(model.base, site, mechanism.signals()[0]))
-        if mechanism.free
-        else None,
+        memory=remembered(attachment, around, final, named(mechanism.signals()[0])) if mechanism.free else None,
         profiles=profiles,
         explanation=mechanism.explanation,
         source=mechanism.source,
@@ -118,6 +120,7 @@ def _effect(
         timelines=timelines,
         one_of=members,
         law=mechanism.name,
+        equation=equation(attachment, site, around, named, list(parameters)),
         form=mechanism.nature if mechanism.free else "",
     )
 

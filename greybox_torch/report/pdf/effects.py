@@ -40,7 +40,13 @@ def _card(sheets: Sheets, card: Card) -> None:
     if card.undetermined:
         sheets.text(f"{card.undetermined}.", 8.0, colour=QUIET)
         sheets.gap(4.0)
-    facts = [("Explains", f"{card.explained} of the repeatable validation error")]
+    facts = [("Law", card.equation)] if card.equation else []
+    facts += (
+        [("Size", f"left out, it brings back {card.size} of the error of the model without effects")]
+        if card.size
+        else []
+    )
+    facts += [("Explains", f"{card.explained} of the repeatable validation error")] if card.explained else []
     facts += [("Ceiling", f"{card.ceiling} of the gain of the best free curve in its place")] if card.ceiling else []
     facts += [("Where", card.where)] if card.where else []
     facts += [("Depends on", ", ".join(card.signals))] if card.signals else []

@@ -46,7 +46,8 @@ class Share:
 
 @dataclass(frozen=True)
 class Card:
-    """An effect as its card shows it; ``statement`` where it stands for several that cannot be told apart, with their ``probability``."""
+    """An effect as its card shows it; ``statement`` where it stands for several that cannot be told apart, with their ``probability``.
+    ``explained`` is empty beside further effects and refinements, among which the explained error is divided by the order of the search."""
 
     title: str
     port: str
@@ -55,6 +56,8 @@ class Card:
     explanation: str
     where: str
     signals: tuple[str, ...]
+    equation: str
+    size: str
     explained: str
     ceiling: str
     parameters: tuple[ParameterRow, ...]
@@ -78,10 +81,12 @@ class Effects:
 
     @classmethod
     def of(cls, verdict: Verdict) -> Effects | None:
-        return cls(tuple(_card(e, responses(verdict, e)) for e in verdict.effects)) if verdict.effects else None
+        alone = len(verdict.effects) + len(verdict.refinements) == 1
+        cards = (_card(e, responses(verdict, e), alone) for e in verdict.effects)
+        return cls(tuple(cards)) if verdict.effects else None
 
 
-def _card(effect: Effect, shown: Responses | None) -> Card:
+def _card(effect: Effect, shown: Responses | None, alone: bool) -> Card:
     unknown = effect.mechanism == "unknown"
     return Card(
         title=_unknown_title(effect) if unknown else text.first_capital(text.mechanism(effect.mechanism)),
@@ -91,7 +96,9 @@ def _card(effect: Effect, shown: Responses | None) -> Card:
         explanation=effect.explanation,
         where=effect.where,
         signals=effect.signals,
-        explained=text.percent(effect.explained),
+        equation=effect.equation,
+        size=text.percent(effect.size) if math.isfinite(effect.size) else "",
+        explained=text.percent(effect.explained) if alone else "",
         ceiling="" if effect.ceiling is None else text.percent(effect.ceiling),
         parameters=_parameters(effect),
         undetermined=effect.undetermined,

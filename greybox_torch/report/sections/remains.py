@@ -19,11 +19,10 @@ class Refinement:
 
 @dataclass(frozen=True)
 class Remains:
-    """The sentence about what is left, the rows of refinements, and ``share``: what of the explained error is theirs."""
+    """The sentence about what is left, and the rows of refinements."""
 
     sentence: str
     refinements: tuple[Refinement, ...]
-    share: str = ""
     template: str = "remains.html.j2"
 
     @classmethod
@@ -34,4 +33,4 @@ class Remains:
             Refinement(text.words(e.mechanism), e.port, f"{100 * e.size:.2g} %")
             for e in sorted(verdict.refinements, key=lambda e: -e.size)
         )
-        return cls(verdict.left.sentence, tuple(rows), verdict.share_of_refinements)
+        return cls(verdict.left.sentence, tuple(rows))

@@ -16,6 +16,7 @@ def test_a_named_effect(of_kind: Callable[[str], Verdict]) -> None:
     assert effects is not None
     (card,) = effects.cards
     assert (card.title, card.port, card.explained, card.unknown) == ("Backlash", "gear_spring", "97 %", False)
+    assert (card.size, card.equation) == ("90 %", "the spring at gear_spring sees 0")
     (row,) = card.parameters
     assert (row.symbol, row.value, row.unit) == ("half gap", "0.03100 ± 0.00040", "rad")
     assert [(s.mechanism, round(s.probability, 3)) for s in card.shares] == [
@@ -51,6 +52,15 @@ def test_share_of_the_ceiling(of_kind: Callable[[str], Verdict]) -> None:
     effects = Effects.of(verdict)
     assert effects is not None
     assert [card.ceiling for card in effects.cards] == ["", "88 %"]
+
+
+def test_beside_others_the_size_alone_says_how_much(of_kind: Callable[[str], Verdict]) -> None:
+    """The explained error is divided by the order of the search: seen, the largest effect "explains 14 %"."""
+    (effect,) = of_kind("found").effects
+    for beside in ({"effects": (effect, effect)}, {"refinements": (effect,)}):
+        effects = Effects.of(replace(of_kind("found"), **beside))
+        assert effects is not None
+        assert {(card.size, card.explained) for card in effects.cards} == {("90 %", "")}
 
 
 def test_where_along_the_experiments(of_kind: Callable[[str], Verdict]) -> None:

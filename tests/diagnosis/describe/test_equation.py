@@ -1,0 +1,65 @@
+"""The equation of a found law."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from greybox_torch.diagnosis.describe.equation import equation
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.library import LIBRARY
+from greybox_torch.mechanisms.mechanism import Mechanism, Range, Surroundings
+from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.model import Body, Coupling
+from greybox_torch.model.ports import Actuator, Port
+
+SIGNALS = ("speed", "position", "time", "deflection", "rate", "load", "input")
+AROUND = Surroundings({name: Range(-1.0, 1.0, 1.0) for name in SIGNALS}, {}, "N m", 0.01)
+DRUM, ROPE = Body("drum", speed="omega", position="angle"), Coupling("rope", deflection="stretch", rate="rate")
+NAMED = {"speed": "omega", "position": "angle", "deflection": "stretch"}
+
+
+def told(mechanism: Mechanism, site: Port = DRUM) -> str:
+    names = [p.name for p in mechanism.parameters(AROUND) if p.name != "centre"]
+    return equation(Attachment(site.name, mechanism), site, AROUND, lambda s: NAMED.get(s, s), names)
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "options", "site", "expected"),
+    [
+        ("coulomb_friction", {}, DRUM, "port.drum += -F_c * tanh(omega / v_0)"),
+        (
+            "stribeck_friction",
+            {},
+            DRUM,
+            "port.drum += -(F_c + F_s * exp(-(omega / v_s) ** 2)) * tanh(omega / v_0) - c * omega",
+        ),
+        ("torque_ripple", {}, DRUM, "port.drum += a * cos(order * angle) + b * sin(order * angle)"),
+        (
+            "backlash",
+            {},
+            ROPE,
+            "the spring at rope sees stretch - min(max(stretch, -half_gap), half_gap); damping acts beside that",
+        ),
+        ("presliding_hysteresis", {}, DRUM, "−F z / z_0 with dz/dt = v − |v| z / z_0 (Dahl)"),
+        ("input_gain", {}, Actuator("actuator", "torque"), "The input that acts is (1 + gain_error) u"),
+    ],
+)
+def test_equations(mechanism: str, options: dict[str, Any], site: Port, expected: str) -> None:
+    """Seen: no formula anywhere; it had to be read back from the exported C."""
+    assert told(LIBRARY[mechanism](**options), site) == expected
+
+
+def test_a_curve_has_none_and_a_law_that_is_no_formula_its_description() -> None:
+    class Odd(LIBRARY["coulomb_friction"]):
+        """Sticks.
+
+        More of it.
+        """
+
+        def force(self, s, p, z):
+            return float(s.speed)
+
+    assert told(Unknown("speed")) == ""
+    assert told(Odd()) == "Sticks"
