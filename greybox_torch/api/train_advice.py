@@ -7,6 +7,8 @@ import numpy as np
 from greybox_torch.api.scores import Scores
 from greybox_torch.api.train_scores import HYBRID, NAMED, PHYSICS
 from greybox_torch.estimate.comparison import mean_fit
+from greybox_torch.training import Explanation
+from greybox_torch.training.explain import KEEP
 
 WORSE = 0.01
 """Points of the mean fit in % from which a model simulates worse than another."""
@@ -16,19 +18,35 @@ def train_advice(scores: Scores) -> list[str]:
     """Sentences where the hybrid, or the model with a law in the network's place, simulates the validation experiments worse than the
     physics alone; none where there are no such experiments.
     """
-    judging = {name: [s for s in own if s.role == "validation"] for name, own in scores.items()}
-    if not judging[PHYSICS]:
-        return []
-    fits = {name: mean_fit(own) for name, own in judging.items()}
-    alone = fits[PHYSICS]
-    if not np.isfinite(alone):
-        return []  # of runs that are lost without the network as well, this says nothing
+    fits = _fits(scores)
     whose = {HYBRID: "the hybrid simulates", NAMED: "the model with the law in the network's place simulates"}
-    worse = [name for name in whose if name in fits and fits[name] < alone - WORSE]
-    return [f"{_told(whose[name], fits[name], alone)}{_INSTEAD}" for name in worse]
+    worse = [name for name in whose if _is_worse(fits, name)]
+    use = _USE_LAW if NAMED in fits and NAMED not in worse else _USE_PHYSICS
+    return [
+        f"{_told(whose[name], fits[name], fits[PHYSICS])}what was learned does not carry over to them. {use}"
+        for name in worse
+    ]
 
 
-_INSTEAD = "what was learned does not carry over to them. Use the physics alone (`greybox fit`), or train on recordings like them."
+def explained_sentence(explained: Explanation, scores: Scores) -> str:
+    """What the network stands for, without the advice to keep it where :func:`train_advice` is against that."""
+    said = explained.sentence
+    return said.removesuffix(KEEP).rstrip() if _is_worse(_fits(scores), HYBRID) else said
+
+
+def _fits(scores: Scores) -> dict[str, float]:
+    """The mean fits on the validation experiments by model; empty where there are none."""
+    judging = {name: [s for s in own if s.role == "validation"] for name, own in scores.items()}
+    return {name: mean_fit(own) for name, own in judging.items()} if judging[PHYSICS] else {}
+
+
+def _is_worse(fits: dict[str, float], name: str) -> bool:
+    """Whether a model simulates worse than the physics alone; where that is lost as well, the runs say nothing."""
+    return name in fits and bool(np.isfinite(fits[PHYSICS])) and fits[name] < fits[PHYSICS] - WORSE
+
+
+_USE_PHYSICS = "Use the physics alone (`greybox fit`), or train on recordings like them."
+_USE_LAW = "Use the model with the law in the network's place (`named`)."
 
 
 def _told(who: str, fit: float, alone: float) -> str:

@@ -9,6 +9,8 @@ from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.api.fit_json import parameters_json
+from greybox_torch.api.scores import Scores
+from greybox_torch.api.train_advice import explained_sentence
 from greybox_torch.mechanisms.matching import LEAST_MATCH
 from greybox_torch.report.tables import print_table
 from greybox_torch.training import Explanation, Trained
@@ -16,11 +18,11 @@ from greybox_torch.training.learned_force import SignalCurve
 from greybox_torch.training.named_term import NamedTerm
 
 
-def explanation_json(found: Trained, explained: Explanation) -> dict[str, Any]:
+def explanation_json(found: Trained, explained: Explanation, scores: Scores) -> dict[str, Any]:
     """Curves with their band, shares per signal, every law compared, the laws put in the network's place, and the recommendation."""
     force_unit = found.hybrid.surroundings[found.hybrid.network.port].force_unit
     result: dict[str, Any] = {
-        "sentence": explained.sentence,
+        "sentence": explained_sentence(explained, scores),
         "drop_network": explained.term is not None,
         "band": band(explained),
         "members": explained.members,
@@ -41,9 +43,9 @@ def band(explained: Explanation) -> str:
     return own if explained.members < 2 else f"{own}; and the differences of {explained.members} seeds"
 
 
-def print_explanation(console: Console, explained: Explanation) -> None:
+def print_explanation(console: Console, explained: Explanation, scores: Scores) -> None:
     """The recommendation, which signals count, and the laws compared."""
-    console.print(Text(f"\n{explained.sentence}", style="bold"), soft_wrap=True)
+    console.print(Text(f"\n{explained_sentence(explained, scores)}", style="bold"), soft_wrap=True)
     if not explained.curves:
         return
     shares = ", ".join(f"{curve.signal} {100 * curve.share:.0f} %" for curve in explained.curves)

@@ -20,7 +20,7 @@ def training_json(
 ) -> dict[str, Any]:
     """What `greybox train` writes to train.json and prints with --json, but for where the checkpoint is."""
     problem, network = found.result.problem, found.hybrid.network
-    explanation = {} if explained is None else {"explanation": explanation_json(found, explained)}
+    explanation = {} if explained is None else {"explanation": explanation_json(found, explained, scores)}
     return {
         "schema": "greybox-train/1",
         "seconds": found.seconds,

@@ -15,7 +15,7 @@ from greybox_torch.api.estimated import EstimatedParameter, estimated_parameters
 from greybox_torch.api.estimated_model import EstimatedModel
 from greybox_torch.api.free_runs import plot_simulated
 from greybox_torch.api.scores import score_table, scores_side_by_side
-from greybox_torch.api.train_advice import train_advice
+from greybox_torch.api.train_advice import explained_sentence, train_advice
 from greybox_torch.api.train_json import training_json
 from greybox_torch.api.train_range import Beyond
 from greybox_torch.api.train_scores import START
@@ -143,7 +143,11 @@ class TrainingResult(EstimatedModel):
 
     def _repr_html_(self) -> str:
         learned = self.plot_learned()
-        said = [] if self.explanation is None else [notebook.sentence(self.explanation.sentence, "found")]
+        said = (
+            []
+            if self.explanation is None
+            else [notebook.sentence(explained_sentence(self.explanation, self._scores), "found")]
+        )
         return notebook.page(
             f"{self.data.name}: {self.given.title}",
             notebook.sentence(self.sentence, "found"),

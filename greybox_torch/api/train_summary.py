@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from rich.console import Console
 from rich.text import Text
 
@@ -13,6 +14,10 @@ from greybox_torch.data import DataSet
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.report.tables import print_table
 from greybox_torch.training import Explanation, Trained
+
+RUNS_AWAY = 100.0
+"""Times the mean squared error of a constant from which a free run shows no more than that the model ran away."""
+LOST = "ran away: to have less says little"
 
 
 def print_training(
@@ -34,7 +39,7 @@ def print_training(
     print_table(console, columns, rows, prose=["description"])
     _print_choices(console, found)
     if explained is not None:
-        print_explanation(console, explained)
+        print_explanation(console, explained, scores)
     print_substeps(console, found.result.substeps)
     console.print()
     print_scores(console, data, scores)
@@ -71,9 +76,17 @@ def parameter_table(found: Trained) -> tuple[list[str], list[list[str | float]]]
     return ["name", "description", "unit", "physics\nalone", "beside the\nnetwork", ""], rows
 
 
-def _print_choices(console: Console, found: Trained) -> None:
-    rows = []
+def choice_rows(found: Trained) -> list[list[str | float]]:
+    """Every penalty and the physics alone, with its mean squared error on the held-out stretches."""
+    problem = found.result.problem
+    constant = float(np.mean(np.nanvar(problem.records.y * problem.weights[:, None], axis=1)))
+    rows: list[list[str | float]] = []
     for choice in found.polished.choices:
         name = "physics alone" if choice.weight is None else f"penalty {choice.weight:g}"
-        rows.append([name, choice.held_out, "chosen" if choice is found.polished.chosen else ""])
-    print_table(console, ["free run on the held-out stretches", "mean squared error", ""], rows)
+        lost = not choice.held_out < RUNS_AWAY * constant
+        rows.append([name, choice.held_out, "chosen" if choice is found.polished.chosen else LOST if lost else ""])
+    return rows
+
+
+def _print_choices(console: Console, found: Trained) -> None:
+    print_table(console, ["free run on the held-out stretches", "mean squared error", ""], choice_rows(found))

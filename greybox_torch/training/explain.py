@@ -23,6 +23,9 @@ from greybox_torch.training.named_term import NamedTerm, on_all_samples, refitte
 from greybox_torch.training.polish import WORTH
 from greybox_torch.training.trained import Trained
 
+KEEP = "Keep the network."
+"""The recommendation where no law does what the network does."""
+
 
 @dataclass(frozen=True)
 class Explanation:
@@ -48,7 +51,7 @@ class Explanation:
         """What to do with the network, in a sentence."""
         if self.memories:
             told = " and ".join(f"{t:.2g} s" for t in self.memories)
-            return f"The network remembers over {told}: no curve over its signals stands for it. Keep the network."
+            return f"The network remembers over {told}: no curve over its signals stands for it. {KEEP}"
         if not self.curves:
             return "There is nothing to explain: the network was left at zero."
         if self.term is not None:
@@ -61,9 +64,9 @@ class Explanation:
             best = self.terms[0]
             return (
                 f"No law of the library does what the network does: with the closest, {best.attachment.prefix}, the mean squared error on "
-                f"the held-out stretches is {_told(best.lost)}. Keep the network."
+                f"the held-out stretches is {_told(best.lost)}. {KEEP}"
             )
-        return "No law of the library without memory comes near to what the network has learned. Keep the network."
+        return f"No law of the library without memory comes near to what the network has learned. {KEEP}"
 
 
 def explain(

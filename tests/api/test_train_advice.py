@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import greybox_torch as gt
-from greybox_torch.api.train_advice import train_advice
+from greybox_torch.api.scores import Scores
+from greybox_torch.api.train_advice import explained_sentence, train_advice
 from greybox_torch.api.train_range import Beyond, _beyond
 from greybox_torch.estimate.comparison import Score
+from greybox_torch.training import Explanation
 from tests.training.conftest import Turntable, recorded
 
 QUICK = gt.TrainingSettings(epochs=3)
 
 
-def said(*, physics: float, hybrid: float, named: float | None = None, role: str = "validation") -> list[str]:
+def said(**fits: Any) -> list[str]:
+    return train_advice(scores(**fits))
+
+
+def scores(*, physics: float, hybrid: float, named: float | None = None, role: str = "validation") -> Scores:
     """With an estimation experiment beside that is simulated well by all."""
     fits = {"start": 10.0, "refit": physics, "augmented": hybrid} | ({} if named is None else {"named": named})
     well = Score("one", "estimation", "y", 99.0, 0.1)
-    return train_advice(
-        {m: [well, Score("two", role, "y", fit, np.inf if np.isinf(fit) else 1.0)] for m, fit in fits.items()}
-    )
+    return {m: [well, Score("two", role, "y", fit, np.inf if np.isinf(fit) else 1.0)] for m, fit in fits.items()}
 
 
 def test_a_hybrid_that_predicts_worse_than_physics_is_said_to() -> None:
@@ -34,6 +40,16 @@ def test_a_hybrid_that_predicts_worse_than_physics_is_said_to() -> None:
     assert "(it overflows; mean fit 91.3 % without)" in told
     (told,) = said(physics=91.3, hybrid=95.0, named=70.0)
     assert "the model with the law in the network's place simulates worse" in told
+
+
+def test_there_is_one_recommendation() -> None:
+    """Seen: "Keep the network." above "Use the physics alone" in one output."""
+    kept = Explanation(memories=(0.2,))
+    assert kept.sentence.endswith("stands for it. Keep the network.")
+    assert explained_sentence(kept, scores(physics=59.7, hybrid=42.3)).endswith("stands for it.")
+    assert explained_sentence(kept, scores(physics=59.7, hybrid=80.0)) == kept.sentence
+    (told,) = said(physics=59.7, hybrid=42.3, named=90.0)
+    assert told.endswith("Use the model with the law in the network's place (`named`).")
 
 
 @pytest.mark.parametrize(
