@@ -13,7 +13,7 @@ import numpy as np
 from greybox_torch.data import DataSet
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.comparison import Comparison, compare
-from greybox_torch.estimate.overflow import avoidance, first_overflow, suggestions
+from greybox_torch.estimate.overflow import Overflow, avoidance, overflows, suggestions
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.residuals import Residuals, residuals_of
 from greybox_torch.estimate.simulators import simulator_for
@@ -23,13 +23,17 @@ from greybox_torch.restored import load_beside
 from greybox_torch.simulation.simulator import SimulationOptions
 from greybox_torch.systems import load_model, model_reference
 
+MOST_NAMED = 5
+"""Experiments that a message on an overflow names."""
+
 
 @dataclass(frozen=True)
 class Evaluation:
     """Free runs of a model on all experiments of ``data``, start states estimated on the first tenth of each.
 
     ``model_name`` is how the model is loaded; ``problem`` has the model with its values; ``substeps`` is how many Runge-Kutta steps a
-    sample took; ``overflow`` says where the simulation overflows and what avoids that, None where it does not.
+    sample took; ``overflow`` says where the simulation overflows and what avoids that, None where it does not; ``lost`` are the
+    experiments in which it does.
     """
 
     data: DataSet
@@ -38,6 +42,7 @@ class Evaluation:
     comparison: Comparison
     substeps: int = 1
     overflow: str | None = None
+    lost: tuple[str, ...] = ()
 
     @property
     def values(self) -> dict[str, float]:
@@ -111,12 +116,21 @@ def evaluated(data: DataSet, model: GreyBoxModel, *, device: str = "cpu", precis
     problem = make_problem(data, model, data.recordings)
     simulator = simulator_for(problem, SimulationOptions(device, precision), tangents=False)
     comparison = compare(problem, data.recordings, simulator)
-    found, overflow = first_overflow(problem, comparison.simulated), None
-    if found is not None:
-        time = next(r.time[found.sample] for r in data.recordings if r.name == found.experiment)
+    found, overflow = overflows(problem, comparison.simulated), None
+    if found:
         overflow = (
-            f"the simulation of '{found.experiment}' overflows at {time:.6g} s; "
+            f"{_told(data, found)}; "
             f"{avoidance(suggestions(problem, simulator))}; "
             "try parameters and start states nearer to the truth, tighter bounds, or a smaller sample time"
         )
-    return Evaluation(data, model_reference(model), problem, comparison, simulator.substeps, overflow)
+    lost = tuple(one.experiment for one in found)
+    return Evaluation(data, model_reference(model), problem, comparison, simulator.substeps, overflow, lost)
+
+
+def _told(data: DataSet, found: tuple[Overflow, ...]) -> str:
+    """Where and when the simulation overflows; of many experiments the first few."""
+    times = {r.name: r.time for r in data.recordings}
+    at = [f"at {times[o.experiment][o.sample]:.6g} s" for o in found[:MOST_NAMED]]
+    others = [f"of '{o.experiment}' {when}" for o, when in zip(found[1:], at[1:], strict=False)]
+    others += [f"of {len(found) - MOST_NAMED} more experiments"] if len(found) > MOST_NAMED else []
+    return ", ".join([f"the simulation of '{found[0].experiment}' overflows {at[0]}", *others])

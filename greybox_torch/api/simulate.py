@@ -78,8 +78,10 @@ class SimulationResult(Result):
 
     @cached_property
     def warnings(self) -> list[str]:
-        """Outputs that move opposite to what was measured, in every experiment: a sign is wrong on the card or in the model."""
-        told = []
+        """Experiments whose simulation overflows, and outputs that move opposite to what was measured, in every experiment: a sign is wrong
+        on the card or in the model.
+        """
+        told = [] if self.run.overflow is None else [self.run.overflow]
         for name in (output.name for output in self.run.problem.model.outputs):
             found = [_correlation(self.data.recordings[e].signals[name], self[run][name]) for e, run in enumerate(self)]
             known = [one for one in found if np.isfinite(one)]
@@ -159,14 +161,15 @@ def simulate(
 
     Raises:
         UserError: model and data do not fit, or an argument is at fault.
-        NumericalError: the simulation overflows.
+        NumericalError: the simulation overflows in every experiment.
 
     Examples:
         ``simulate(Motor(), data)["sweep"]["speed"]``
     """
     given = check_model(model)
     run = evaluated(check_data(data), given, device=check_device(device), precision=check_precision(precision))
-    refuse_overflow(run)
+    if len(run.lost) == len(run.comparison.experiments):
+        refuse_overflow(run)
     return SimulationResult(run)
 
 

@@ -19,13 +19,16 @@ from greybox_torch.simulation.windows import Windows
 FACTORS = (0.5, 2.0, 0.1, 10.0, 1e-2, 1e2, 1e-3, 1e3, 0.0, -1.0)
 """What a parameter's value is multiplied by in search of one with which the simulation stays finite, the nearest first."""
 
+LARGEST = float(np.sqrt(np.finfo(float).max))
+"""Size of an output from which its squared error is no number."""
+
 LANES = 64
 """How many experiments are simulated side by side at most while searching: whole records take memory."""
 
 
 @dataclass(frozen=True)
 class Overflow:
-    """The first output that is not finite: in which experiment, how many s after its first sample, at which sample of it."""
+    """The first output whose square is not finite: in which experiment, how many s after its first sample, at which sample of it."""
 
     experiment: str
     time: float
@@ -46,14 +49,20 @@ class Suggestion:
         return f"{self.name} = {self.value:.5g}{unit} (now {self.before:.5g})"
 
 
-def first_overflow(problem: Problem, simulated: Sequence[np.ndarray]) -> Overflow | None:
-    """Where the simulated outputs (N_e, n_y) cease to be finite, in the first experiment in which they do; None where they never do."""
+def overflows(problem: Problem, simulated: Sequence[np.ndarray]) -> tuple[Overflow, ...]:
+    """Where the simulated outputs (N_e, n_y) or their squares cease to be finite, in every experiment in which they do."""
+    found = []
     for e, values in enumerate(simulated):
-        broken = np.flatnonzero(~np.isfinite(values).all(axis=1))
+        broken = np.flatnonzero(~_countable(values).all(axis=1))
         if broken.size:
             sample = int(broken[0])
-            return Overflow(problem.records.names[e], float(problem.records.time(e)[sample]), sample)
-    return None
+            found.append(Overflow(problem.records.names[e], float(problem.records.time(e)[sample]), sample))
+    return tuple(found)
+
+
+def _countable(values: np.ndarray) -> np.ndarray:
+    """Whether the square of a value is a number, so that an error of that size has a mean square."""
+    return np.abs(values) < LARGEST
 
 
 def suggestions(problem: Problem, simulator: Simulator) -> tuple[Suggestion, ...]:
@@ -94,11 +103,11 @@ def overflow_error(doing: str, problem: Problem, simulator: Simulator) -> Numeri
     Args:
         doing: "estimating" or "simulating".
     """
-    found = first_overflow(problem, simulate(problem, simulator))
-    if found is None:  # the outputs are finite, and their sensitivities are not
+    found = overflows(problem, simulate(problem, simulator))
+    if not found:  # the outputs are finite, and their sensitivities are not
         detail = "the outputs stay finite, their sensitivities do not"
     else:
-        where = f"at t = {found.time:.6g} s in '{found.experiment}'"
+        where = f"at t = {found[0].time:.6g} s in '{found[0].experiment}'"
         detail = f"{where}; {avoidance(suggestions(problem, simulator))}"
     return NumericalError(f"{doing} {problem.model.title}: {Outcome(Termination.overflow, detail).sentence}")
 
@@ -127,6 +136,6 @@ def _finite(problem: Problem, simulator: Simulator, rows: np.ndarray) -> np.ndar
         starts = np.tile(problem.initial, (len(part), 1))
         y = simulator.run(records, Pass(windows, np.repeat(part, count, axis=0), starts)).y
         inside = np.arange(y.shape[1]) < np.tile(records.lengths, len(part))[:, None]
-        good = (np.isfinite(y).all(axis=2) | ~inside).all(axis=1)
+        good = (_countable(y).all(axis=2) | ~inside).all(axis=1)
         result += good.reshape(len(part), count).all(axis=1).tolist()
     return np.array(result)

@@ -18,6 +18,9 @@ Panel = tuple[Recording, Mapping[str, np.ndarray], Mapping[str, str]]
 _DETAIL = 0.05
 """Share of the record that the detail shows."""
 
+_FAR = 100.0
+"""Ranges of the measured signal beyond which a simulation ran away: the axes stay with the measured signal then, and its curve ends."""
+
 _MOST_ABREAST = 4
 """Entries of the legend that stand in one row."""
 
@@ -50,7 +53,8 @@ def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> Non
     grid = figure.add_gridspec(2 * len(outputs), 2, width_ratios=(1.6, 1), height_ratios=(1.4, 1) * len(outputs))
     for k, output in enumerate(outputs):
         measured = recording.signals[output.name]
-        runs = {legend[name]: values[:, k] for name, values in simulated.items()}
+        runs = {legend[name]: _followed(measured, values[:, k]) for name, values in simulated.items()}
+        lost = any(np.isnan(values).any() for values in runs.values())
         worst = _worst(measured, list(runs.values())[-1])
         for column, part in enumerate((slice(None), worst)):
             above = figure.add_subplot(grid[2 * k, column])
@@ -58,6 +62,8 @@ def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> Non
             pieces = {label: values[part] for label, values in runs.items()}
             _plot_signals(above, recording.time[part], measured[part], pieces)
             _plot_errors(below, recording.time[part], measured[part], pieces)
+            if lost:
+                _keep_to(measured, above, below)
             if column == 0:
                 above.set_ylabel(with_unit(output.name, output.unit))
                 below.set_ylabel(with_unit("error", output.unit))
@@ -71,7 +77,7 @@ def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> Non
 def _plot_signals(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mapping[str, np.ndarray]) -> None:
     axes.plot(time, measured, color="0.75", linewidth=3.0, label="measured")
     for label, values in runs.items():
-        axes.plot(time, _finite(values), linewidth=0.9, label=label)
+        axes.plot(time, values, linewidth=0.9, label=label)
     axes.margins(x=0)
     axes.tick_params(labelbottom=False)
 
@@ -79,20 +85,32 @@ def _plot_signals(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mapp
 def _plot_errors(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mapping[str, np.ndarray]) -> None:
     axes.axhline(0.0, color="black", linewidth=0.6)
     for values in runs.values():
-        axes.plot(time, measured - _finite(values), linewidth=0.8)
+        axes.plot(time, measured - values, linewidth=0.8)
     axes.margins(x=0)
     axes.set_xlabel("time [s]")
 
 
-def _finite(values: np.ndarray) -> np.ndarray:
-    """Where a simulation overflows, its curve ends."""
-    return np.where(np.isfinite(values), values, np.nan)
+def _followed(measured: np.ndarray, simulated: np.ndarray) -> np.ndarray:
+    """Where a simulation overflows or runs away, its curve ends."""
+    known = measured[np.isfinite(measured)]
+    if not known.size:
+        return np.where(np.isfinite(simulated), simulated, np.nan)
+    reach = _FAR * (float(np.ptp(known)) or 1.0)
+    return np.where(np.abs(simulated - known.mean()) < reach, simulated, np.nan)
+
+
+def _keep_to(measured: np.ndarray, above: Axes, below: Axes) -> None:
+    """Axes of the size of the measured signal, which curves that run away leave."""
+    low, high = float(np.nanmin(measured)), float(np.nanmax(measured))
+    span = (high - low) or 1.0
+    above.set_ylim(low - 0.5 * span, high + 0.5 * span)
+    below.set_ylim(-span, span)
 
 
 def _worst(measured: np.ndarray, simulated: np.ndarray) -> slice:
     """The stretch of the record with the largest squared error."""
     size = max(10, round(_DETAIL * len(measured)))
-    squared = np.nan_to_num(_finite(measured - simulated)).clip(-1e100, 1e100) ** 2
+    squared = np.nan_to_num(measured - simulated) ** 2
     total = np.cumsum(np.concatenate([[0.0], squared]))
     begin = int(np.argmax(total[size:] - total[:-size])) if len(measured) > size else 0
     return slice(begin, begin + size)

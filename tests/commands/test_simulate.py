@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from greybox_torch import load_dataset, load_model, simulate
 from tests.commands.free_running import PNG, Edit, Make, greybox, of
 
 
@@ -80,6 +81,27 @@ def test_simulation_that_overflows(motor_folder: Make, edit: Edit, command: str)
     assert result.stderr.startswith("the numbers failed: simulating Motor: the simulation of 'Steps' overflows at ")
     assert "try parameters" in result.stderr
     assert not (folder / "out").exists()
+
+
+def test_finite_numbers_whose_squares_are_none_overflow(motor_folder: Make, edit: Edit) -> None:
+    """Seen: a negative inertia, 1e261 in the figure, "overflow" in every row, and exit code 0."""
+    folder = motor_folder()
+    edit(folder / "my_motor.py", "- p.b * x.speed", "+ 3.0 * x.speed")
+    result = greybox("simulate", folder)
+    assert result.exit_code == 3, result.stdout
+    assert ", of 'More steps' at " in result.stderr
+
+
+def test_some_experiments_overflow(motor_folder: Make, edit: Edit) -> None:
+    folder = motor_folder()
+    edit(folder / "my_motor.py", "- p.b * x.speed", "+ 3.0 * x.speed")
+    edit(folder / "dataset.toml", 'role = "validation"', 'role = "validation"\nrows = [0, 30]')
+    result = greybox("simulate", folder)
+    assert result.exit_code == 0, result.stderr
+    assert "warning: the simulation of 'Steps' overflows at " in result.stdout and "it does not with" in result.stdout
+    data = load_dataset(folder / "dataset.toml")
+    axes = simulate(load_model(str(data.model)), data).plot("Steps").axes
+    assert max(abs(limit) for one in axes for limit in one.get_ylim()) < 50.0
 
 
 def test_overflow_comes_with_start_values_that_avoid_it(motor_folder: Make, edit: Edit) -> None:
