@@ -11,6 +11,7 @@ from greybox_torch.api.check_result import CheckResult
 from greybox_torch.checking.examine import examine
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.checking.missing_inputs import MissingInput, missing_inputs
+from greybox_torch.checking.negative_masses import negative_masses
 from greybox_torch.checking.not_finite import not_finite_at_start
 from greybox_torch.checking.shared_rows import SharedRows, shared_rows
 from greybox_torch.checking.source import source_of
@@ -90,7 +91,9 @@ def _with_data(data: DataSet, model: GreyBoxModel) -> tuple[list[Finding], dict[
     except UserError as error:
         return [_of_the_card(error, data)], {}
     values = problem.values_by_name
-    return [*not_finite_at_start(model, source_of(type(model)), values), *_tables(data, model)], values
+    source = source_of(type(model))
+    of_values = [*not_finite_at_start(model, source, values), *negative_masses(model, source, values)]
+    return [*of_values, *_tables(data, model)], values
 
 
 def _tables(data: DataSet, model: GreyBoxModel) -> list[Finding]:

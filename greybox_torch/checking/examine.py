@@ -11,6 +11,7 @@ from greybox_torch.checking.equations import compiled, fails
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.checking.influence import Influence, influence
 from greybox_torch.checking.names import declared_names, left_out, unknown_names
+from greybox_torch.checking.negative_masses import negative_masses
 from greybox_torch.checking.not_finite import not_finite, not_finite_at_start
 from greybox_torch.checking.points import points_of
 from greybox_torch.checking.source import Source, source_of
@@ -48,7 +49,7 @@ def examine(given: GreyBoxModel | type[GreyBoxModel]) -> Examination:
             Finding("error", "declaration", told, "a class of which an object can be made", source.file, source.line)
         )
         return Examination(made, None, in_order(found))
-    found += [*unreadable_units(model, source), *no_ports(made, source)]
+    found += [*unreadable_units(model, source), *no_ports(made, source), *negative_masses(model, source)]
     if any(f.level == "error" for f in found):  # running the equations would repeat it, one at a time
         return Examination(made, model, in_order([*found, *code]))
     return _run(made, model, source, found, code)

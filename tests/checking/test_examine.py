@@ -143,6 +143,10 @@ FAULTS = {
     "parameter of zero that is divided by": (
         (J, J.replace("0.01", "0.0").replace(", lower=0.0", "")), "warning", "at the start", "a denominator", "return {",
     ),
+    "negative inertia": (
+        (J, J.replace("0.01", "-0.01").replace(", lower=0.0", "")),
+        "warning", "J begins at -0.01 kg m^2: with a negative inertia a model runs away", "above zero", '"J"',
+    ),
     "name of a method": ((B, B.replace('"b"', '"items"')), "error", "'items' is a method", "another name", '"items"'),
 }  # fmt: skip
 

@@ -166,3 +166,12 @@ def test_a_value_of_the_card_that_the_equations_divide_by(
     done = CliRunner().invoke(app, ["check", str(card)])
     assert "warning: my_motor.py, line 20: the equations are no numbers at the start" in done.stdout
     assert "where J = 0" in done.stdout
+
+
+def test_a_mass_that_a_card_makes_negative(
+    motor_folder: Callable[..., Path], edit: Callable[[Path, str, str], None]
+) -> None:
+    card = motor_folder() / "dataset.toml"
+    edit(card, "J = { value = 0.03 }", "J = { value = -0.03, lower = -1.0 }")
+    told = CliRunner().invoke(app, ["check", str(card)]).stdout
+    assert "J begins at -0.03 kg m^2: with a negative inertia a model runs away" in told

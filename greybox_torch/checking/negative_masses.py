@@ -1,0 +1,42 @@
+"""Masses and inertias that begin below zero: pushed, such a body goes the other way, and ever faster."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from greybox_torch.checking.dimensions import dimension_of
+from greybox_torch.checking.finding import Finding
+from greybox_torch.checking.source import Source
+from greybox_torch.model import GreyBoxModel
+
+_KINDS = {"mass": dimension_of("kg"), "inertia": dimension_of("kg m^2")}
+
+
+def negative_masses(
+    model: GreyBoxModel, source: Source, values: Mapping[str, float] | None = None
+) -> Iterator[Finding]:
+    """Warnings for parameters in kg or kg m^2 with a negative start value.
+
+    Args:
+        values: of parameters, where a card has others than the model.
+    """
+    known = {**model.values(), **(values or {})}
+    for p in model.declared_parameters:
+        kind = _kind(p.unit)
+        if kind and known[p.name] < 0:
+            yield Finding(
+                "warning",
+                "numbers",
+                f"{p.name} begins at {known[p.name]:g} {p.unit}: with a negative {kind} a model runs away",
+                f'a value above zero, and a bound: Parameter("{p.name}", …, lower=0.0)',
+                source.file,
+                source.line_of(f'"{p.name}"'),
+            )
+
+
+def _kind(unit: str) -> str:
+    try:
+        found = dimension_of(unit)
+    except ValueError:  # told elsewhere
+        return ""
+    return next((kind for kind, dimension in _KINDS.items() if found == dimension), "")
