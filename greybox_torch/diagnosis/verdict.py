@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
-from greybox_torch.estimate.comparison import Score, fit_rows
+from greybox_torch.estimate.comparison import Score, fit_rows, mostly_in
 from greybox_torch.estimate.metrics import digits_between
 
 SCHEMA = "greybox-verdict/2"
@@ -162,7 +162,11 @@ class Verdict:
                 if self.complete
                 else "The search was stopped before it could say what."
             )
-            return f"Something is missing from {self.model}: its error is {digits(self.unexplained, 3)} times the noise. {why}"
+            output = mostly_in(self.counted("refit"))
+            its = f"its error, mostly in {output}," if output else "its error"
+            return (
+                f"Something is missing from {self.model}: {its} is {digits(self.unexplained, 3)} times the noise. {why}"
+            )
         if not self.effects and not self.looked:
             return f"Nothing was looked for in {self.model}: the beliefs exclude every hypothesis."
         if not self.effects and not self.complete:

@@ -18,6 +18,9 @@ from greybox_torch.simulation.simulator import Simulator
 MODELS = ("start", "refit", "augmented")
 """The models that a diagnosis compares: with the card's values, re-estimated, and with the effects found."""
 
+MOST = 0.7
+"""Share of the error from which it is said to be in one output."""
+
 
 @dataclass(frozen=True)
 class Score:
@@ -102,6 +105,16 @@ def held_out_scores(scores: Sequence[Score]) -> list[Score]:
 def of_moving_outputs(scores: Sequence[Score]) -> list[Score]:
     """Without those of outputs that stand still, of which a fit says nothing."""
     return [s for s in scores if s.fit > -np.inf or not np.isfinite(s.rmse)]
+
+
+def mostly_in(scores: Sequence[Score]) -> str:
+    """The output of several that has most of the squared error, each output in its own spread; "" where none stands out."""
+    judging = [s for s in of_moving_outputs(held_out_scores(scores)) if np.isfinite(s.fit)]
+    errors: dict[str, float] = {}
+    for s in judging:
+        errors[s.output] = errors.get(s.output, 0.0) + (1.0 - s.fit / 100.0) ** 2
+    largest = max(errors, key=errors.__getitem__, default="")
+    return largest if len(errors) > 1 and errors[largest] > MOST * sum(errors.values()) else ""
 
 
 def mean_fit(scores: Sequence[Score]) -> float:

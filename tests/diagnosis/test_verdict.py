@@ -179,3 +179,11 @@ def test_what_an_unknown_effect_is_instead_of_a_curve_is_in_its_headline() -> No
     assert fading.prefix == "actuator.unknown_fading" and BACKLASH.prefix == "gear_spring.backlash"
     mapped = replace(fading, parameters={n: {"value": 1.0} for n in ("w_0_0", "first_input", "spacing_speed", "T")})
     assert list(mapped.shown_parameters) == ["T"]
+
+
+@pytest.mark.parametrize(("second", "words"), [(97.0, "its error, mostly in speed, is"), (70.0, "its error is")])
+def test_where_the_error_without_a_name_is(second: float, words: str) -> None:
+    """Seen: a fan whose speed fits to 72 % and whose temperature to 97 %: the sentence named neither."""
+    both = tuple(Score("Run 2", "validation", name, fit, 0.3) for name, fit in (("speed", 72.0), ("heat", second)))
+    told = replace(verdict(), unexplained=12.0, scores={"start": both, "refit": both, "augmented": both}).sentence
+    assert f"Something is missing from Motor: {words} 12 times the noise" in told
