@@ -36,8 +36,8 @@ KINDS = (*WRITERS, *SNIPPETS)
 @overload
 def export(
     model: GreyBoxModel | Any,
-    *,
     to: Literal["mjcf", "urdf"],
+    *,
     data: DataSet | None = None,
     name: str | None = None,
     step: float | None = None,
@@ -45,8 +45,8 @@ def export(
 @overload
 def export(
     model: GreyBoxModel | Any,
-    *,
     to: Literal["c", "torch", "fmu"],
+    *,
     data: DataSet | None = None,
     name: str | None = None,
     step: float | None = None,
@@ -54,16 +54,16 @@ def export(
 @overload
 def export(
     model: GreyBoxModel | Any,
-    *,
     to: str,
+    *,
     data: DataSet | None = None,
     name: str | None = None,
     step: float | None = None,
 ) -> ExportResult | SnippetResult: ...
 def export(
     model: GreyBoxModel | Any,
-    *,
     to: str,
+    *,
     data: DataSet | None = None,
     name: str | None = None,
     step: float | None = None,

@@ -21,6 +21,17 @@ def missing_methods(made: type[GreyBoxModel], source: Source) -> Iterator[Findin
             yield Finding("error", "declaration", f"{name}() is not defined", write, source.file, source.line)
 
 
+def declared_twice(made: type[GreyBoxModel], source: Source) -> Iterator[Finding]:
+    """Findings for names that stand twice among the states, inputs, outputs, parameters or ports."""
+    kinds = {"state": made.states, "input": made.inputs, "output": made.outputs, "parameter": made.declared_parameters}
+    for kind, items in {**kinds, "port": made.ports}.items():
+        names = [item.name for item in items]
+        for name in dict.fromkeys(n for n in names if names.count(n) > 1):
+            found = f"{kind} '{name}' is declared twice"
+            line = source.line_of(f'{kind.capitalize()}("{name}"', 2) or source.line_of(f'"{name}"', 2)
+            yield Finding("error", "declaration", found, "another name for one of the two", source.file, line)
+
+
 def unusable_names(made: type[GreyBoxModel], source: Source) -> Iterator[Finding]:
     """Findings for names that equations cannot use as `x.name`."""
     for item in (*made.states, *made.inputs, *made.declared_parameters, *made.ports):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import re
 from collections.abc import Iterator
 
 from greybox_torch.checking.finding import Finding
@@ -28,9 +30,20 @@ def fails(model: GreyBoxModel, source: Source) -> Iterator[Finding]:
         check_equations(model)
     except UserError as error:
         found, _, write = str(error).partition("; expected ")
-        yield Finding(
-            "error", "code", found, write or "equations that give one number a sample", source.file, source.line
-        )
+        line = _line_of_return(str(error), source) or source.line
+        yield Finding("error", "code", found, write or "equations that give one number a sample", source.file, line)
+
+
+def _line_of_return(message: str, source: Source) -> int | None:
+    """Where a method that a message says returned something returns it, the key that it names where it is written there."""
+    told = re.search(r"\.(derivative|output)\(\) returned(?: '([^']+)')?", message)
+    method = next((m for m in source.methods if told and m.name == told[1]), None)
+    if told is None or method is None:
+        return None
+    returns = [node for node in ast.walk(method.tree) if isinstance(node, ast.Return)]
+    keys = [key for node in returns if isinstance(node.value, ast.Dict) for key in node.value.keys]
+    named = [key.lineno for key in keys if isinstance(key, ast.Constant) and key.value == told[2]]
+    return next(iter([*named, *(node.lineno for node in returns)]), None)
 
 
 def compiled(model: GreyBoxModel, source: Source) -> tuple[Traced | None, list[Finding]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from greybox_torch.checking.code import untraceable
-from greybox_torch.checking.declarations import missing_methods, no_ports, port_signals, unusable_names
+from greybox_torch.checking.declarations import declared_twice, missing_methods, no_ports, port_signals, unusable_names
 from greybox_torch.checking.effects import without_effect
 from greybox_torch.checking.equations import compiled, fails
 from greybox_torch.checking.finding import Finding, in_order
@@ -41,6 +41,8 @@ def examine(given: GreyBoxModel | type[GreyBoxModel]) -> Examination:
     found = [*missing_methods(made, source), *unusable_names(made, source), *port_signals(made, source)]
     code, names = _read(made, source)
     found += names
+    if twice := list(declared_twice(made, source)):  # no object of it can be made
+        return Examination(made, None, in_order([*found, *twice]))
     try:
         model = made() if isinstance(given, type) else given
     except Exception as error:  # the class may do anything when an object of it is made

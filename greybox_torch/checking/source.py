@@ -32,15 +32,16 @@ class Source:
     line: int | None
     methods: tuple[Method, ...] = ()
 
-    def line_of(self, text: str) -> int | None:
-        """The first line of the class that holds ``text``."""
+    def line_of(self, text: str, which: int = 1) -> int | None:
+        """The first line of the class that holds ``text``, or another one, counted from one."""
         if self.file is None or self.line is None:
             return None
         try:
             lines = self.file.read_text(encoding="utf-8").splitlines()
         except (OSError, UnicodeDecodeError):
             return None
-        return next((k for k, line in enumerate(lines[self.line - 1 :], self.line) if text in line), None)
+        found = [k for k, line in enumerate(lines[self.line - 1 :], self.line) if text in line]
+        return found[which - 1] if len(found) >= which else None
 
 
 def source_of(made: type[GreyBoxModel]) -> Source:

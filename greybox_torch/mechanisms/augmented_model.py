@@ -70,6 +70,9 @@ class AugmentedModel(GreyBoxModel):
         super().__init__()
         self.base = base
 
+    def effects_told(self) -> tuple[str, ...]:
+        return (*self.base.effects_told(), *(f"{a.mechanism.name} at {a.port}" for a in self.attachments))
+
     @property
     def plain(self) -> GreyBoxModel:
         return self.base.plain

@@ -13,6 +13,7 @@ from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.ports import Port
 from greybox_torch.model.signals import Signals
+from greybox_torch.model.stacked import odd_one
 
 NEEDS_A_VALUE = (
     "the model's equations need the value of a signal or parameter (a Python `if`, `float()`, `.item()` or a function of `math` on a "
@@ -41,7 +42,8 @@ def check_equations(model: GreyBoxModel) -> None:
                 first, second = (_evaluated(model, function, x, u, p) for _ in range(2))
                 if first.shape[1:] != batch:
                     raise UserError(
-                        f"the equations of {model.title} return values of shape {tuple(first.shape[1:])} for signals of shape {batch}; "
+                        _of_odd_shape(model, function, x, u, p)
+                        or f"the equations of {model.title} return values of shape {tuple(first.shape[1:])} for signals of shape {batch}; "
                         "expected one number for each sample"
                     )
                 if not torch.equal(torch.nan_to_num(first), torch.nan_to_num(second)):
@@ -75,13 +77,33 @@ def _evaluated(model: GreyBoxModel, function: Callable[..., torch.Tensor], *give
     except UserError:
         raise
     except Exception as error:
-        raise UserError(explain(model, error)) from None
+        raise UserError(_of_odd_shape(model, function, x, u, p) or explain(model, error)) from None
     if [tensor._version for tensor in (x, u, *p.values())] != before:
         raise UserError(
             f"the equations of {model.title} change the signals that they are given (an operation in place, such as `+=` or `.add_()`); "
             "write a = a + b instead"
         )
     return found
+
+
+def _of_odd_shape(model: GreyBoxModel, function: Callable[..., Any], x: torch.Tensor, u: torch.Tensor, p: Any) -> str:
+    """Which method gives for which name values of another shape than the signals have; "" where that is not so."""
+    method = "derivative" if function == model.rates else "output"
+    batch = tuple(x.shape[1:])
+    forces = Signals("port", {port.name: x.new_zeros(()).expand(batch) for port in model.all_ports})
+    given = (*model.named_signals(x, u), p, *([forces] if method == "derivative" or model.asks_for_forces else []))
+    try:
+        odd = odd_one(getattr(model, method)(*given), batch)
+    except Exception:  # what they raise is told elsewhere
+        return ""
+    return (
+        ""
+        if odd is None
+        else (
+            f"{model.title}.{method}() returned '{odd[0]}' of shape {odd[1]} for signals of shape {batch}; "
+            "expected one number for each sample"
+        )
+    )
 
 
 def explain(model: GreyBoxModel, error: Exception) -> str:

@@ -7,13 +7,15 @@ from typing import Any, ClassVar
 
 import torch
 
-from greybox_torch.errors import UserError
+from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.model.constraints import parameter_scale, project
 from greybox_torch.model.declarations import Input, Output, Parameter, State
 from greybox_torch.model.force_outputs import output_asks_for_forces
 from greybox_torch.model.ports import Port, actuators, sensors
 from greybox_torch.model.shown_rates import shown_rates, with_shown_rates
 from greybox_torch.model.signals import Signals
+from greybox_torch.model.stacked import spread, stacked
+from greybox_torch.model.summary import summary
 from greybox_torch.model.unseen_states import unseen_states
 
 
@@ -62,6 +64,13 @@ class GreyBoxModel(torch.nn.Module):
         for parameter in self.declared_parameters:
             start = torch.tensor(parameter.value / self._scales[parameter.name], dtype=torch.float64)
             self.raw[_key(parameter.name)] = torch.nn.Parameter(start, requires_grad=not parameter.fixed)
+
+    def __repr__(self) -> str:
+        return summary(self.title, self.effects_told(), self.declared_parameters, self.values())
+
+    def effects_told(self) -> tuple[str, ...]:
+        """The attached effects, each with its port."""
+        return ()
 
     def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
         """Rates of all states by name, in state unit per second."""
@@ -164,7 +173,8 @@ class GreyBoxModel(torch.nn.Module):
         declared = {p.name: p for p in self.declared_parameters}
         for name, value in values.items():
             if name not in declared:
-                raise UserError(f"model {self.title} has no parameter '{name}' (it has: {', '.join(declared)})")
+                hint = did_you_mean(name, declared)
+                raise UserError(f"model {self.title} has no parameter '{name}'{hint} (it has: {', '.join(declared)})")
             low, high = declared[name].bounds
             if not low <= value <= high:
                 where = f"lies outside its bounds [{low:g}, {high:g}]"
@@ -185,15 +195,15 @@ class GreyBoxModel(torch.nn.Module):
     def rates(self, x: torch.Tensor, u: torch.Tensor, p: Any) -> torch.Tensor:
         """The right-hand side on stacked tensors: x (n_x, *batch), u (n_u, *batch) -> (n_x, *batch)."""
         xs, us = self.named_signals(x, u)
-        rates = self.derivative(xs, us, _spread(p, x), self._no_forces(x))
-        return _stacked(rates, [s.name for s in self.states], x, f"{self.title}.derivative()")
+        rates = self.derivative(xs, us, spread(p, x), self._no_forces(x))
+        return stacked(rates, [s.name for s in self.states], x, f"{self.title}.derivative()")
 
     def measured(self, x: torch.Tensor, u: torch.Tensor, p: Any) -> torch.Tensor:
         """The outputs on stacked tensors: x (n_x, *batch), u (n_u, *batch) -> (n_y, *batch)."""
         xs, us = self.named_signals(x, u)
-        values = _spread(p, x)
+        values = spread(p, x)
         outputs = self.output(xs, us, values, *([self._no_forces(x)] if self.asks_for_forces else []))
-        return _stacked(outputs, [o.name for o in self.outputs], x, f"{self.title}.output()")
+        return stacked(outputs, [o.name for o in self.outputs], x, f"{self.title}.output()")
 
     def _no_forces(self, x: torch.Tensor) -> Signals:
         none = x.new_zeros(()).expand(x.shape[1:])
@@ -222,29 +232,3 @@ def _key(name: str) -> str:
     """A parameter's name as a key of torch.nn.ParameterDict, which reserves the dot and the names of its own methods."""
     key = name.replace(".", "/")
     return f"{key}/" if hasattr(torch.nn.ParameterDict, key) else key
-
-
-def _spread(p: Any, x: torch.Tensor) -> Any:
-    """Parameters that are one number, for every sample of x (n_x, *batch): a matrix is stacked of elements of one shape."""
-    if x.ndim == 1:
-        return p
-    return Signals("parameter", {n: v.expand(x.shape[1:]) if v.ndim == 0 else v for n, v in p.items()})
-
-
-def _stacked(values: Mapping[str, Any], names: list[str], like: torch.Tensor, where: str) -> torch.Tensor:
-    if not isinstance(values, Mapping):
-        raise UserError(
-            f"{where} returned {type(values).__name__}, expected a dictionary with the keys {', '.join(names)}"
-        )
-    missing = [n for n in names if n not in values]
-    extra = [n for n in values if n not in names]
-    if missing or extra:
-        found = ", ".join(values) or "nothing"
-        raise UserError(f"{where} returned {found}; expected {', '.join(names)}")
-    complex_ones = [
-        n for n in names if isinstance(values[n], complex) or (torch.is_tensor(values[n]) and values[n].is_complex())
-    ]
-    if complex_ones:
-        raise UserError(f"{where} returned complex numbers for {complex_ones[0]}; expected real ones")
-    rows = [torch.as_tensor(values[n], dtype=like.dtype, device=like.device) for n in names]
-    return torch.stack(torch.broadcast_tensors(*rows, like.select(0, 0))[:-1])

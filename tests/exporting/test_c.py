@@ -78,7 +78,7 @@ def test_every_operation(tmp_path: Path, machines: Path) -> None:
 
 
 def test_an_effect_can_be_switched_off(tmp_path: Path, arm_with_effects: Machine) -> None:
-    made = gt.export(arm_with_effects.model, to="c", name="arm")
+    made = gt.export(arm_with_effects.model, "c", name="arm")
     switches = [row["name"] for row in made.rows if row["kind"] == "switch"]
     assert switches == ["gear_spring.backlash.share", "actuator.input_lag.share"]
     values = {row["name"]: row["value"] for row in made.rows if row["kind"] == "parameter"}

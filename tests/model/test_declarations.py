@@ -114,6 +114,8 @@ def test_set_values() -> None:
     assert tank.values() == {"area": 4.0}
     with pytest.raises(UserError, match=r"model Tank has no parameter 'depth' \(it has: area\)"):
         tank.set_values({"depth": 1.0})
+    with pytest.raises(UserError, match=r"no parameter 'aera' \(did you mean \"area\"\?\)"):
+        tank.set_values({"aera": 1.0})
     with pytest.raises(UserError, match=r"parameter 'area' of model Tank: 0.05 lies outside its bounds \[0.1, inf\]"):
         tank.set_values({"area": 0.05})
 
@@ -134,9 +136,18 @@ def test_names_that_are_not_declared() -> None:
     [
         ("derivative", lambda x: {}, r"Changed.derivative\(\) returned nothing; expected level"),
         ("derivative", lambda x: {"level": x.level, "speed": x.level}, "returned level, speed; expected level"),
-        ("derivative", lambda x: x.level, "returned Tensor, expected a dictionary with the keys level"),
+        ("derivative", lambda x: x.level, "returned Tensor; expected a dictionary with the keys level"),
         ("output", lambda x: {"depth": x.level}, r"Changed.output\(\) returned depth; expected level"),
-        ("output", lambda x: {"level": torch.stack([x.level, x.level])}, r"return values of shape \(2, 3\)"),
+        (
+            "output",
+            lambda x: {"level": torch.stack([x.level, x.level])},
+            r"Changed.output\(\) returned 'level' of shape \(2, 3\)",
+        ),
+        (
+            "output",
+            lambda x: {"level": torch.ones(2)},
+            r"returned 'level' of shape \(2,\) for signals of shape \(3,\); exp",
+        ),
         ("output", lambda x: {"level": 1 / 0}, r"test_declarations.py, line \d+: .* raised ZeroDivisionError"),
         ("output", lambda x: {"level": x.level if x.level > 0 else 0.0}, r"torch.where\(condition, yes, no\)"),
     ],

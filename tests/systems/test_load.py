@@ -61,7 +61,7 @@ def test_file_and_class(machines: Path) -> None:
             "my_motor.py:Motor",
             r"class Motor: my_motor.py, line \d+: .*ZeroDivisionError",
         ),
-        (MOTOR.replace('{"speed": x.speed}', "x.speed"), "my_motor.py:Motor", "returned Tensor, expected a dictionary"),
+        (MOTOR.replace('{"speed": x.speed}', "x.speed"), "my_motor.py:Motor", "returned Tensor; expected a dictionary"),
         (
             MOTOR + "\n    def __init__(self):\n        raise OSError('no licence')\n",
             "my_motor.py:Motor",
