@@ -104,7 +104,13 @@ class SimulationResult(Result):
         return {**free_runs_json(self.data, {self.name: self.run}), "warnings": self.warnings, **paths}
 
     def show(self, console: Console) -> None:
-        console.print(Text(f"{self._title} with its start values", style="bold"))
+        effects, held = self.model.effects_told(), self.run.problem.model.held_values()
+        told = (
+            f"with {', '.join(effects)}"
+            if effects
+            else f"with {'the values that it holds' if held else 'its start values'}"
+        )
+        console.print(Text(f"{self._title} {told}", style="bold"))
         print_scores(console, self.data, {self.name: self.run.comparison.scores})
         print_substeps(console, self.run.substeps)
         for found in self.warnings:

@@ -8,6 +8,10 @@ import numpy as np
 import pytest
 
 from greybox_torch import load_dataset, load_model, simulate
+from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.friction import CoulombFriction
+from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from tests.commands.free_running import PNG, Edit, Make, greybox, of
 
 
@@ -136,3 +140,15 @@ def test_substeps_are_told(motor_folder: Make, edit: Edit, command: str) -> None
     assert f"is simulated in {steps} Runge-Kutta steps: the motion is fast" in greybox(command, folder).stdout.replace(
         "Each sample of start", "Each sample"
     )
+
+
+def test_the_title_says_which_values_and_effects(motor_folder: Make) -> None:
+    """Seen: a model with effects and found values under "with its start values"."""
+    data = load_dataset(motor_folder() / "dataset.toml")
+    model = load_model(str(data.model))
+    assert "Motor with its start values" in str(simulate(model, data))
+    model.set_values({"b": 0.05})
+    assert "Motor with the values that it holds" in str(simulate(model, data))
+    around = Surroundings({"speed": Range(-6.0, 6.0, 3.0)}, {"speed": "rad/s"}, "N m", 0.01)
+    rubbing = AugmentedModel(model, [Attachment("rotor", CoulombFriction())], {"rotor": around})
+    assert "Motor with coulomb_friction at rotor" in str(simulate(rubbing, data))

@@ -33,6 +33,9 @@ from greybox_torch.model.signals_elsewhere import ABOVE, DIFFERENCE
 from greybox_torch.model.states_at_no_port import STATE
 from greybox_torch.model.within_turn import TURN, TURN_OF
 
+NEARLY_ALL = 0.75
+"""Share of a signal's range from which an interval within it says nothing of where an effect is."""
+
 
 def describe(
     study: Study,
@@ -235,6 +238,8 @@ def where(profiles: Sequence[Profile], timelines: Sequence[Timeline]) -> str:
         return "everywhere along the records" + (f", strongest in {strongest}" if strongest else "")
     first = profiles[0]
     low, high, share = most_of(first)
+    if high - low > NEARLY_ALL * (first.edges[-1] - first.edges[0]):
+        return where((), timelines)
     return (
         f"{100 * share:.0f} % of what it explains lies within "
         + f"{low:.3g} < {first.signal} < {high:.3g} {first.unit}".rstrip()

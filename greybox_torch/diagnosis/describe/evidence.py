@@ -22,6 +22,9 @@ from greybox_torch.diagnosis.study import Study
 from greybox_torch.diagnosis.verdict import STOPPED
 from greybox_torch.mechanisms.attachment import Attachment
 
+NEARLY_ALL = 0.999
+"""Share that an effect removes from which its interval would be 100.0 to 100.0 %."""
+
 
 def sentences(
     dataset: DataSet,
@@ -48,10 +51,9 @@ def sentences(
     lines += [ceiling_sentence(e) for e in effects if e.ceiling is not None]
     spoken_of = {a.prefix: _name(a) for a in state.effects}
     for prefix, gain in gains.items():
-        low, high = gain.interval
+        share, interval = _held_out(gain)
         lines.append(
-            f"Held out: {spoken_of.get(prefix, prefix)} removes {100 * gain.share:.1f} % of the squared error that is left without it "
-            f"(95 % interval {100 * low:.1f} to {100 * high:.1f} %)."
+            f"Held out: {spoken_of.get(prefix, prefix)} removes {share} of the squared error that is left without it{interval}."
         )
     kept = {e.prefix for e in effects} | {a.prefix for a in state.effects}  # refinements are in the model, too
     taken = [done.taken.candidate.attachment for done in state.steps if done.taken is not None]
@@ -65,6 +67,14 @@ def sentences(
     if interrupted:
         lines.append(STOPPED)
     return tuple(begun(line) for line in lines)
+
+
+def _held_out(gain: Gain) -> tuple[str, str]:
+    """The share that an effect removes, and its interval in brackets, where that is not all of it."""
+    low, high = gain.interval
+    if low >= NEARLY_ALL:
+        return f"more than {100 * NEARLY_ALL:.1f} %", ""
+    return f"{100 * gain.share:.1f} %", f" (95 % interval {100 * low:.1f} to {100 * high:.1f} %)"
 
 
 def _looked(study: Study, state: SearchState, interrupted: bool) -> str:

@@ -21,6 +21,7 @@ COLOURS = {
     "after": "#0868b0",
     "model": "#0868b0",
     "effect": "#0868b0",
+    "beyond": "#0868b0",
     "law": "#0868b0",
     "detail": "#1c2127",
     "data": "#5a636e",
@@ -122,7 +123,8 @@ def _draw_mark(axes: Axes, mark: Mark) -> None:
     if mark.kind == "line":
         thick = THICK.get(mark.series, 0.9)
         shade = "#c3c9cf" if mark.series == "measured" else colour
-        _put(axes, PathPatch(path, fill=False, edgecolor=shade, linewidth=thick, joinstyle="round"))
+        style = "--" if mark.series == "beyond" else "-"
+        _put(axes, PathPatch(path, fill=False, edgecolor=shade, linewidth=thick, joinstyle="round", linestyle=style))
     else:
         faint = 1.0 if mark.kind == "bars" else FAINT.get(mark.series, 0.18)
         _put(axes, PathPatch(path, facecolor=colour, linewidth=0.0, alpha=faint))

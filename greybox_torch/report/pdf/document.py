@@ -189,7 +189,7 @@ def _ranking(sheets: Sheets, told: Ranking | None) -> None:
         [
             (f"{row.mechanism} at {row.port}{', chosen' if row.chosen else ''}", ""),
             (row.explained, ""),
-            (row.gain or "not refitted", ""),
+            (row.removed, ""),
         ]
         for row in told.rows
     ]

@@ -10,7 +10,10 @@ from greybox_torch.report.chart.marks import Mark, band, line, points
 from greybox_torch.report.chart.panel import Chart, Key, Panel, side_by_side
 from greybox_torch.report.chart.scale import Scale, linear
 
-LAW, DATA, BAND = "effect", "data", "free"
+LAW, BEYOND, DATA, BAND = "effect", "beyond", "data", "free"
+
+_AT_PORT = ("speed", "position", "deflection", "rate", "level", "load", "input", "output")
+"""Names that signals have at a port, whatever the model calls them."""
 
 
 def law_chart(effect: Effect, curve: Curve) -> Chart:
@@ -20,10 +23,10 @@ def law_chart(effect: Effect, curve: Curve) -> Chart:
     panel = Panel(
         x,
         y,
-        text.axis(curve.signal, curve.unit),
+        text.axis(_over(effect, curve), curve.unit),
         text.axis("effect", curve.force_unit),
         tuple(_marks(effect, curve, x, y)),
-        _alt(curve),
+        _alt(effect, curve),
         "tall",
         zero=True,
     )
@@ -36,9 +39,22 @@ def _marks(effect: Effect, curve: Curve, x: Scale, y: Scale) -> list[Mark]:
         return [law] if curve.spread is None else [_band(x, y, curve.values, curve.force, curve.spread, LAW), law]
     dots = points(x, y, free.at, free.asked, DATA)
     if effect.mechanism == "unknown":
-        return [_band(x, y, curve.values, curve.force, free.spread, LAW), law, dots]
+        around = _band(x, y, curve.values, curve.force, free.spread, LAW)
+        return [around, *_extrapolated(curve, free.spread, x, y), dots]
     around = _band(x, y, curve.values, free.force, free.spread, BAND)
     return [around, line(x, y, curve.values, free.force, BAND), law, dots]
+
+
+def _extrapolated(curve: Curve, spread: np.ndarray, x: Scale, y: Scale) -> list[Mark]:
+    """The curve where there are data, and from there on where there are none."""
+    known = np.isfinite(spread)
+    if known.all():
+        return [line(x, y, curve.values, curve.force, LAW)]
+    inside = known & np.concatenate([[False], known[:-1]]) & np.concatenate([known[1:], [False]])
+    return [
+        line(x, y, curve.values, np.where(known, curve.force, np.nan), LAW),
+        line(x, y, curve.values, np.where(inside, np.nan, curve.force), BEYOND),
+    ]
 
 
 def _band(x: Scale, y: Scale, values: np.ndarray, force: np.ndarray, spread: np.ndarray, series: str) -> Mark:
@@ -72,7 +88,7 @@ def _legend(effect: Effect, curve: Curve) -> tuple[Key, ...]:
 
 def _caption(effect: Effect, curve: Curve) -> str:
     settled = "" if effect.memory is None else ", once all has settled"
-    over = f"what it adds at {effect.port} over {text.words(curve.signal)}{settled}"
+    over = f"what it adds at {effect.port} over {text.words(_over(effect, curve))}{settled}"
     if curve.free is None:
         spread = "" if curve.spread is None else ", with two standard deviations on either side"
         return f"The effect's own curve{spread}: {over}."
@@ -81,13 +97,20 @@ def _caption(effect: Effect, curve: Curve) -> str:
         "experiments, all other parameters as fitted."
     )
     if effect.mechanism == "unknown":
-        return f"The effect's own curve: {over}. Where it has no band there are no data, and it is extrapolated. {data}"
+        return (
+            f"The effect's own curve: {over}. Dashed and without a band it is extrapolated: there are no data. {data}"
+        )
     return f"The law, and a free curve estimated in its place: {over}. The free curve is drawn only where there are data. {data}"
 
 
-def _alt(curve: Curve) -> str:
+def _over(effect: Effect, curve: Curve) -> str:
+    """The model's own name of the curve's signal: an effect of the port's position is one of the state `angle`."""
+    return effect.signals[0] if effect.signals and curve.signal in _AT_PORT else curve.signal
+
+
+def _alt(effect: Effect, curve: Curve) -> str:
     low, high = float(np.nanmin(curve.force)), float(np.nanmax(curve.force))
     return (
-        f"Curve of the effect over {text.words(curve.signal)}: between {text.with_unit(text.number(low), curve.force_unit)} and "
+        f"Curve of the effect over {text.words(_over(effect, curve))}: between {text.with_unit(text.number(low), curve.force_unit)} and "
         f"{text.with_unit(text.number(high), curve.force_unit)}{'' if curve.free is None else ', with what the data say'}."
     )

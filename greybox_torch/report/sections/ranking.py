@@ -13,13 +13,13 @@ MOST_ROWS = 12
 
 @dataclass(frozen=True)
 class Row:
-    """A hypothesis: what it explains in the screen; ``length`` of its bar in %; ``gain``, what its refit removes."""
+    """A hypothesis: what it explains in the screen; ``length`` of its bar in %; ``removed`` by its refit."""
 
     mechanism: str
     port: str
     explained: str
     length: float
-    gain: str
+    removed: str
     chosen: bool
 
 
@@ -44,9 +44,16 @@ class Ranking:
                 port,
                 text.percent(explained),
                 100.0 * min(max(explained, 0.0), 1.0),
-                "" if gain is None else text.percent(-math.expm1(-gain)),
+                _removed(gain, (port, mechanism) in chosen),
                 (port, mechanism) in chosen,
             )
             for port, mechanism, explained, gain in shown
         ]
         return cls(tuple(rows), len(verdict.ranking) - len(rows), bool(verdict.effects))
+
+
+def _removed(gain: float | None, chosen: bool) -> str:
+    """What the refit of the first step removed; of two effects one is chosen later, beside the other."""
+    if gain is not None:
+        return text.percent(-math.expm1(-gain))
+    return "refitted later, beside others" if chosen else "not refitted"

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.effects import ceiling_share
-from greybox_torch.diagnosis.describe.evidence import ceiling_sentence, detection_sentences
+from greybox_torch.diagnosis.describe.evidence import _held_out, ceiling_sentence, detection_sentences
 from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest, Remains
 
 WHITE = Remains(Largest(0.01, 0.03), Largest(0.02, 0.05))
@@ -67,3 +68,9 @@ def test_a_curve_is_its_own_ceiling(stub) -> None:
 def test_ceiling_in_words(stub) -> None:
     told = ceiling_sentence(stub(mechanism="coulomb_friction", port="motor", ceiling=0.883))
     assert told.startswith("Coulomb friction at motor reaches 88 % of the ceiling: the gain")
+
+
+def test_an_interval_of_a_hundred_percent_is_not_told() -> None:
+    """Seen: "removes 100.0 % ... (95 % interval 100.0 to 100.0 %)"."""
+    assert _held_out(Gain(0.99999, 1e-6)) == ("more than 99.9 %", "")
+    assert _held_out(Gain(0.98, 0.005)) == ("98.0 %", " (95 % interval 97.0 to 99.0 %)")

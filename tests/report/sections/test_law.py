@@ -55,8 +55,11 @@ def test_an_unknown_curve_has_its_band_and_points() -> None:
     assert [(m.kind, m.series) for m in chart.columns[0][0].marks] == [
         ("area", "effect"),
         ("line", "effect"),
+        ("line", "beyond"),
         ("points", "data"),
     ]
+    solid, dashed = chart.columns[0][0].marks[1:3]
+    assert (solid.path.count("M"), dashed.path.count("M")) == (1, 2), "dashed on either side of where the records were"
     assert chart.legend[0].label == "the curve, with two standard deviations on either side"
 
 
@@ -65,3 +68,13 @@ def test_without_any_point() -> None:
     assert effect.curve is not None and effect.curve.free is not None
     none = replace(effect.curve.free, at=np.zeros(0), asked=np.zeros(0))
     assert drawn(replace(effect, curve=replace(effect.curve, free=none))).columns[0][0].marks[-1].path == ""
+
+
+def test_a_signal_has_the_name_of_the_state() -> None:
+    """Seen: a ripple drawn over "position", and beneath it where it acts over "angle"."""
+    assert BACKLASH.curve is not None
+    own = replace(BACKLASH, signals=("angle",), curve=replace(BACKLASH.curve, signal="position"))
+    chart = drawn(own)
+    assert chart.columns[0][0].x_label.startswith("angle") and "over angle" in chart.caption
+    elsewhere = replace(own, curve=replace(BACKLASH.curve, signal="rate of the input"))
+    assert drawn(elsewhere).columns[0][0].x_label.startswith("rate of the input")
