@@ -12,7 +12,6 @@ from greybox_torch.api.arguments import check_experiment
 from greybox_torch.api.scores import Scores, scores_json
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.evaluation import Evaluation
-from greybox_torch.report import text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -73,11 +72,12 @@ def plot_simulated(
 ) -> Figure:
     """:func:`plot_free_runs` of what is ``simulated`` (N, n_y) by model and experiment."""
     from greybox_torch.report.comparison import plot_comparisons  # matplotlib takes half a second
+    from greybox_torch.report.text import fit as shown
 
     panels = []
     for recording in _shown(data, experiment):
         fits = {name: [s.fit for s in own if s.experiment == recording.name] for name, own in scores.items()}
-        legend = {name: f"{name} ({', '.join(text.fit(fit) for fit in own)})" for name, own in fits.items()}
+        legend = {name: f"{name} ({', '.join(shown(fit) for fit in own)})" for name, own in fits.items()}
         panels.append((recording, {name: own[recording.name] for name, own in simulated.items()}, legend))
     outputs = dict.fromkeys(score.output for score in next(iter(scores.values())))
     return plot_comparisons(panels, [data.channels[output] for output in outputs])
