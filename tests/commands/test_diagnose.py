@@ -35,6 +35,7 @@ DEADZONE = Effect(
         "slope": {"value": 1.0, "std": float("inf"), "unit": ""},
     },
     explained=0.98,
+    size=0.98,
     alternatives=(Alternative("rotor", "coulomb_friction", 0.07),),
     curve=Curve("voltage", "V", np.linspace(-1, 1, 5), np.zeros(5), "V"),
     separating_experiment="slow reversals",

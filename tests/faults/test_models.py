@@ -37,7 +37,7 @@ FAULTS = [
     (RETURN, "u.voltage.mul_(2.0)\n        " + RETURN, "write a = a + b instead"),
     (RETURN, RETURN.replace("/ p.J}", "/ p.J * 1j}"), "Motor.derivative() returned complex numbers for speed"),
     (RETURN, RETURN.replace("/ p.J}", "/ p.J + __import__('torch').rand(())}"), "no random numbers"),
-    ("return {\"speed\": x.speed}", "return {\"speed\": __import__('torch').zeros(3)}", "Motor raised RuntimeError: The size of tensor"),
+    ("return {\"speed\": x.speed}", "return {\"speed\": __import__('torch').zeros(3)}", "Motor.output() returned 'speed' of shape (3,)"),
     (RETURN, 'return {"speed": float(x.speed)}', "need the value of a signal"),
     (RETURN, 'return {"speed": x.speed if x.speed > 0 else -x.speed}', "need the value of a signal"),
 ]  # fmt: skip
