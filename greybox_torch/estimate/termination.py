@@ -15,8 +15,8 @@ class Termination(Enum):
         "stalled: no step lowers the cost; try other start values, or fix parameters that the data do not determine"
     )
     iteration_limit = (
-        "stopped at the iteration limit before converging; go on from these values (`greybox fit DATASET.toml --checkpoint RESULTS`, in "
-        "Python fit(result, data)), or fix parameters that the data hardly determine"
+        "stopped at the iteration limit before converging; try to go on from these values (`greybox fit DATASET.toml --checkpoint "
+        "RESULTS`, in Python fit(result, data)), or fix parameters that the data hardly determine"
     )
     overflow = (
         "failed: the simulation overflows at the start values; try start values nearer to the truth, tighter bounds, "

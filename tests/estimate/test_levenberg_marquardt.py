@@ -116,7 +116,7 @@ def test_iteration_limit() -> None:
     found = minimise(rosenbrock, np.array([-1.2, 1.0]), -OPEN, OPEN, settings=Settings(iterations=2))
     assert found is not None
     assert found.termination is Termination.iteration_limit
-    assert "begin again from these values" in found.termination.value
+    assert "go on from these values" in found.termination.value
 
 
 def test_unknown_that_does_not_matter() -> None:

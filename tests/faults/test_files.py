@@ -145,7 +145,7 @@ COMMANDS = [
     (["simulate", "dataset.toml", "--seed", "x"], "--seed"),
     (["fit", "dataset.toml", "--starts", "0"], "--starts"),
     (["fit", "dataset.toml", "--profile", "mass"], "mass"),
-    (["residuals", "dataset.toml", "--checkpoint", ""], "not the name of a file"),
+    (["residuals", "dataset.toml", "--checkpoint", ".."], "not the name of a file"),
     (["diagnose", "dataset.toml", "--time-limit", "0"], "--time-limit"),
     (["train", "dataset.toml", "--net", "magic"], "magic"),
     (["train", "dataset.toml", "--port", "gear"], "gear"),

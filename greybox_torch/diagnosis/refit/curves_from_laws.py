@@ -41,8 +41,10 @@ def curves_from_laws(study: Study, parent: Hypothesis, ranked: Sequence[RankedCa
 
 def _farthest(study: Study, curve: RankedCandidate, ranked: Sequence[RankedCandidate]) -> RankedCandidate | None:
     """The law that goes farthest of those that a curve contains and that go farther than it does; None for any other refit."""
-    contained = (
-        r for r in ranked if may_be_drawn(r.candidate.attachment, curve.candidate.attachment, study.surroundings)
-    )
-    farther = [r for r in contained if not r.unknown and r.fitted.score < curve.fitted.score - study.settings.score_tie]
-    return min(farther, key=lambda r: r.fitted.score, default=None)
+    if not curve.unknown:
+        return None
+    least = curve.fitted.score - study.settings.score_tie
+    drawn, around = curve.candidate.attachment, study.surroundings
+    farther = (r for r in ranked if not r.unknown and r.fitted.score < least)
+    contained = (r for r in farther if may_be_drawn(r.candidate.attachment, drawn, around))
+    return min(contained, key=lambda r: r.fitted.score, default=None)

@@ -36,6 +36,7 @@ def fits(stub, monkeypatch):
     monkeypatch.setattr(module, "_polished", polish)
     monkeypatch.setattr(module, "restarts", lambda study, screened, ranked: [])
     monkeypatch.setattr(module, "judged", judged)
+    monkeypatch.setattr(module, "curves_from_laws", lambda study, parent, ranked: ranked)
     monkeypatch.setattr(module, "in_order", lambda ranked, settings: sorted(ranked, key=lambda r: r.fitted.score))
     return stub(fitted=fitted, polished=polished, beside=beside)
 
