@@ -106,8 +106,8 @@ def find(
     study, state, complete = _searched(study, state, before, schedule.searching)
     if complete and (other := _from_other_values(study, state, schedule.searching)):
         study, state, complete = _searched(*other, before, schedule.searching)
-    if complete and (wider := _over_wider_ranges(study, state, schedule.searching)):
-        study, state, complete = _searched_from(*wider, state, schedule.searching)
+    if complete:
+        study, state = _over_wider_ranges(study, state, schedule.searching)
     clock.lap(SEARCH)
     searched = state.current
     others = HeldOut(some.dataset, study) if dataset.validation() else None
@@ -145,32 +145,25 @@ def _searched(
 ) -> tuple[Study, SearchState, bool]:
     """The study with what is known of the ports, the best state, and whether the search ended by itself."""
 
-    begun = study, state
-    offer_all(study, state)
-    with until(deadline):
-        begun, complete = or_else(partial(_weighted, study, state), lambda: begun)
-    return _searched_from(*begun, before, deadline) if complete else (*begun, False)
-
-
-def _searched_from(
-    study: Study, state: SearchState, before: SearchState | None, deadline: Deadline
-) -> tuple[Study, SearchState, bool]:
-    """The same where what is known of the ports is in the study."""
-
     def told(better: SearchState) -> None:
         effects = [e.named for e in better.effects]
         study.journal.found(effects, size(better.plain.fits, better.plain.fits, better.current.fits, study.settings))
 
+    begun, complete = (study, state), True
+    offer_all(study, state)
     with until(deadline):
-        best, complete = best_so_far(search(study, state, before), state, told)
-    return study, best, complete
+        begun, complete = or_else(partial(_weighted, study, state), lambda: begun)
+        if complete:
+            best, complete = best_so_far(search(*begun, before), begun[1], told)
+            return begun[0], best, complete
+    return *begun, complete
 
 
-def _over_wider_ranges(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState] | None:
-    """Where what was found is estimated anew, as its curve's signal moves beyond its range with it; None where it does not."""
+def _over_wider_ranges(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState]:
+    """What was found over the ranges that its curve's signal has with it, where those are wider; as it is where they are not."""
     with until(deadline):
         found, _ = or_else(partial(over_wider_ranges, study, state), lambda: None)
-    return found
+    return found or (study, state)
 
 
 def _from_other_values(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState] | None:

@@ -9,13 +9,15 @@ from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.estimate.comparison import mean_fit
 
 
 def without_too_little(
     state: SearchState, gains: Mapping[str, Gain], judged: Judgement, settings: DiagnosisSettings
 ) -> tuple[Standing, tuple[str, ...]]:
     """The state without its effects, and why, where free runs of the validation experiments leave nearly all of the mismatch with them and
-    much more than the noise; else as it is. A free curve, which draws a part of anything, has to remove most of it.
+    much more than the noise; else as it is. A free curve, which draws a part of anything, has to remove most of it, or to be seen
+    in the fit.
 
     Seen: the clock of a logger that skips, told as a sensor's lag or gain (0.54), which left 91 % of a pendulum's mismatch; a pendulum with
     all known friction, told as unknown at its pivot (0.97), validation 94.2 to 94.7 %.
@@ -24,8 +26,8 @@ def without_too_little(
     if not state.effects or judged.by_windows_alone:
         return as_it_is, ()
     share, times, _ = judged.left(True)
-    by_curves = all(e.mechanism.free for e in state.effects)
-    least = settings.least_removed_by_curve if by_curves else settings.least_removed
+    hardly_seen = all(e.mechanism.free for e in state.effects) and _points(judged) < settings.least_points_of_curve
+    least = settings.least_removed_by_curve if hardly_seen else settings.least_removed
     if not (share > 1.0 - least and times > settings.far_above_noise):
         return as_it_is, ()
     removed = max(100.0 * (1.0 - share), 0.0)
@@ -34,3 +36,11 @@ def without_too_little(
         f"{times:.0f} times the noise: it is not what makes the mismatch."
     )
     return (state.at(state.plain), {}, judged.without_effects()), (why,)
+
+
+def _points(judged: Judgement) -> float:
+    """By how many points the mean fit of the validation experiments rises with the effects."""
+    refit, with_effects = (
+        [s for s in c.scores if s.experiment in judged.judges] for c in (judged.refit, judged.with_effects)
+    )
+    return mean_fit(with_effects) - mean_fit(refit)

@@ -35,7 +35,7 @@ def search(study: Study, state: SearchState, before: SearchState | None = None) 
         same = with_same_effects(study, state, before)
         if same is not state:
             yield same
-            return (yield from _without_idle_bumps(study, (yield from drop_superfluous(study, same))))
+            return (yield from without_idle_bumps(study, (yield from drop_superfluous(study, same))))
     state = yield from explore(study, state)
     state = yield from drop_superfluous(study, state)
     for _ in range(study.budget.most_revisions):
@@ -50,10 +50,10 @@ def search(study: Study, state: SearchState, before: SearchState | None = None) 
     if state.current is not before.current:
         state = yield from take_effects(study, state)
         state = yield from drop_superfluous(study, state)
-    return (yield from _without_idle_bumps(study, state))
+    return (yield from without_idle_bumps(study, state))
 
 
-def _without_idle_bumps(study: Study, state: SearchState) -> Stage[SearchState]:
+def without_idle_bumps(study: Study, state: SearchState) -> Stage[SearchState]:
     """The state with its curve without the bumps that the recordings do not ask for, and without what the rest then make up for."""
     sparser = yield from with_sparser_curve(study, state)
     return state if sparser.current is state.current else (yield from drop_superfluous(study, sparser))

@@ -8,7 +8,11 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.above_noise import only_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.select.backward import drop_superfluous
+from greybox_torch.diagnosis.select.same_effects import with_same_effects
+from greybox_torch.diagnosis.select.search import without_idle_bumps
 from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.surroundings import surroundings_along
 from greybox_torch.estimate.window_fit import states_along
@@ -20,7 +24,8 @@ RARE = 0.0005
 
 
 def over_wider_ranges(study: Study, state: SearchState) -> tuple[Study, SearchState] | None:
-    """The study with the ranges as the hypothesis of ``state`` has them, and the state to begin from; None where its curve has room.
+    """The study with the ranges as the hypothesis of ``state`` has them, and its effects estimated over these; None where its curve has
+    room, or where over them as much as a finding is left.
 
     A curve is level beyond the range over which it is drawn: where the model as it stands moved. A state that no sensor shows may go much
     farther once the model is right, and what the curve then cannot follow is told as a further effect. Seen: the foot of a hopper, which
@@ -32,8 +37,11 @@ def over_wider_ranges(study: Study, state: SearchState) -> tuple[Study, SearchSt
     around = _ranges_with(study, state.current)
     if not any(_beyond(study, c.mechanism.signals(), study.surroundings[c.port], around[c.port]) for c in curves):
         return None
-    begun = SearchState(state.plain, state.plain, found_before=state.current)
-    return replace(study, surroundings=around), begun
+    study, begun = replace(study, surroundings=around), state.at(state.plain)
+    same = with_same_effects(study, begun, state)
+    if same is begun:
+        return None
+    return study, result_of(without_idle_bumps(study, result_of(drop_superfluous(study, same))))
 
 
 def _ranges_with(study: Study, fitted: Hypothesis) -> dict[str, Surroundings]:

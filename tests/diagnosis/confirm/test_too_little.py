@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.too_little import without_too_little
 from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.estimate.comparison import Score
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.sensor import SensorLag
 from greybox_torch.mechanisms.unknown import Unknown
@@ -27,6 +29,23 @@ class FreeRuns:
     times: float
     by_windows_alone: bool = False
     effects: bool = True
+    points: float = 0.5
+    judges: frozenset[str] = frozenset({"sweep"})
+
+    @property
+    def refit(self) -> SimpleNamespace:
+        return SimpleNamespace(
+            scores=[Score("sweep", "validation", "angle", 80.0, 1.0), Score("steps", "estimation", "angle", 0.0, 1.0)]
+        )
+
+    @property
+    def with_effects(self) -> SimpleNamespace:
+        return SimpleNamespace(
+            scores=[
+                Score("sweep", "validation", "angle", 80.0 + self.points, 1.0),
+                Score("steps", "estimation", "angle", 99.0, 1.0),
+            ]
+        )
 
     def left(self, effects: bool) -> tuple[float, float, str]:
         assert effects
@@ -90,3 +109,5 @@ def test_a_free_curve_alone_has_to_remove_most(effects, stands) -> None:
     (state, *_), why = asked(FreeRuns(0.69, 41.0), State(effects=effects))
     assert (state.effects == effects) is stands and bool(why) is not stands
     assert asked(FreeRuns(0.46, 41.0), State(effects=effects))[1] == (), "most of it"
+    seen = FreeRuns(0.69, 41.0, points=10.0)
+    assert asked(seen, State(effects=effects))[1] == (), "two tanks, unknown at the upper one"

@@ -19,7 +19,9 @@ from greybox_torch.mechanisms.unknown import Unknown
 def drawn(motor_data, motor, begun):
     """A motor with a drag, and a curve of the rotor's speed."""
     search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v)), motor)
-    return search, search.refitted((attach(motor, "rotor", Unknown("speed", 8)),), search.plain)
+    curve = attach(motor, "rotor", Unknown("speed", 14))
+    falling = {f"{curve.prefix}.w_{k}": 0.002 * (6.5 - k) for k in range(14)}
+    return search, search.refitted((curve,), search.plain, [search.plain.values() | falling])
 
 
 def narrow(search, share: float):
@@ -40,10 +42,19 @@ def test_over_the_range_that_the_signal_has_with_the_curve(drawn, monkeypatch, s
     found = over_wider_ranges(narrow(search, share), state)
     assert (found is not None) is anew
     if found is not None:
-        study, begun = found
+        study, over = found
         wide, was = study.surroundings["rotor"].ranges["speed"], search.surroundings["rotor"].ranges["speed"]
         assert (wide.low, wide.high) == pytest.approx((was.low, was.high), abs=0.05 * was.span)
-        assert begun.current is begun.plain is search.plain and begun.found_before is fitted
+        assert over.plain is search.plain and over.prefixes == state.prefixes and over.compared_without
+        assert over.current.score < search.plain.score - 0.5
+
+
+def test_not_where_as_much_as_a_finding_is_left_over_them(drawn, monkeypatch) -> None:
+    """Seen: two tanks, where what was found beside the upper one's curve over wider ranges did not last."""
+    monkeypatch.setattr(module, "only_noise", lambda *_: False)
+    monkeypatch.setattr(module, "with_same_effects", lambda study, begun, before: begun)
+    search, fitted = drawn
+    assert over_wider_ranges(narrow(search, 0.4), SearchState(search.plain, fitted)) is None
 
 
 def test_not_where_noise_alone_is_left_nor_without_a_curve(drawn, motor, monkeypatch) -> None:
