@@ -1,4 +1,4 @@
-"""Free curves begun anew from a law of their own signal that goes farther than they do."""
+"""Free curves begun anew from a law of their own signal that goes farther than they do and is none of the machine's."""
 
 from __future__ import annotations
 
@@ -7,18 +7,19 @@ from functools import partial
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.curve import drawing, may_be_drawn
-from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.simulation.side_by_side import side_by_side
 
 
 def curves_from_laws(study: Study, parent: Hypothesis, ranked: Sequence[RankedCandidate]) -> list[RankedCandidate]:
-    """The refits, those of free curves that fall short of a law which they contain begun anew from it.
+    """The refits, those of free curves begun anew from a law that they contain, that goes farther, and that says nothing of the machine.
 
     A curve draws any law without memory of its signal at its port: what does not come as far has ended in a local minimum, and what it
-    leaves says nothing of what else is missing. Seen: the pad under a hopper's foot that pushes and does not pull, of which a curve
-    removed 90 % and a wave of the same position 99.4 %; a stiffness of the pad was told beside that curve (0.97).
+    leaves says nothing of what else is missing. A law that says something is told itself. Seen: the
+    pad under a hopper's foot that pushes and does not pull, of which a curve removed 90 % and a wave of the same position 99.4 %; a
+    stiffness of the pad was told beside that curve (0.97).
 
     Args:
         parent: the hypothesis that they are compared with.
@@ -40,11 +41,13 @@ def curves_from_laws(study: Study, parent: Hypothesis, ranked: Sequence[RankedCa
 
 
 def _farthest(study: Study, curve: RankedCandidate, ranked: Sequence[RankedCandidate]) -> RankedCandidate | None:
-    """The law that goes farthest of those that a curve contains and that go farther than it does; None for any other refit."""
+    """The law that goes farthest of those that may not be told, that a curve contains and that go farther than it does; None for any
+    other refit.
+    """
     if not curve.unknown:
         return None
     least = curve.fitted.score - study.settings.score_tie
     drawn, around = curve.candidate.attachment, study.surroundings
     farther = (r for r in ranked if not r.unknown and r.fitted.score < least)
     contained = (r for r in farther if may_be_drawn(r.candidate.attachment, drawn, around))
-    return min(contained, key=lambda r: r.fitted.score, default=None)
+    return min((r for r in contained if not sound(study, r)), key=lambda r: r.fitted.score, default=None)

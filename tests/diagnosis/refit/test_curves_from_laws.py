@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from greybox_torch.diagnosis.hypothesis.fit import hypothesis
+from greybox_torch.diagnosis.refit import curves_from_laws as module
 from greybox_torch.diagnosis.refit.curves_from_laws import curves_from_laws
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
@@ -30,12 +31,14 @@ def refits(motor_data, motor, begun):
     return search, refit
 
 
-def test_a_curve_begins_anew_from_a_law_that_goes_farther(motor, refits) -> None:
+def test_a_curve_begins_anew_from_a_law_that_goes_farther_and_is_not_told(motor, refits, monkeypatch) -> None:
     """Seen: a pad that pushes and does not pull, 90 % by the curve and 99.4 % by a wave, and a stiffness told beside the curve (0.97)."""
     search, refit = refits
     law = refit(attach(motor, "rotor", QuadraticDrag()), c=0.004)
     stuck = refit(attach(motor, "rotor", Unknown("speed", 12)), **{f"w_{k}": 0.0 for k in range(12)})
     assert stuck.gain < 0.1 < law.gain
+    assert curves_from_laws(search.study, search.plain, [law, stuck]) == [law, stuck], "the law is told itself"
+    monkeypatch.setattr(module, "sound", lambda study, ranked: False)
     same, anew = curves_from_laws(search.study, search.plain, [law, stuck])
     assert same is law
     assert anew.gain > law.gain - 0.05 and anew.fitted.effects == stuck.fitted.effects
@@ -51,7 +54,8 @@ def test_a_curve_begins_anew_from_a_law_that_goes_farther(motor, refits) -> None
     ],
     ids=["of another signal", "what another signal is multiplied by", "not as far"],
 )
-def test_else_it_stays_as_it_was(motor, refits, curve, law) -> None:
+def test_else_it_stays_as_it_was(motor, refits, monkeypatch, curve, law) -> None:
+    monkeypatch.setattr(module, "sound", lambda study, ranked: False)
     search, refit = refits
     port, mechanism, values = law
     stuck = refit(attach(motor, *curve), **{f"w_{k}": 0.0 for k in range(12)})
