@@ -79,9 +79,8 @@ class TransmissionError(Mechanism):
         """Its strongest wave alone."""
         if self.harmonics == 1:
             return None
-        beside = {n: v for n, v in values.items() if n not in amplitudes_up_to(self.harmonics)}
         alone = strongest_wave(values, self.harmonics)
-        return TransmissionError(alone["order"]), beside | alone
+        return TransmissionError(alone["order"]), alone
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         fixed = {"order": self.order, **({"damping": 0.0} if "speed" in around.ranges else {})}

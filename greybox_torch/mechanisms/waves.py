@@ -30,12 +30,12 @@ def amplitudes_up_to(harmonics: int) -> tuple[str, ...]:
 
 
 def strongest_wave(values: Mapping[str, float], harmonics: int) -> dict[str, float]:
-    """The order and the amplitudes of the largest wave of a sum, by its own names."""
+    """A law's values with the largest wave of its sum alone, by the names of the first: its amplitudes and its order."""
     size = {k: math.hypot(*(values[n] for n in amplitudes(k))) for k in range(1, harmonics + 1)}
     largest = max(size, key=lambda k: size[k])
-    return dict(zip(amplitudes(1), (values[n] for n in amplitudes(largest)), strict=True)) | {
-        "order": largest * values["order"]
-    }
+    beside = {n: v for n, v in values.items() if n not in amplitudes_up_to(harmonics)}
+    alone = zip(amplitudes(1), (values[n] for n in amplitudes(largest)), strict=True)
+    return beside | dict(alone) | {"order": largest * values["order"]}
 
 
 def wave_parameters(around: Surroundings, order: float, harmonics: int, unit: str | None = None) -> list[Parameter]:

@@ -45,7 +45,7 @@ def laws_on_curve(
     there = {e.mechanism.name for e in fitted.effects if e.port == curve.port}
     weight = _visited(around.ranges[unknown.signal].rms, grid.numpy())
     matches = matching_laws(site.kind, around, {unknown.signal: grid}, target, weight, there)
-    base, found = _without(fitted, curve), []
+    base, found = values_without(fitted, curve), []
     further = [m for m in matches if not there & set(m.law.generalises)]
     for match in further[:MOST_LAWS] if site.kind == "sensor" else worth_a_refit(further):
         attachment = attach(model, curve.port, match.law)
@@ -70,7 +70,7 @@ def two_laws_on_curve(
         return None
     first, second = (attach(model, curve.port, law) for law in match.laws)
     own = [{f"{a.prefix}.{n}": v for n, v in k.items()} for a, k in zip((first, second), match.values, strict=True)]
-    return (first, second), _without(fitted, curve) | own[0] | own[1]
+    return (first, second), values_without(fitted, curve) | own[0] | own[1]
 
 
 def _kinematic(
@@ -105,7 +105,7 @@ def redrawn(
     unknown = curve.mechanism
     assert isinstance(unknown, Unknown)
     attachment = replace(curve, mechanism=Unknown(unknown.signal, knots, unknown.factor))
-    return attachment, _without(fitted, curve) | _heights(attachment, around, *_drawn(fitted, curve, around))
+    return attachment, values_without(fitted, curve) | _heights(attachment, around, *_drawn(fitted, curve, around))
 
 
 def over_its_range(
@@ -126,7 +126,7 @@ def absorbed(fitted: Hypothesis, law: Attachment, surroundings: Mapping[str, Sur
     around = surroundings[curve.port]
     grid, target = _drawn(fitted, curve, around)
     force = target + force_of(fitted, law, {_signal(curve): grid})
-    return _without(fitted, law) | _heights(curve, around, grid, force)
+    return values_without(fitted, law) | _heights(curve, around, grid, force)
 
 
 def drawing(
@@ -136,7 +136,7 @@ def drawing(
     around = surroundings[curve.port]
     grid = _grid(curve, around)
     force = force_of(fitted, law, {_signal(curve): grid})
-    return _without(fitted, law) | _heights(curve, around, grid, np.broadcast_to(force, POINTS))
+    return values_without(fitted, law) | _heights(curve, around, grid, np.broadcast_to(force, POINTS))
 
 
 def may_be_drawn(law: Attachment, curve: Attachment, surroundings: Mapping[str, Surroundings]) -> bool:
@@ -181,9 +181,9 @@ def force_of(fitted: Hypothesis, effect: Attachment, signals: Mapping[str, torch
     return fitted.model.curve(effect, signals, p).detach().numpy()
 
 
-def _without(fitted: Hypothesis, curve: Attachment) -> dict[str, float]:
-    """The values of everything but the curve."""
-    return {n: v for n, v in fitted.values().items() if not n.startswith(f"{curve.prefix}.")}
+def values_without(fitted: Hypothesis, effect: Attachment) -> dict[str, float]:
+    """The values of everything but an effect."""
+    return {n: v for n, v in fitted.values().items() if not n.startswith(f"{effect.prefix}.")}
 
 
 def _visited(rms: float, grid: np.ndarray) -> np.ndarray:

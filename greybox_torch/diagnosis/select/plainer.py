@@ -7,9 +7,9 @@ a drum's ripple of four periods a turn, taken before its friction was, as two pe
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
+from greybox_torch.diagnosis.refit.curve import values_without
 from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.comes_as_far import comes_as_far
@@ -32,15 +32,15 @@ def with_plainer_forms(study: Study, state: SearchState) -> SearchState:
 
 
 def _in_form(
-    study: Study, state: SearchState, effect: Attachment, law: Attachment, begun: Mapping[str, float]
+    study: Study, state: SearchState, effect: Attachment, law: Attachment, begun: dict[str, float]
 ) -> SearchState:
     """The state with ``law``, which begins with the values ``begun``, in the place of ``effect``; as it is where that is not as good."""
     done = state.step_of(effect.prefix)
     if done is None or done.taken is None:
         return state
     study.working_on(f"refitting {effect.prefix} in a plainer form")
-    rest = {n: v for n, v in state.current.values().items() if not n.startswith(f"{effect.prefix}.")}
-    found = fit(study, state.with_law(effect, law), [{**rest, **begun}], state.current.fits[0])
+    start = values_without(state.current, effect) | begun
+    found = fit(study, state.with_law(effect, law), [start], state.current.fits[0])
     if found is None or not comes_as_far(study, found, state.current):
         return state
     form = judged(replace(done.taken.candidate, attachment=law), done.parent, found, study.settings)
