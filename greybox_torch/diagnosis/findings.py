@@ -20,9 +20,9 @@ from greybox_torch.diagnosis.confirm.memory_instead import memory_instead
 from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
 from greybox_torch.diagnosis.confirm.standing import findings
 from greybox_torch.diagnosis.confirm.too_little import without_too_little
+from greybox_torch.diagnosis.confirm.when_stopped import found_first
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.final import Final, finish, from_longest_windows
-from greybox_torch.diagnosis.refit.ranked import RankedCandidate, sound
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.selection import Selection
 from greybox_torch.diagnosis.stopping import or_else
@@ -100,7 +100,7 @@ def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
             if curve is None and whole and not found[0].effects:
                 curve, whole = or_else(partial(memory_instead, study, state, others, found[2]), lambda: None)
     if found is None:
-        return _found_first(study, state, judged)  # free runs of its own, for which time was left beyond that
+        return found_first(study, state, judged)  # free runs of its own, for which time was left beyond that
     if curve is not None:
         return (*curve, found[3], whole)
     with until(selection.schedule.judging):
@@ -119,33 +119,6 @@ def _curve_is_asked(searched: SearchState, found: Judged) -> bool:
         return True
     lost = searched.prefixes - state.prefixes
     return bool(lost) and not state.has_curve and judged.left(True)[0] > judged.settings.left_to_ask_for_a_curve
-
-
-def _found_first(study: Study, state: SearchState, judged: Judgement) -> Judged:
-    """The effect of the first step, or those of the first two, with the values of their windows, if free runs leave at most half with them.
-
-    Each of them costs a comparison with all experiments, hence no more than two. Seen: an arm's mode, told as a gain (the statement says
-    both), whose search found the gear's errors beside it, none of which lasted: all was taken back when time was over, and 300 times the
-    noise left without a name. An arm's friction over its position and its spring's play, of which neither is half of the mismatch.
-    """
-    for found in _first_found(state):
-        if not all(not taken.unknown and sound(study, taken) for taken in found):
-            break
-        alone = judged.having(from_longest_windows(found[-1].fitted))
-        if alone.holds and alone.mismatch(True) <= study.settings.left_if_far_better * alone.mismatch(False):
-            return state.at(found[-1].fitted), {}, alone, (), False
-    return state.at(state.plain), {}, judged.without_effects(), (), False
-
-
-def _first_found(state: SearchState, most: int = 2) -> list[tuple[RankedCandidate, ...]]:
-    """What the first step took, and what the first two took, the second built upon the first; at most ``most`` steps."""
-    begun: list[tuple[RankedCandidate, ...]] = []
-    for step in state.steps:
-        before = begun[-1] if begun else ()
-        built_upon = {taken.candidate.attachment.prefix for taken in before}
-        if step.taken is not None and {e.prefix for e in step.parent.effects} == built_upon and len(begun) < most:
-            begun.append((*before, step.taken))
-    return begun
 
 
 def without_refinements_alone(found: Findings) -> Findings:

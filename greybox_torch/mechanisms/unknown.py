@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import torch
 
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
@@ -28,7 +29,8 @@ INPUT = "input@"
 class Unknown(Mechanism):
     """A sum of smooth bumps over the range of one signal.
 
-    ``knots`` bumps exp(−((s − s_k) / w)²) with centres spread evenly over where the signal moved; beyond that the curve stays level.
+    ``knots`` bumps exp(−((s − s_k) / w)²) with centres spread evenly over where the signal moved; beyond that the curve stays level. Over
+    a ``part`` (low, high) of that the centres are spread from one end of the part to the other, and beyond it the curve is zero.
     With a ``factor`` the curve is what that other signal is multiplied by: a gain that changes. The factor may be an input of the model,
     ``input@NAME``, also where it does not act; the signal may be that of another port, ``position@BODY`` or ``level@BALANCE``: what one
     axis does to the other, a charge to how a battery warms, or the angle of its rotor (``turn@BODY``) to what a pump delivers. Of a
@@ -45,11 +47,19 @@ class Unknown(Mechanism):
     explanation = "Something repeatable is missing here that no known mechanism describes; the curve shows what."
     source = "radial basis functions: D. S. Broomhead, D. Lowe, Complex Systems 2, 1988"
 
-    def __init__(self, signal: str, knots: int = 14, factor: str = "", left_out: Sequence[int] = ()) -> None:
+    def __init__(
+        self,
+        signal: str,
+        knots: int = 14,
+        factor: str = "",
+        left_out: Sequence[int] = (),
+        part: Sequence[float] | None = None,
+    ) -> None:
         self.signal = signal
         self.knots = knots
         self.factor = factor
         self.left_out = tuple(left_out)
+        self.part = None if part is None else (float(part[0]), float(part[1]))
         self.by_rate = factor.startswith(RATE)
         at_other = self.by_rate and signal.startswith(POSITION)
         self.other_axis = signal.removeprefix(POSITION) if at_other else ""
@@ -109,7 +119,9 @@ class Unknown(Mechanism):
         moment = self._sum_of_bumps(s, p, {k: k * height for k, height in heights.items()})
         steep = 2.0 / p.spacing * (moment - self._place(s, p) * self._sum_of_bumps(s, p, heights))
         there = (s[self.signal] - p.first) / p.spacing
-        return steep if self.closed else torch.where((there > 1.0) & (there < self.knots - 2.0), steep, 0.0)
+        return (
+            steep if self.closed or self.part else torch.where((there > 1.0) & (there < self.knots - 2.0), steep, 0.0)
+        )
 
     @property
     def closed(self) -> bool:
@@ -132,10 +144,12 @@ class Unknown(Mechanism):
 
     def centres(self, around: Surroundings) -> list[float]:
         """Centres of the bumps, in the signal's unit; one lies beyond either end of the range, so that the ends are covered as well, but
-        over a turn.
+        over a turn or a part.
         """
         if self.closed:
             return [WHOLE / self.knots * k for k in range(self.knots)]
+        if self.part:
+            return [float(centre) for centre in np.linspace(*self.part, self.knots)]
         reached = around.ranges[self.signal]
         spacing = reached.span / (self.knots - 3)
         return [reached.low + spacing * (k - 1) for k in range(self.knots)]
@@ -148,7 +162,7 @@ class Unknown(Mechanism):
     def _place(self, s: Signals, p: Signals) -> Any:
         """Where the signal is, in spacings from the first centre."""
         place = (s[self.signal] - p.first) / p.spacing
-        return place if self.closed else torch.clamp(place, 1.0, self.knots - 2.0)
+        return place if self.closed or self.part else torch.clamp(place, 1.0, self.knots - 2.0)
 
     def _sum_of_bumps(self, s: Signals, p: Signals, heights: Mapping[int, Any]) -> Any:
         place, beside = self._place(s, p), REACH if self.closed else 0

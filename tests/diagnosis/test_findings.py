@@ -8,6 +8,7 @@ import pytest
 
 from greybox_torch.deadline import Deadline, check_time
 from greybox_torch.diagnosis import findings, selection
+from greybox_torch.diagnosis.confirm import when_stopped
 from greybox_torch.diagnosis.schedule import Schedule
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -35,63 +36,6 @@ def test_final_fits_that_are_cut_short_leave_the_values_of_the_windows(monkeypat
     assert findings._finished(stub(working_on=working_on), state, Deadline()) == ((state.plain, state.current), False)
 
 
-@pytest.mark.parametrize(
-    ("left", "holds", "unknown", "stands"),
-    [(0.1, True, False, True), (0.6, True, False, False), (0.1, False, False, False), (0.1, True, True, False)],
-)
-def test_where_time_ends_what_led_the_search_stands_if_free_runs_bear_it_out(
-    monkeypatch, stub, left, holds, unknown, stands
-) -> None:
-    """Seen: 300 times the noise without a name, as four effects that came after the right statement were being taken back."""
-    gain, ripple = stub(prefix="actuator.gain"), stub(prefix="motor.ripple")
-    plain, alone, both = (stub(effects=e) for e in ((), (gain,), (gain, ripple)))
-    steps = _steps(stub, plain, (gain, alone, unknown), (ripple, both, False))
-    judged = stub(
-        having=lambda final, *_: stub(holds=holds, mismatch=lambda effects: left if effects else 1.0),
-        without_effects=lambda: None,
-    )
-    monkeypatch.setattr(findings, "from_longest_windows", lambda hypothesis: hypothesis)
-    monkeypatch.setattr(findings, "sound", lambda study, ranked: True)
-    study = stub(settings=DiagnosisSettings())
-    state, gains, _, _, whole = findings._found_first(study, SearchState(plain, both, steps), judged)
-    assert state.current is (alone if stands else plain) and not gains and not whole
-    assert findings._found_first(study, SearchState(plain, plain), judged)[0].current is plain
-
-
-def _steps(stub, plain: Any, *taken: tuple[Any, Any, bool]) -> tuple[Any, ...]:
-    """The steps of a search from ``plain``: each effect that was taken, the hypothesis with it, and whether it is a curve."""
-    parents = (plain, *(fitted for _, fitted, _ in taken))
-    return tuple(
-        stub(parent=parent, taken=stub(fitted=fitted, unknown=unknown, candidate=stub(attachment=effect)))
-        for parent, (effect, fitted, unknown) in zip(parents, taken, strict=False)
-    )
-
-
-@pytest.mark.parametrize(
-    ("left_with_both", "unknown", "stands"), [(0.1, False, True), (0.7, False, False), (0.1, True, False)]
-)
-def test_of_two_effects_of_which_neither_is_half_of_the_mismatch_both_stand_where_time_ends(
-    monkeypatch, stub, left_with_both, unknown, stands
-) -> None:
-    """Seen: friction over an arm's position (64 %) and its spring's play (35 %), both taken back as time ended."""
-    friction, play, crumb = (stub(prefix=p) for p in ("motor.friction", "arm_spring.backlash", "arm.friction"))
-    plain, alone, both, three = (stub(effects=e) for e in ((), (friction,), (friction, play), (friction, play, crumb)))
-    left = {1: 0.6, 2: left_with_both, 3: 0.01}
-    judged = stub(
-        having=lambda final, *_: stub(
-            holds=True, mismatch=lambda effects: left[len(final.effects)] if effects else 1.0
-        ),
-        without_effects=lambda: None,
-    )
-    monkeypatch.setattr(findings, "from_longest_windows", lambda hypothesis: hypothesis)
-    monkeypatch.setattr(findings, "sound", lambda study, ranked: True)
-    steps = _steps(stub, plain, (friction, alone, False), (play, both, unknown), (crumb, three, False))
-    chosen_anew = stub(parent=stub(effects=(play, crumb)), taken=stub(candidate=stub(attachment=friction)))
-    state = SearchState(plain, three, (*steps, chosen_anew))
-    found = findings._found_first(stub(settings=DiagnosisSettings()), state, judged)[0]
-    assert found.current is (both if stands else plain)
-
-
 def test_what_led_the_search_is_judged_also_where_time_has_ended(monkeypatch, stub) -> None:
     """Seen: a diagnosis that was stopped while effects were taken back ended with an internal error, as free runs were stopped as well."""
     gain = stub(prefix="actuator.gain")
@@ -109,9 +53,10 @@ def test_what_led_the_search_is_judged_also_where_time_has_ended(monkeypatch, st
 
     monkeypatch.setattr(findings.Judgement, "of", lambda free_runs, final: stub(having=with_effects))
     monkeypatch.setattr(findings, "holding", until_time_ends)
-    monkeypatch.setattr(findings, "from_longest_windows", lambda hypothesis: hypothesis)
-    monkeypatch.setattr(findings, "sound", lambda study, ranked: True)
-    state = SearchState(plain, alone, _steps(stub, plain, (gain, alone, False)))
+    monkeypatch.setattr(when_stopped, "from_longest_windows", lambda hypothesis: hypothesis)
+    monkeypatch.setattr(when_stopped, "sound", lambda study, ranked: True)
+    taken = stub(fitted=alone, unknown=False, candidate=stub(attachment=gain))
+    state = SearchState(plain, alone, (stub(parent=plain, taken=taken, ranked=()),))
     study = stub(settings=DiagnosisSettings(), working_on=lambda text: None)
     over = stub(
         study=study, state=state, others=None, gains={}, free_runs=None, schedule=Schedule(judging=Deadline(0.0))

@@ -101,10 +101,17 @@ def finer(
 def redrawn(
     fitted: Hypothesis, curve: Attachment, around: Surroundings, knots: int
 ) -> tuple[Attachment, dict[str, float]]:
-    """The curve with so many knots over the range of ``around``, and the values of the hypothesis with it."""
+    """The curve with so many knots over the range of ``around``, and the values of the hypothesis with it.
+
+    One over a part reaches farther with more knots, which are narrower: as far as its outermost bumps do.
+    """
     unknown = curve.mechanism
     assert isinstance(unknown, Unknown)
-    attachment = replace(curve, mechanism=Unknown(unknown.signal, knots, unknown.factor))
+    part = unknown.part
+    if part is not None and knots > unknown.knots:
+        spacing = (part[1] - part[0]) / (unknown.knots - 1)
+        part = (part[0] - spacing, part[1] + spacing)
+    attachment = replace(curve, mechanism=Unknown(unknown.signal, knots, unknown.factor, part=part))
     return attachment, values_without(fitted, curve) | _heights(attachment, around, *_drawn(fitted, curve, around))
 
 
@@ -136,7 +143,7 @@ def drawing(
     around = surroundings[curve.port]
     grid = _grid(curve, around)
     force = force_of(fitted, law, {_signal(curve): grid})
-    return values_without(fitted, law) | _heights(curve, around, grid, np.broadcast_to(force, POINTS))
+    return values_without(fitted, law) | _heights(curve, around, grid, np.broadcast_to(force, len(grid)))
 
 
 def may_be_drawn(law: Attachment, curve: Attachment, surroundings: Mapping[str, Surroundings]) -> bool:
@@ -164,9 +171,11 @@ def _drawn(fitted: Hypothesis, curve: Attachment, around: Surroundings) -> tuple
 
 
 def _grid(curve: Attachment, around: Surroundings) -> torch.Tensor:
-    """Values of the curve's signal over its range."""
-    span = around.ranges[_signal(curve)]
-    return torch.linspace(span.low, span.high, POINTS, dtype=torch.float64)
+    """Values of the curve's signal over its range; over a part of that as many more, in their order."""
+    assert isinstance(curve.mechanism, Unknown)
+    span, part = around.ranges[curve.mechanism.signal], curve.mechanism.part
+    whole = torch.linspace(span.low, span.high, POINTS, dtype=torch.float64)
+    return torch.cat([whole, torch.linspace(*part, POINTS, dtype=torch.float64)]).sort().values if part else whole
 
 
 def _signal(curve: Attachment) -> str:

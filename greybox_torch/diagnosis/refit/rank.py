@@ -199,8 +199,7 @@ def _both(over_longer: list[list[Trial]], over_middle: list[list[Trial]]) -> lis
 def _elsewhere(study: Study, candidate: Candidate, trial: Hypothesis) -> list[dict[str, float]]:
     """Where the law says that a refit may begin once more after its trial."""
     effect, values = candidate.attachment, trial.values()
-    own = {n.rpartition(".")[2]: v for n, v in values.items() if n.startswith(f"{effect.prefix}.")}
-    others = effect.mechanism.begun_elsewhere(study.surroundings[effect.port], own)
+    others = effect.mechanism.begun_elsewhere(study.surroundings[effect.port], trial.values_of(effect))
     return [{**values, **{f"{effect.prefix}.{n}": v for n, v in other.items()}} for other in others]
 
 

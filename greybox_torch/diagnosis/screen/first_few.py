@@ -8,7 +8,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.study import Study
-from greybox_torch.mechanisms.unknown import INPUT
+from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.model.ports import Actuator, driving_body
 
 TINY = 1e-12
@@ -19,7 +19,7 @@ def first_few(study: Study, best: Sequence[ScreenScore]) -> list[ScreenScore]:
     """Of the scores, best first, the named ones that are worth a trial, and then the free curves."""
     named = _with_places(study, [b for b in best if not b.attachment.mechanism.free])
     curves = _plainest_first([b for b in best if b.attachment.mechanism.free], study.settings.curve_margin)
-    return named + _with_body(study, curves, study.budget.curves_per_length)
+    return named + _with_parts(study, curves, _with_body(study, curves, study.budget.curves_per_length))
 
 
 def _with_places(study: Study, ranked: Sequence[ScreenScore]) -> list[ScreenScore]:
@@ -71,6 +71,20 @@ def _with_body(study: Study, curves: Sequence[ScreenScore], count: int) -> list[
         return first
     own = (c for c in curves[count:] if c.attachment.port == driven.name and _over_speed(c))
     return [*first, *(c for c in own if c.explained > study.settings.screen_tie * min(gains))]
+
+
+def _with_parts(study: Study, curves: Sequence[ScreenScore], first: Sequence[ScreenScore]) -> list[ScreenScore]:
+    """The ``first`` curves; with one over a part of a body's way also those of other bodies that explain nearly as much: all of them pass
+    the place at once, and refits have to decide at which of them it acts.
+    """
+    most = max((c.explained for c in first if _over_part(c)), default=np.inf)
+    near = (c for c in curves if _over_part(c) and c.explained > study.budget.part_elsewhere * most)
+    return [*first, *(c for c in near if all(c is not one for one in first))]
+
+
+def _over_part(curve: ScreenScore) -> bool:
+    law = curve.attachment.mechanism
+    return isinstance(law, Unknown) and bool(law.part)
 
 
 def _of(curve: ScreenScore) -> tuple[str, str, str, str]:

@@ -34,7 +34,7 @@ from greybox_torch.model.states_at_no_port import STATE
 from greybox_torch.model.states_of import inputs_of
 from greybox_torch.model.within_turn import TURN
 
-MOST_FROM_ELSEWHERE, MOST_FROM_INPUTS, MOST_EXCHANGED, MOST_LOST = 32, 12, 12, 12
+MOST_FROM_ELSEWHERE, MOST_FROM_INPUTS, MOST_EXCHANGED, MOST_LOST = 40, 12, 12, 12
 """Curves of signals of other ports, of inputs, of what balances exchange, and of what they lose, that are tried at all."""
 
 
@@ -77,8 +77,9 @@ def _by_direction(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unkno
 
 def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unknown]]:
     """What another part of the machine does to a port by where it stands: by itself, or to what an input, the body's speed or position or
-    the level does there. What it does by how fast it is (the air that a turning rotor drags along) it does by itself, or to a stiffness (of
-    what is thrown outwards). At an actuator a level changes the gain (a pump's, that works against a tank).
+    the level does there. What it does by how fast it is (the air that a turning rotor drags along) it does by itself, to a stiffness (of
+    what is thrown outwards), or to what resists the speed (the water at a hull that turns on its way). At an actuator a level changes the
+    gain (a pump's, that works against a tank).
 
     No more than ``MOST_FROM_ELSEWHERE``, which the ports take in turn.
     """
@@ -87,6 +88,7 @@ def _from_elsewhere(model: GreyBoxModel, knots: int) -> Iterable[tuple[Port, Unk
     def of(port: Port) -> Iterator[tuple[Port, Unknown]]:
         for signal in (n for n in signals_elsewhere(model, port) if not n.startswith((DIFFERENCE, ABOVE, STATE))):
             own = (*(_own(port) if signal.startswith(LEVEL) else ()), *stiff(port))
+            own += ("speed",) if signal.startswith(SPEED) else ()
             factors = ("", *own) if signal.startswith(SPEED) else ("", *inputs, *own)
             rate = (f"{RATE}{port.name}",) if not signal.startswith(SPEED) and balanced_state(model, port) else ()
             yield from ((port, Unknown(signal, knots, factor)) for factor in (*factors, *rate))

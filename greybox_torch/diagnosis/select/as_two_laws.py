@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import overall_significance
+from greybox_torch.diagnosis.refit.curve import values_without
 from greybox_torch.diagnosis.refit.likelihood import needed_by_likelihood
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.state import SearchState
@@ -38,9 +39,7 @@ def two_in_its_place(study: Study, one: Hypothesis, law: Attachment) -> Hypothes
 
     None elsewhere, and where two have more parameters.
     """
-    start = f"{law.prefix}."
-    values = one.values()
-    parts = law.mechanism.as_two({n.removeprefix(start): v for n, v in values.items() if n.startswith(start)})
+    parts = law.mechanism.as_two(one.values_of(law))
     laws = [replace(law, mechanism=mechanism) for mechanism, _ in parts]
     others = tuple(e for e in one.effects if e != law)
     there = {e.named for e in others}
@@ -48,8 +47,7 @@ def two_in_its_place(study: Study, one: Hypothesis, law: Attachment) -> Hypothes
         return None
     study.working_on(f"refitting {law.prefix} as {laws[0].prefix} and {laws[1].prefix}")
     begun = {f"{part.prefix}.{n}": v for part, (_, own) in zip(laws, parts, strict=True) for n, v in own.items()}
-    rest = {n: v for n, v in values.items() if not n.startswith(start)}
-    two = fit(study, (*others, *laws), [rest | begun], one.fits[0])
+    two = fit(study, (*others, *laws), [values_without(one, law) | begun], one.fits[0])
     if two is None or two.problem.free.sum() > one.problem.free.sum():
         return None
     return None if _tells(study, two, one) else two

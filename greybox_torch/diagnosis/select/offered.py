@@ -10,6 +10,7 @@ import numpy as np
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.screen.candidates import candidates, memory_candidates, periodic_candidates
 from greybox_torch.diagnosis.screen.from_motion import candidates_from_motion
+from greybox_torch.diagnosis.screen.part_of_the_way import curves_over_parts
 from greybox_torch.diagnosis.screen.periodic_orders import distinct_orders, scan_orders
 from greybox_torch.diagnosis.screen.score_test import Screen, ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of, shortlist
@@ -64,14 +65,22 @@ def _with_narrow_curves(study: Study, state: SearchState, scored: Screened) -> S
     own = {q.name for q in study.problem.model.ports if isinstance(q, Body) and q.position is not None}
     along = [a for a in _fine_curves(study) if a.port in own and a.mechanism.signals() == ("position",)]
     study.working_on("screening fine curves along the way")
-    pairs = zip(scored, _scored(study, state, along, state.current.fits), strict=True)
-    return tuple((*coarse, *_less_left(coarse, fine, study.settings.left_by_narrow)) for coarse, fine in pairs)
+    most = study.settings.left_by_narrow
+    for narrow in (
+        _scored(study, state, along, state.current.fits),
+        curves_over_parts(study, state.effects, state.current.fits),
+    ):
+        scored = tuple((*there, *_less_left(there, at, most)) for there, at in zip(scored, narrow, strict=True))
+    return scored
 
 
-def _less_left(coarse: Sequence[ScreenScore], fine: Sequence[ScreenScore], most: float) -> list[ScreenScore]:
-    """Those of the ``fine`` curves that leave less than the part ``most`` of what the coarse one of the same signal leaves."""
-    left = {identity_of(s.attachment): 1.0 - s.explained for s in coarse}
-    return [s for s in fine if 1.0 - s.explained < most * left.get(identity_of(s.attachment), 1.0)]
+def _less_left(there: Sequence[ScreenScore], narrow: Sequence[ScreenScore], most: float) -> list[ScreenScore]:
+    """Those of the ``narrow`` curves that leave less than the part ``most`` of what any of the same signal that are ``there`` leave."""
+    left: dict[tuple, float] = {}
+    for s in there:
+        identity = identity_of(s.attachment)
+        left[identity] = min(1.0 - s.explained, left.get(identity, 1.0))
+    return [s for s in narrow if 1.0 - s.explained < most * left.get(identity_of(s.attachment), 1.0)]
 
 
 def from_card(study: Study, state: SearchState, *, curves: bool = True) -> list[Candidate]:

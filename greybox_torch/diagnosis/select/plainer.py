@@ -22,11 +22,10 @@ from greybox_torch.mechanisms.attachment import Attachment
 def with_plainer_forms(study: Study, state: SearchState) -> SearchState:
     """The state with each of its laws in a plainer form, where that comes as far beside the others."""
     for effect in state.effects if len(state.effects) > 1 else ():
-        start = f"{effect.prefix}."
-        own = {n.removeprefix(start): v for n, v in state.current.values().items() if n.startswith(start)}
-        plainer = effect.mechanism.plainer(own)
+        plainer = effect.mechanism.plainer(state.current.values_of(effect))
         if plainer is not None:
-            law, begun = replace(effect, mechanism=plainer[0]), {f"{start}{n}": v for n, v in plainer[1].items()}
+            law = replace(effect, mechanism=plainer[0])
+            begun = {f"{law.prefix}.{n}": v for n, v in plainer[1].items()}
             state = _in_form(study, state, effect, law, begun)
     return state
 

@@ -215,6 +215,10 @@ class SearchBudget:
 
     knots: int = count(14, "Knots of a free curve to begin with.", chosen_by=TIME, least=4)
     fine_knots: int = count(40, "Knots of the curves that are tried when nothing else pays.", chosen_by=TIME, least=4)
+    knots_along_parts: int = count(
+        120, "Knots along the whole way of those curves that are drawn over a part of it.", chosen_by=TIME, least=14
+    )
+    knots_of_part: int = count(10, "Knots that such a curve has.", chosen_by=TIME, least=4)
     most_parameters: int = count(70, "Free parameters beyond which a curve is not drawn any finer.", chosen_by=TIME)
 
     share_for_confirming: float = share(

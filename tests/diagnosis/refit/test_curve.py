@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.hypothesis.fit import hypothesis
@@ -50,15 +51,17 @@ def test_a_law_hands_its_force_to_the_curve_beside_it(motor_data, motor, begun) 
     assert elsewhere is not None and absorbed(elsewhere, drag, search.surroundings) is None
 
 
-@pytest.mark.parametrize("factor", ["", "position"])
-def test_a_finer_curve_begins_as_the_one_it_refines(motor_data, motor, begun, factor) -> None:
+@pytest.mark.parametrize(("factor", "part"), [("", None), ("position", None), ("", (1.0, 2.0))])
+def test_a_finer_curve_begins_as_the_one_it_refines(motor_data, motor, begun, factor, part) -> None:
     search = begun(motor_data(torque=lambda q, v: -0.004 * v * abs(v)), motor)
-    curve = attach(motor, "rotor", Unknown("speed", 8, factor))
-    start = search.plain.values() | {f"{curve.prefix}.w_{k}": 0.01 * (k - 4) for k in range(8)}
+    curve = attach(motor, "rotor", Unknown("speed", 8, factor, part=part))
+    heights = 0.01 * (np.arange(8) - 4.0) if part is None else 0.05 * np.sin(np.pi * np.arange(8) / 7.0)
+    start = search.plain.values() | {f"{curve.prefix}.w_{k}": float(h) for k, h in enumerate(heights)}
     drawn = hypothesis(search.problem, (curve,), search.surroundings, [start], options=search.study.options)
     assert drawn is not None
     attachment, values = finer(drawn, curve, search.surroundings)
     assert sum(n.startswith(f"{curve.prefix}.w_") for n in values) == 16
+    assert attachment.mechanism.part == (part and pytest.approx((part[0] - 1 / 7, part[1] + 1 / 7)))
     frozen = frozenset(n for n in values if "w_" in n)
     same = hypothesis(
         search.problem, (attachment,), search.surroundings, [values], options=search.study.options, frozen=frozen

@@ -74,7 +74,7 @@ def test_what_one_axis_does_to_the_other_is_offered(surroundings) -> None:
         own = {(body, f"position@{other}", factor) for factor in any_factor}
         warm = {(body, "level@motor_heat", factor) for factor in (*any_factor, "speed", f"direction@{body}")}
         there = {c for c in curves if c[0] == body and "@" in c[1] and not c[1].startswith("along@")}
-        fast = {(body, f"speed@{other}", ""), (body, f"speed@{other}", "position")}
+        fast = {(body, f"speed@{other}", factor) for factor in ("", "position", "speed")}
         assert there == own | warm | fast | {(body, "input@tail" if body == "pitch_axis" else "input@main", "")}
         assert {(body, "position", f"rate@{body}"), (body, "position", f"direction@{body}")} <= curves
     assert surroundings["yaw_axis"].ranges["position@pitch_axis"].high == pytest.approx(0.5)

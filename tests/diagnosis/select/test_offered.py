@@ -50,6 +50,7 @@ def test_fine_curves_along_the_way_stand_beside_the_coarse_ones_where_nothing_ex
     monkeypatch.setattr(module, "_offered", lambda *args: offered["coarse"])
     monkeypatch.setattr(module, "_fine_curves", lambda study: offered["fine"])
     monkeypatch.setattr(module, "_scored", scored)
+    monkeypatch.setattr(module, "curves_over_parts", lambda study, effects, fits: ((),))
     model = stub(ports=(Body("cart", speed="v", position="q"),))
     study = stub(
         settings=DiagnosisSettings(), problem=stub(model=model), working_on=lambda text: None, journal=Journal()
