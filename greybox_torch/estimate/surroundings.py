@@ -12,6 +12,7 @@ from greybox_torch.estimate.free_run import visited_states
 from greybox_torch.estimate.measured_range import as_measured, farther, no_farther
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.shifted_states import shifted_state
+from greybox_torch.estimate.travel import comes_back, either_way, integrated
 from greybox_torch.mechanisms.added_declarations import position_unit
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.spring_force import moved_states, spring_force
@@ -62,15 +63,17 @@ def _around(
     model: GreyBoxModel, port: Port, x: Signals, u: Signals, p: Signals, times: np.ndarray, problem: Problem
 ) -> Surroundings:
     values = {name: _evaluated(signal, x, u, p, times) for name, signal in port.signals.items()}
+    once = frozenset[str]()
     if isinstance(port, Body) and "position" not in values:
-        values["position"] = _integrated(values["speed"], problem)
+        values["position"] = integrated(values["speed"], problem.records)
+        once = frozenset[str]() if comes_back(values["position"], problem.records) else frozenset({"position"})
     if isinstance(port, Coupling):
         body = driving_body(model.ports)
         if body is not None:
             if body.position is not None:
                 values["position"] = _evaluated(body.position, x, u, p, times)
             else:
-                values["position"] = _integrated(_evaluated(body.speed, x, u, p, times), problem)
+                values["position"] = integrated(_evaluated(body.speed, x, u, p, times), problem.records)
             if turns_with(port, body, x, u, p):
                 values |= _load(model, port, body, x, u, p, times, problem)
     if isinstance(port, Actuator | Coupling) and (body := driving_body(model.ports)) is not None:
@@ -110,7 +113,8 @@ def _around(
             fast = f"{SPEED}{body.name}"
             ranges |= {signal: A_TURN, fast: _range(_evaluated(body.speed, x, u, p, times))}
             units |= {signal: "rad", fast: "rad/s"}
-    return Surroundings(ranges, units, _force_unit(model, port, units), float(np.median(problem.records.dt)), hidden)
+    step = float(np.median(problem.records.dt))
+    return Surroundings(ranges, units, _force_unit(model, port, units), step, hidden, passed_once=once)
 
 
 def _load(
@@ -135,10 +139,15 @@ def _load(
 
 
 def _along_motion(model: GreyBoxModel, body: Body, u: Signals, speed: np.ndarray) -> dict[str, np.ndarray]:
-    """The inputs that push a body, along its motion, and the direction of that."""
+    """The inputs that push a body, along its motion, and the direction of that; none of a body that went one way alone, and no input that
+    never brakes it: what such a one does is said at its actuator.
+    """
     way = direction(torch.tensor(speed), _range(speed).rms).numpy()
-    along = {f"{ALONG}{name}": np.asarray(u[name], dtype=float) * way for name in inputs_that_push(model)[body.name]}
-    return {**along, f"{DIRECTION}{body.name}": way}
+    if not either_way(way):
+        return {}
+    along = {name: np.asarray(u[name], dtype=float) * way for name in inputs_that_push(model)[body.name]}
+    braking = {f"{ALONG}{name}": values for name, values in along.items() if either_way(values)}
+    return {**braking, f"{DIRECTION}{body.name}": way}
 
 
 def _repeats(body: Body, travel: Range, unit: str) -> bool:
@@ -154,15 +163,6 @@ def _is_measured(model: GreyBoxModel, signal: Signal) -> bool:
 def _evaluated(signal: Signal, x: Signals, u: Signals, p: Signals, times: np.ndarray) -> np.ndarray:
     value = x[signal] if isinstance(signal, str) else signal(x, u, p)
     return np.broadcast_to(np.asarray(value, dtype=float), times.shape)
-
-
-def _integrated(speed: np.ndarray, problem: Problem) -> np.ndarray:
-    dt, done, pieces = problem.records.dt, 0, []
-    for e, n in enumerate(problem.records.lengths):
-        step = dt[problem.records.span(e)]
-        pieces.append(np.concatenate([[0.0], np.cumsum(speed[done : done + n - 1] * step[:-1])]))
-        done += n
-    return np.concatenate(pieces)
 
 
 def _range(values: np.ndarray) -> Range:

@@ -32,6 +32,7 @@ class Surroundings:
     ``ranges`` and ``units`` by signal name (``speed``, ``position``, ``load``, ``time``, ``deflection``, ``rate``, ``level``, ``input``,
     ``output``); ``force_unit`` of the port; ``sample_time`` in s. ``unmeasured``: signals whose range is that of a model which lacks what
     is looked for, as no sensor shows them. ``excited``: the angular frequency in rad/s up to which the inputs have most of their power.
+    ``passed_once``: signals that are nowhere twice within an experiment.
     """
 
     ranges: Mapping[str, Range]
@@ -40,6 +41,7 @@ class Surroundings:
     sample_time: float
     unmeasured: frozenset[str] = frozenset()
     excited: float = float("inf")
+    passed_once: frozenset[str] = frozenset()
 
     def per(self, signal: str, power: int = 1) -> str:
         """The unit of force per signal to a power."""

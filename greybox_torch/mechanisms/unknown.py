@@ -137,7 +137,7 @@ class Unknown(Mechanism):
         return self.signal == "time"
 
     def available(self, around: Surroundings) -> bool:
-        return set(self.signals()) <= set(around.ranges)
+        return set(self.signals()) <= set(around.ranges) and self.signal not in around.passed_once
 
     def signals(self) -> tuple[str, ...]:
         return (self.signal, self.factor) if self.factor else (self.signal,)

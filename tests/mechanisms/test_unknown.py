@@ -98,15 +98,3 @@ def test_bumps_are_the_same_whichever_exponentials_they_are_computed_from(knots,
     slopes = [torch.autograd.grad(y.sum(), speed)[0] for y in (values, plain)]
     torch.testing.assert_close(values, plain, rtol=tolerance, atol=tolerance)
     torch.testing.assert_close(*slopes, rtol=tolerance, atol=tolerance)
-
-
-def test_a_curve_over_a_part_is_zero_elsewhere(law, around) -> None:
-    span = around.ranges["speed"]
-    low, high = span.low + 0.4 * span.span, span.low + 0.5 * span.span
-    local = Unknown("speed", 6, part=(low, high))
-    heights = {f"w_{k}": 1.0 for k in range(6)}
-    inside = law(local, heights, speed=np.linspace(low, high, 20))
-    outside = law(local, heights, speed=np.array([span.low, low - 0.5 * span.span, high + 0.3 * span.span, span.high]))
-    assert inside.min() > 0.9 and np.abs(outside).max() < 1e-12
-    assert (local.centres(around)[0], local.centres(around)[-1]) == pytest.approx((low, high))
-    assert Unknown(**local.options()).part == local.part and Unknown(**Unknown("speed").options()).part is None
