@@ -61,8 +61,7 @@ def surroundings() -> dict[str, Surroundings]:
         ]
     )
     problem = make_problem(dataset, helicopter, dataset.recordings)
-    ends = ((0.0, 0.5), (0.0, 2.0), (-1.0, 1.0), (-1.0, 1.0), (0.0, 20.0))
-    states = np.stack([np.linspace(*end, problem.records.u.shape[1]) for end in ends], axis=1)
+    states = np.linspace((0.0, 0.0, -1.0, -1.0, 0.0), (0.5, 2.0, 1.0, 1.0, 20.0), problem.records.u.shape[1])
     return surroundings_along(helicopter, problem, states)
 
 
