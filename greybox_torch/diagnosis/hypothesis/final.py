@@ -10,6 +10,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.above_noise import noise_over_windows
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.weights_of_outputs import weighed_by_what_is_left
 from greybox_torch.diagnosis.hypothesis.whole_records import coloured, from_windows, whole_runs
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.free_run import FreeRun
@@ -86,7 +87,8 @@ def finish(
         run = _on_all(hypothesis, records, run.problem)
     ended = _descended(run, point, budget.record_iterations)
     point = point if ended is None else ended.point
-    return Final(run.at(point), uncertainty(run, point))
+    run, point = weighed_by_what_is_left(run, point, budget.record_iterations)
+    return Final(replace(run.at(point), weights=hypothesis.problem.weights), uncertainty(run, point))
 
 
 def _weighed(hypothesis: Hypothesis, begun: Sequence[Problem], records: Records | None) -> Final | None:
