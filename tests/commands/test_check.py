@@ -96,6 +96,10 @@ def test_a_wrong_card_is_told_what_to_write(
         ),
         ("[limits]\nvoltage = { lower = 5, upper = -5 }", "[limits] voltage: lower = 5 is not below upper = -5"),
         ('[beliefs]\n"roter/*" = 0.0', '[beliefs]: "roter/*": model Motor has no port "roter" (did you mean "rotor"?)'),
+        (
+            '[beliefs]\n"rotor/*" = 1.0',
+            "[beliefs]: \"rotor/*\": found 1.0\n    write: 'unlikely', 'likely', or a probability from 0 (excluded) to below 1",
+        ),
         ("[diagnosis]\nleast_gian = 0.1", '[diagnosis]: "least_gian" is not a setting (did you mean "least_gain"?)'),
     ],
 )
