@@ -77,6 +77,7 @@ def inspect(
 @app.command()
 def simulate(
     dataset: DataSetFile,
+    checkpoint: Checkpoint = None,
     model: Model = None,
     out: Out = None,
     seed: Seed = 0,
@@ -84,13 +85,13 @@ def simulate(
     precision: Precision = "double",
     json: Json = False,
 ) -> None:
-    """Simulate all experiments in free run with the card's parameter values.
+    """Simulate all experiments in free run with the card's parameter values, or the model of a checkpoint.
 
     Start states that the card does not fix are estimated from the first tenth of each experiment.
     """
     from greybox_torch.commands import simulate
 
-    simulate.run(dataset, Options(model, out, seed, device, json, precision))
+    simulate.run(dataset, checkpoint, Options(model, out, seed, device, json, precision))
 
 
 @app.command()
@@ -156,7 +157,7 @@ def diagnose(
     dataset: DataSetFile,
     time_limit: Annotated[
         float | None,
-        typer.Option(min=1.0, metavar="SECONDS", help="After this time the best answer so far is given."),
+        typer.Option(metavar="SECONDS", help="After this time the best answer so far is given."),
     ] = None,
     settings: Settings = None,
     model: Model = None,

@@ -18,6 +18,9 @@ from greybox_torch.errors import UserError
 MOST_TEXT = 64 * 2**20
 """Most bytes of a card or another text that is read as a whole."""
 
+_OF_BACKSLASHES = ("Unescaped '\\'", "Invalid hex value")
+"""What is said of a path such as C:\\data in quotes."""
+
 _KINDS = (
     (stat.S_ISFIFO, "is a pipe"),
     (stat.S_ISCHR, "is a device"),
@@ -75,10 +78,14 @@ def read_bytes(path: Path, expected: str, kind: str = "", *, most: int = MOST_TE
 
 def read_text(path: Path, expected: str) -> str:
     """All of the file at `path`, which is UTF-8. Raises UserError as :func:`read_bytes` does, and where it is not UTF-8."""
+    content = read_bytes(path, expected)
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise UserError(f"{path}: not UTF-8 text but UTF-16; expected {expected}, saved as UTF-8")
     try:
-        return read_bytes(path, expected).decode("utf-8-sig")
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise UserError(f"{path}: not UTF-8 text (byte {error.start}); expected {expected}") from None
+        line = content.count(b"\n", 0, error.start) + 1
+        raise UserError(f"{path}, line {line}: not UTF-8 text; expected {expected}, saved as UTF-8") from None
 
 
 def read_toml(path: Path, expected: str) -> dict[str, Any]:
@@ -89,7 +96,9 @@ def read_toml(path: Path, expected: str) -> dict[str, Any]:
     except RecursionError:
         raise UserError(f"{path}: not valid TOML: nested too deeply; expected {expected}") from None
     except ValueError as error:  # TOMLDecodeError, and Python's own limit on the digits of an integer
-        raise UserError(f"{path}: not valid TOML: {error}") from None
+        backslash = any(words in str(error) for words in _OF_BACKSLASHES)
+        hint = "; write paths with / in the place of \\" if backslash else ""
+        raise UserError(f"{path}: not valid TOML: {error}{hint}") from None
 
 
 def _check_regular(shown: str, mode: int, expected: str) -> None:

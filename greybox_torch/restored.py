@@ -48,7 +48,7 @@ def load(path: str | PathLike[str], model: GreyBoxModel | str | None = None) -> 
         UserError: the checkpoint is damaged, is of a model that is not at hand, or is not one of ``model``.
 
     Examples:
-        ``greybox_torch.simulate(greybox_torch.load("results"), data)``
+        ``greybox_torch.simulate(greybox_torch.load("results", model="my_motor.py:Motor"), data)``
     """
     return load_saved_model(path, model).model
 
@@ -98,9 +98,10 @@ def _plain_model(path: Path, checkpoint: Checkpoint, model: GreyBoxModel | str |
         return load_model(model or checkpoint.model)
     defined = defined_here(checkpoint.model)
     if defined is None:
+        file = checkpoint.model if ":" in checkpoint.model else f"my_model.py:{checkpoint.title}"
         raise UserError(
             f"checkpoint {path}: is of the model {checkpoint.title} in {checkpoint.model}; a model file is run only where you name it "
-            "yourself, with --model, or --dataset of a command that has it (in Python: model=)"
+            f"yourself, with --model, or --dataset of a command that has it (in Python: load({str(path)!r}, model={file!r}))"
         )
     return defined()
 

@@ -184,8 +184,9 @@ def test_a_model_file_that_only_the_checkpoint_names_never_runs(motor_folder: Ma
     else:
         assert result.exit_code == 2
         assert "a model file is run only where you name it yourself: on the card, as --model" in result.stderr
-    with pytest.raises(UserError, match="a model file is run only where you name it yourself"):
+    with pytest.raises(UserError, match="a model file is run only where you name it yourself") as refused:
         load_saved_model(folder / "model")
+    assert f"load('{folder / 'model'}', model=" in str(refused.value), "the call to write instead"
     assert not evil.with_name("ran").exists()
     assert load_saved_model(folder / "model", f"{folder}/my_motor.py:Motor").checkpoint.title == title
 

@@ -100,13 +100,13 @@ def _at_start(problem: Problem, simulator: Simulator) -> tuple[Unidentifiable, .
 def _compared(data: DataSet, model: GreyBoxModel, found: Estimation, simulator: Simulator) -> dict[str, Comparison]:
     """Start and refitted values on all experiments.
 
-    Start states come from the first tenth of each, but for the refit on the experiments it was estimated on: there they are its own.
+    Start states come from the first tenth of each, but for the refit on the experiments it was estimated on: there they are its own, and so
+    is the number of steps that a sample takes. All else is simulated as `compare` does.
     """
     recordings = data.recordings
     start = make_problem(data, model, recordings)
     before = compare(start, recordings, fine_enough(simulator, start))
-    refit = start.with_values(found.problem.values)
-    fitted_with = simulator.with_substeps(found.substeps)
-    everywhere = compare(refit, recordings, fitted_with)
-    own = compare(found.problem, data.estimation(), fitted_with, estimate_starts=False)
+    refit = make_problem(data, model, recordings, values=found.problem.values_by_name)
+    everywhere = compare(refit, recordings, fine_enough(simulator, refit))
+    own = compare(found.problem, data.estimation(), simulator.with_substeps(found.substeps), estimate_starts=False)
     return {"start": before, "refit": everywhere.with_experiments_of(own)}

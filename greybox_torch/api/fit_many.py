@@ -150,10 +150,12 @@ def _compared(
     every = [each.recordings for each in data]
     own = [each.estimation() for each in data]
     start = [make_problem(each, model, each.recordings) for each in data]
-    refit = [problem.with_values(each.problem.values) for problem, each in zip(start, found, strict=True)]
+    refit = [
+        make_problem(each, model, each.recordings, values=estimate.problem.values_by_name)
+        for each, estimate in zip(data, found, strict=True)
+    ]
     before = compare_together(start, every, simulator, with_fine_steps(start, simulator).substeps)
-    substeps = [each.substeps for each in found]
-    after = compare_together(refit, every, simulator, substeps)
-    fitted = [each.problem for each in found]
+    after = compare_together(refit, every, simulator, with_fine_steps(refit, simulator).substeps)
+    fitted, substeps = [each.problem for each in found], [each.substeps for each in found]
     there = compare_together(fitted, own, simulator, substeps, estimate_starts=False)
     return [{"start": a, "refit": b.with_experiments_of(c)} for a, b, c in zip(before, after, there, strict=True)]

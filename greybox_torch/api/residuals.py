@@ -111,14 +111,9 @@ class ResidualResult(Result):
 def residuals(
     model: GreyBoxModel | Any, data: DataSet, *, name: str | None = None, device: str = "cpu", precision: str = "double"
 ) -> ResidualResult:
-    """Test the errors of a model's free runs. Arguments and errors are those of :func:`greybox_torch.simulate`.
-
-    Args:
-        name: what the model is called in the result; by default "start" for a model, "refit" for the result of a fit, "augmented" for those
-            of ``diagnose`` and ``train``.
-    """
-    called = START if isinstance(model, GreyBoxModel) else getattr(model, "stage", START)
-    return ResidualResult(simulate(model, data, device=device, precision=precision).run, name or called)
+    """Test the errors of a model's free runs. Arguments and errors are those of :func:`greybox_torch.simulate`."""
+    simulated = simulate(model, data, name=name, device=device, precision=precision)
+    return ResidualResult(simulated.run, simulated.name)
 
 
 def _row_json(test: Residuals, rmse: float) -> dict[str, Any]:

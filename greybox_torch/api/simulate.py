@@ -19,6 +19,7 @@ from greybox_torch.api.result import Result
 from greybox_torch.api.scores import print_scores, print_substeps, score_rows, score_table
 from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError
+from greybox_torch.estimate.comparison import MODELS
 from greybox_torch.evaluation import Evaluation, evaluated
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
@@ -32,6 +33,9 @@ OPPOSITE = -0.8
 
 START = "start"
 """The name of the model with its start values."""
+
+AUGMENTED = MODELS[-1]
+"""That of one with effects."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -155,13 +159,15 @@ def _correlation(measured: np.ndarray, simulated: np.ndarray) -> float:
 
 
 def simulate(
-    model: GreyBoxModel | Any, data: DataSet, *, device: str = "cpu", precision: str = "double"
+    model: GreyBoxModel | Any, data: DataSet, *, name: str | None = None, device: str = "cpu", precision: str = "double"
 ) -> SimulationResult:
     """Simulate every experiment in free run, from start states estimated on its first tenth.
 
     Args:
         model: used with the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else the
             declared ones. The result of a fit or a diagnosis stands for its model.
+        name: what the model is called in the result; by default "refit" for the result of a fit, "augmented" for those of ``diagnose`` and
+            ``train`` and for a model with effects, else "start".
         device: "cpu", "cuda" or "cuda:N".
         precision: "double" or "single".
 
@@ -176,7 +182,14 @@ def simulate(
     run = evaluated(check_data(data), given, device=check_device(device), precision=check_precision(precision))
     if len(run.lost) == len(run.comparison.experiments):
         refuse_overflow(run)
-    return SimulationResult(run)
+    return SimulationResult(run, name or called(model))
+
+
+def called(model: GreyBoxModel | Any) -> str:
+    """What scores call a model, or the result that stands for it, where nobody gives it a name."""
+    if isinstance(model, GreyBoxModel):
+        return AUGMENTED if model.effects_told() else START
+    return getattr(model, "stage", START)
 
 
 def refuse_overflow(run: Evaluation) -> None:

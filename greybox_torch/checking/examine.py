@@ -10,7 +10,7 @@ from greybox_torch.checking.effects import without_effect
 from greybox_torch.checking.equations import compiled, fails
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.checking.influence import Influence, influence
-from greybox_torch.checking.names import declared_names, left_out, unknown_names
+from greybox_torch.checking.names import declared_names, exchanged_arguments, left_out, unknown_names
 from greybox_torch.checking.negative_masses import negative_masses
 from greybox_torch.checking.not_finite import not_finite, not_finite_at_start
 from greybox_torch.checking.points import points_of
@@ -65,7 +65,9 @@ def _read(made: type[GreyBoxModel], source: Source) -> tuple[list[Finding], list
     for method in source.methods:
         items = made.states if method.name == "derivative" else made.outputs
         code += untraceable(method)
-        names += unknown_names(method, declared)
+        unknown = list(unknown_names(method, declared))
+        exchanged = exchanged_arguments(method, bool(unknown))
+        names += unknown if exchanged is None else [exchanged]
         names += left_out(method, [item.name for item in items], {item.name: item.unit for item in items})
     return code, names
 

@@ -10,6 +10,9 @@ from greybox_torch.checking.source import Method
 from greybox_torch.errors import did_you_mean
 from greybox_torch.model import GreyBoxModel, Signals
 
+USUAL = ("x", "u", "p", "port")
+"""What the arguments of ``derivative`` are called everywhere; ``output`` does without the last."""
+
 _DECLARED_AS = {
     "state": 'State("{}", "…") in states',
     "input": 'Input("{}", "…") in inputs',
@@ -50,6 +53,18 @@ def unknown_names(method: Method, declared: Mapping[str, Sequence[str]]) -> Iter
             method.file,
             getattr(node, "lineno", None),
         )
+
+
+def exchanged_arguments(method: Method, unknown: bool) -> Finding | None:
+    """A finding where the usual arguments stand at unusual places, so that names in the equations look ``unknown``, or one is missing."""
+    usual = USUAL[: len(USUAL) if method.name == "derivative" else -1]
+    own = list(method.arguments)
+    moved = any(name in usual and usual.index(name) != place for place, name in enumerate(own))
+    if not moved or not (unknown or len(own) < len(usual)):
+        return None
+    expected = f"{method.name}(self, {', '.join(usual)})"
+    found = f"{method.name}({ast.unparse(method.tree.args)}): expected {expected}, in this order"
+    return Finding("error", "declaration", found, f"def {expected}:", method.file, method.tree.lineno)
 
 
 def left_out(method: Method, names: Sequence[str], unit_of: Mapping[str, str]) -> Iterator[Finding]:

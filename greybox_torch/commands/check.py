@@ -10,6 +10,7 @@ from greybox_torch.api.check import check
 from greybox_torch.commands.options import Options
 from greybox_torch.data import load_dataset
 from greybox_torch.errors import UserError
+from greybox_torch.systems import BUILT_IN
 
 
 def run(target: str, options: Options) -> None:
@@ -18,7 +19,10 @@ def run(target: str, options: Options) -> None:
     Args:
         target: a model's name, or a data card that names one.
     """
-    data = load_dataset(Path(target)) if target.endswith(".toml") else None
+    is_card = target.endswith(".toml") or (
+        target not in BUILT_IN and Path(target).is_dir()
+    )  # of a folder it says which
+    data = load_dataset(Path(target)) if is_card else None
     name = options.model or (target if data is None else data.model)
     if name is None:
         raise UserError(

@@ -23,9 +23,7 @@ def fleet(
     ],
     time_limit: Annotated[
         float | None,
-        typer.Option(
-            min=1.0, metavar="SECONDS", help="After this time the best answer so far is given, for each data set."
-        ),
+        typer.Option(metavar="SECONDS", help="After this time the best answer so far is given, for each data set."),
     ] = None,
     workers: Annotated[
         int | None,

@@ -10,15 +10,18 @@ from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.api.arguments import check_device, check_precision, named_model
+from greybox_torch.api.simulate import START
 from greybox_torch.checking.missing_inputs import missing_inputs
 from greybox_torch.checking.shared_rows import shared_rows
 from greybox_torch.checking.time_stamps import odd_time_stamps
+from greybox_torch.checkpoint import checkpoint_name
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.results_folder import check_folder, others_model
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.drafting.contradicted import contradictions
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.restored import load_beside
 
 
 @dataclass(frozen=True)
@@ -55,3 +58,10 @@ def load_task(dataset: Path, options: Options, *, writes_model: str = "") -> Tas
     if writes_model and (replaced := others_model(folder, writes_model)):
         log.print(Text(f"warning: {replaced}", style="yellow"), soft_wrap=True)
     return Task(data, model, device, folder, precision)
+
+
+def simulated_by(task: Task, checkpoint: Path | None) -> tuple[GreyBoxModel, DataSet, str]:
+    """What simulates: the card's model with its start values, or that of a checkpoint; the data set for it, and its name."""
+    if checkpoint is None:
+        return task.model, task.data, START
+    return *load_beside(checkpoint, task.model, task.data), checkpoint_name(checkpoint)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Any
 
 import numpy as np
@@ -65,7 +66,7 @@ def samples_of_frame(
 ) -> Samples:
     """What `Recording.from_dataframe` describes."""
     place = _place(name)
-    _check_clock(place, sample_time, time is not None)
+    _check_clock(place, sample_time, time is not None, _of_index(frame))
     found = _column_names(place, frame)
     wanted = {str(n): n for n in found if n != time} if columns is None else dict(columns)
     if not wanted:
@@ -91,11 +92,20 @@ def _place(name: Any) -> str:
     return f'recording "{name}"'
 
 
-def _check_clock(place: str, sample_time: Any, has_time: bool) -> None:
+def _of_index(frame: Any) -> str:
+    """What to do where a table's times are in its index, which is no column; "" elsewhere."""
+    index = getattr(frame, "index", None)
+    if not str(getattr(index, "dtype", "")).startswith(("datetime64", "timedelta64")):
+        return ""
+    name = getattr(index, "name", None) or "index"
+    return f"; its index holds times, which frame.reset_index() makes a column: time={name!r}"
+
+
+def _check_clock(place: str, sample_time: Any, has_time: bool, hint: str = "") -> None:
     if sample_time is None:
         if not has_time:
             raise UserError(
-                f"{place}: sample_time is missing; expected sample_time (seconds), or time (the time stamps)"
+                f"{place}: sample_time is missing; expected sample_time (seconds), or time (the time stamps){hint}"
             )
         return
     if has_time:
@@ -129,6 +139,9 @@ def _seconds(time: Any, where: str) -> NDArray[np.float64]:
         since = stamps - stamps[0] if stamps.dtype.kind == "M" else stamps
         seconds = since / np.timedelta64(1, "s")
         return np.where(np.isnat(stamps), np.nan, seconds)
+    dated = isinstance(stamps, np.ndarray) and stamps.dtype.kind == "O" and stamps.ndim == 1 and stamps.size
+    if dated and all(isinstance(at, datetime) for at in stamps):
+        return np.array([(at - stamps[0]).total_seconds() for at in stamps])  # with a time zone NumPy knows no dates
     return numbers(stamps, where)
 
 

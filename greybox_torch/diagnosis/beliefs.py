@@ -108,7 +108,7 @@ def _probability(value: Any, where: str) -> float:
     if isinstance(value, int | float) and not isinstance(value, bool) and 0.0 <= value < 1.0:
         return float(value)
     raise UserError(
-        f"{where}: found {value!r}, expected {', '.join(map(repr, WORDS))}, or a probability from 0 (excluded) to below 1"
+        f"{where}: found {value!r}; expected {', '.join(map(repr, WORDS))}, or a probability from 0 (excluded) to below 1"
     )
 
 

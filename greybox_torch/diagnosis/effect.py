@@ -116,6 +116,9 @@ class Effect:
     made_up_for: str = ""
     """Where the recordings do not show it, as the re-estimated model makes up for it: how that is known, in words."""
 
+    def __repr__(self) -> str:
+        return f"<effect: {self.mechanism} at {self.port}, probability {self.probability:.2f}>"
+
     @property
     def prefix(self) -> str:
         """What the names of its parameters begin with."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from greybox_torch.estimate.beginnings import cost_of
 from greybox_torch.estimate.correlation import CorrelationMatrix, correlation_matrix
 from greybox_torch.estimate.descent import Descent, DescentOptions, Progress
 from greybox_torch.estimate.free_run import FreeRun
@@ -120,7 +121,8 @@ def estimation_of(
     """What an optimum comes to."""
     run, optimum = found.run, found.optimum
     mse = 2 * optimum.model.cost / samples
-    share, problem = len(optimum.point) / samples, run.at(optimum.point)
+    point = _begun_where_without_effect(found, unidentifiable)
+    share, problem = len(point) / samples, run.at(point)
     return Estimation(
         problem=problem,
         mse=mse,
@@ -129,8 +131,24 @@ def estimation_of(
         iterations=optimum.iterations,
         evaluations=found.evaluations,
         termination=optimum.termination,
-        uncertainty=uncertainty(run, optimum.point) if with_uncertainty else None,
+        uncertainty=uncertainty(run, point) if with_uncertainty else None,
         substeps=run.simulator.substeps,
         identifiability=unidentifiable,
         notes=notes(problem, unidentifiable),
     )
+
+
+def _begun_where_without_effect(found: Descent, unidentifiable: tuple[Unidentifiable, ...]) -> np.ndarray:
+    """The optimum (d,) with parameters that nothing depends on as they began: a descent leaves them where rounding errors lead it.
+
+    Where the cost is not the same there, they had an effect on the way, and it stays as it is.
+    """
+    run, point = found.run, found.optimum.point.copy()
+    names, expected = run.problem.free_names, run.problem.expected[run.problem.free]
+    for one in unidentifiable:
+        if one.kind == "unmoved":
+            point[names.index(one.parameters[0])] = expected[names.index(one.parameters[0])]
+    if np.array_equal(point, found.optimum.point):
+        return point
+    same = cost_of(run.at(point), run.simulator) <= (1 + 1e-9) * found.optimum.model.cost
+    return point if same else found.optimum.point

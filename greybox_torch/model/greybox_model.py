@@ -168,13 +168,15 @@ class GreyBoxModel(torch.nn.Module):
         """Set parameter values in physical units. They then stand before those of a data card.
 
         Raises:
-            UserError: an unknown name, or a value outside its bounds.
+            UserError: an unknown name, a value that is no number, or one outside its bounds.
         """
         declared = {p.name: p for p in self.declared_parameters}
         for name, value in values.items():
             if name not in declared:
                 hint = did_you_mean(name, declared)
                 raise UserError(f"model {self.title} has no parameter '{name}'{hint} (it has: {', '.join(declared)})")
+            if not hasattr(value, "__float__"):
+                raise UserError(f"parameter '{name}' of model {self.title}: found {value!r}, expected a number")
             low, high = declared[name].bounds
             if not low <= value <= high:
                 where = f"lies outside its bounds [{low:g}, {high:g}]"

@@ -46,6 +46,8 @@ def test_fit(folder: Path, data: gt.DataSet) -> None:
     assert found.model.values() == {name: entry.value for name, entry in found.parameters.items()}
     assert [row["name"] for row in found.parameter_rows] == ["J", "k", "b"]
     assert model.held_values() == {}
+    assert {row["model"] for row in gt.simulate(found, data).scores} == {"refit"}
+    assert {row["model"] for row in gt.simulate(model, data).scores} == {"start"}
     check_shown(found, folder / "saved", {"fit.json", "model.json", "model.safetensors", "profile_J.png"})
     assert gt.load(folder / "saved" / "model").values() == found.model.values()
 
@@ -91,6 +93,8 @@ def test_the_contract(folder: Path, data: gt.DataSet) -> None:
     loaded = gt.load(folder / "saved" / "model")
     assert loaded.values() == found.model.values()
     assert [row["rmse"] for row in gt.simulate(loaded, data).scores] == rows[2]
+    assert [gt.simulate(one, data).name for one in (found, found.model, loaded)] == ["augmented"] * 3
+    assert gt.residuals(found.model, data).name == "augmented" and len(repr(effect)) < 100
     again = gt.fit(loaded, data)
     assert again.parameters["actuator.actuator_deadzone.half_width"].value == pytest.approx(0.4, rel=0.02)
     assert not gt.diagnose(loaded, data).effects

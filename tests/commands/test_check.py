@@ -46,6 +46,14 @@ def test_a_card_that_does_not_fit(motor_folder: Callable[..., Path], edit: Calla
     assert "model Motor has no such name" in done.stdout
 
 
+def test_a_folder_is_answered_with_its_card(motor_folder: Callable[..., Path]) -> None:
+    """Seen: "model '.' is unknown; expected a built-in system", where `greybox fit .` names the card."""
+    folder = motor_folder()
+    done = CliRunner().invoke(app, ["check", str(folder)])
+    assert done.exit_code == 2
+    assert f"{folder}: is a folder; expected the card in it, {folder / 'dataset.toml'}" in done.stderr
+
+
 BOUNDS = "Parameter 'b': value -1 lies outside its bounds [0, inf]"
 SENSOR = 'a line such as speed = { column = "…", unit = "rad/s" }; an output that no sensor shows is left out of the model\'s outputs'
 
@@ -88,6 +96,10 @@ def test_a_wrong_card_is_told_what_to_write(
         ),
         ("[limits]\nvoltage = { lower = 5, upper = -5 }", "[limits] voltage: lower = 5 is not below upper = -5"),
         ('[beliefs]\n"roter/*" = 0.0', '[beliefs]: "roter/*": model Motor has no port "roter" (did you mean "rotor"?)'),
+        (
+            '[beliefs]\n"rotor/*" = 1.0',
+            "[beliefs]: \"rotor/*\": found 1.0\n    write: 'unlikely', 'likely', or a probability from 0 (excluded) to below 1",
+        ),
         ("[diagnosis]\nleast_gian = 0.1", '[diagnosis]: "least_gian" is not a setting (did you mean "least_gain"?)'),
     ],
 )

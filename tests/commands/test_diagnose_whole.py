@@ -49,6 +49,11 @@ def test_time_limits_that_are_none(motor_folder: Make, limit: str) -> None:
     assert diagnose(motor_folder(), "--time-limit", limit).exit_code == 2
 
 
+def test_a_time_limit_may_be_less_than_a_second(motor_folder: Make) -> None:
+    """As in Python: any number above 0."""
+    assert diagnose(motor_folder(), "--time-limit", "0.5").exit_code == 0
+
+
 def test_a_users_own_model(motor_folder: Make) -> None:
     """The real search, on the documentation's motor: the dead zone of 0.4 V that the model does not know."""
     folder = motor_folder(dead_zone=0.4)

@@ -74,6 +74,14 @@ def test_identifiability_is_told_before_estimating(motor_folder: Make, edit: Edi
     assert found["correlation"] == {"names": ["J", "k", "b"], "matrix": [[None] * 3] * 3}
 
 
+def test_what_has_no_effect_stays_at_its_start_value(motor_folder: Make, edit: Edit) -> None:
+    """Seen: 1.9e86 J for 1 J, saved with the rest, where rounding errors had led it."""
+    folder = motor_folder()
+    edit(folder / "my_motor.py", "    ports =", '    parameters += [Parameter("unused", 1.0, unit="J")]\n    ports =')
+    entry = json.loads(fit(folder, "--json").stdout)["parameters"]["unused"]
+    assert (entry["value"], entry["std"], entry["fixed"]) == (1.0, None, False)
+
+
 def test_nothing_to_tell_of_a_sound_problem(motor_folder: Make) -> None:
     found = json.loads(fit(motor_folder(), "--json").stdout)
     assert (found["identifiability"], found["statistics"]["notes"], found["profiles"]) == ([], [], {})

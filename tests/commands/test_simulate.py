@@ -12,7 +12,7 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
-from tests.commands.free_running import PNG, Edit, Make, greybox, of
+from tests.commands.free_running import PNG, Edit, Make, greybox, of, saved
 
 
 def test_simulate(motor_folder: Make) -> None:
@@ -41,6 +41,18 @@ def test_simulate(motor_folder: Make) -> None:
         assert columns["time"][:3].tolist() == [0.0, 0.01, 0.02]
         assert Path(figure).read_bytes().startswith(PNG)
     assert sorted(str(p) for p in (folder / "out").iterdir()) == sorted(found["tables"] + found["figures"])
+
+
+def test_simulate_with_a_checkpoint(motor_folder: Make) -> None:
+    """The fitted model's signals as CSV: seen missing on the command line."""
+    folder = motor_folder()
+    found = of("simulate", folder, "--checkpoint", saved(folder, "good"))
+    (model,) = found["models"]
+    assert model["name"] == "good"
+    for row, table in zip(model["fit"], found["tables"], strict=True):
+        columns = np.genfromtxt(table, delimiter=",", names=True)
+        errors = columns["speed_measured"] - columns["speed_simulated"]
+        assert np.sqrt(np.mean(errors**2)) == pytest.approx(row["rmse"], rel=1e-6) == pytest.approx(0.02, rel=0.15)
 
 
 def test_simulate_of_data_with_gaps(motor_folder: Make) -> None:

@@ -72,3 +72,21 @@ def test_pandas_dates_and_missing_integers() -> None:
     np.testing.assert_array_equal(found.signals["u"], [1, np.nan] * 10)
     with pytest.raises(UserError, match='channel "t": holds datetime64'):
         Recording.from_dataframe("steps", frame, sample_time=1.0)
+
+
+def test_pandas_dates_with_a_time_zone() -> None:
+    """Seen: "found Timestamp(…), expected a number"."""
+    pd = pytest.importorskip("pandas")
+    stamps = pd.date_range("2026-03-29 01:59:58", periods=N, freq="250ms", tz="Europe/Berlin")  # across summer time
+    found = Recording.from_dataframe("steps", pd.DataFrame({"t": stamps, "y": U}), time="t")
+    np.testing.assert_allclose(found.time, 0.25 * np.arange(N))
+
+
+@pytest.mark.parametrize(("name", "column"), [("at", "at"), (None, "index")])
+def test_times_in_the_index_are_pointed_at(name: str | None, column: str) -> None:
+    pd = pytest.importorskip("pandas")
+    stamps = pd.date_range("2026-11-21", periods=N, freq="250ms", name=name)
+    frame = pd.DataFrame({"y": U}, index=stamps)
+    with pytest.raises(UserError, match=rf"frame.reset_index\(\) makes a column: time='{column}'"):
+        Recording.from_dataframe("steps", frame)
+    assert Recording.from_dataframe("steps", frame.reset_index(), time=column).sample_time == 0.25

@@ -57,7 +57,7 @@ def test_zero_excludes_whatever_else_is_said() -> None:
         (
             "motor/*",
             "sure",
-            "found 'sure', expected 'unlikely', 'likely', or a probability from 0 (excluded) to below 1",
+            "found 'sure'; expected 'unlikely', 'likely', or a probability from 0 (excluded) to below 1",
         ),
         ("motor/*", 1.0, "found 1.0"),
         ("motor/*", -0.1, "found -0.1"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 import torch
@@ -11,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from greybox_torch import load_dataset, load_model
+from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
@@ -47,6 +49,12 @@ def test_set_to_what_is_declared(motor: GreyBoxModel, motor_folder: Make) -> Non
     declared = motor.values()["J"]
     motor.set_values({"J": declared})
     assert values(motor, motor_folder())["J"] == declared != 0.03
+
+
+@pytest.mark.parametrize("value", ["3", None, [3.0]])
+def test_what_is_no_number_is_refused(motor: GreyBoxModel, value: Any) -> None:
+    with pytest.raises(UserError, match=r"parameter 'J' of model Motor: found .*, expected a number"):
+        motor.set_values({"J": value})
 
 
 def test_what_an_optimiser_has_moved(motor: GreyBoxModel) -> None:

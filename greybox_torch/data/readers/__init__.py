@@ -50,6 +50,11 @@ READERS: dict[str, Reader] = {
 
 BUILT_IN = frozenset(READERS)
 
+WORKBOOKS, SAVE_AS_CSV = (".xlsx", ".xlsm", ".xls", ".ods"), "save the sheet as CSV"
+"""What spreadsheets write, and what to do about it."""
+
+_FIRST_BYTES = {b"PK\x03\x04": "an Excel file, or another ZIP archive", b"\xd0\xcf\x11\xe0": "an old Excel file"}
+
 
 def register_reader(suffix: str, reader: Reader) -> Reader:
     """Let cards name files that end in ``suffix`` (such as ".tdms"), to be read by ``reader``.
@@ -98,9 +103,13 @@ def guarded(path: Path, table: Mapping[str, Callable[..., _Found]]) -> Callable[
         )
     suffix = path.suffix.lower()
     if suffix not in table:
-        raise UserError(f'{path}: no reader for files ending in "{path.suffix}"; expected one of {", ".join(table)}')
+        hint = f"; {SAVE_AS_CSV}" if suffix in WORKBOOKS else ""
+        raise UserError(
+            f'{path}: no reader for files ending in "{path.suffix}"; expected one of {", ".join(table)}{hint}'
+        )
     _check_there(path)
     _check_not_empty(path)
+    _check_no_workbook(path, suffix)
 
     def call(*arguments: object) -> _Found:
         try:
@@ -148,6 +157,15 @@ def _check_not_empty(path: Path) -> None:
         return
     if empty:
         raise UserError(f"{path}: is empty (0 bytes); expected a recording")
+
+
+def _check_no_workbook(path: Path, suffix: str) -> None:
+    """Raises UserError where a spreadsheet has the name of a text file: its bytes would pass for names of columns."""
+    if READERS.get(suffix) is read_csv and not path.is_dir():
+        with path.open("rb") as file:
+            kind = _FIRST_BYTES.get(file.read(4))
+        if kind is not None:
+            raise UserError(f"{path}: is {kind}, no text; {SAVE_AS_CSV}")
 
 
 def _said(error: Exception) -> str:

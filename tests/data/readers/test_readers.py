@@ -208,8 +208,18 @@ def test_parquet_column_with_a_dot_in_its_name(tmp_path: Path) -> None:
 
 
 def test_unknown_suffix_lists_the_known(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match=r'no reader for files ending in ".xlsx"; expected one of .csv, .mat'):
+    with pytest.raises(
+        UserError, match=r'no reader for files ending in ".xlsx"; expected one of .csv, .mat.*; save the sheet as CSV'
+    ):
         read_table(tmp_path / "a.xlsx", ("u",))
+
+
+@pytest.mark.parametrize("first", [b"PK\x03\x04\x14\x00", b"\xd0\xcf\x11\xe0\xa1\xb1"])
+def test_a_workbook_named_as_text(tmp_path: Path, first: bytes) -> None:
+    """Seen: its bytes, as the names of the columns that were found."""
+    (tmp_path / "a.csv").write_bytes(first + b"[Content_Types],\nxl")
+    with pytest.raises(UserError, match=r"a.csv: is an .*Excel file.*; save the sheet as CSV"):
+        read_table(tmp_path / "a.csv", ("u",))
 
 
 def test_suffix_in_capitals(tmp_path: Path) -> None:

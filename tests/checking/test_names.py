@@ -1,0 +1,39 @@
+"""Equations whose arguments stand at other places than usual: one finding, and none on every name in them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from greybox_torch.checking.examine import examine
+from greybox_torch.systems import model_class
+
+DERIVATIVE, OUTPUT = "derivative(self, x, u, p, port)", "output(self, x, u, p)"
+
+
+@pytest.mark.parametrize(
+    ("usual", "written"),
+    [
+        (DERIVATIVE, "derivative(x, u, p, port)"),
+        (DERIVATIVE, "derivative(self, t, x, u, p)"),
+        (OUTPUT, "output(x, u, p)"),
+        (OUTPUT, "output(self, u, x, p)"),
+    ],
+)
+def test_arguments_in_another_order_are_one_finding(machines: Path, tmp_path: Path, usual: str, written: str) -> None:
+    """Seen: eight errors on undeclared names, and none on the missing `self`."""
+    text = (machines / "motor.py").read_text()
+    assert text.count(usual) == 1
+    (tmp_path / "motor.py").write_text(text.replace(usual, written))
+    (finding,) = examine(model_class(f"{tmp_path / 'motor.py'}:Motor")).findings
+    assert (finding.level, finding.found) == ("error", f"{written}: expected {usual}, in this order")
+    assert finding.line is not None and written in (tmp_path / "motor.py").read_text().splitlines()[finding.line - 1]
+
+
+def test_other_names_of_arguments_are_fine(machines: Path, tmp_path: Path) -> None:
+    text = (machines / "motor.py").read_text()
+    (tmp_path / "motor.py").write_text(
+        text.replace(OUTPUT, "output(self, state, u, p)").replace('"speed": x.', '"speed": state.')
+    )
+    assert examine(model_class(f"{tmp_path / 'motor.py'}:Motor")).findings == ()
