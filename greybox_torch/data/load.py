@@ -155,6 +155,7 @@ def _in_unit(
     if found and entry.unit and entry.derivative is None and "scale" not in entry.model_fields_set:
         factor = slip(found, entry.unit)
         if factor is not None:
+            conversion(found, entry.unit, place)  # says so where nobody can tell the factor
             raise UserError(
                 f'{place}: {source.tables[0].path} has column "{formula.text}" in "{found}", the card says "{entry.unit}"; '
                 f'expected file_unit = "{found}" to convert it ({factor:.6g}), or the scale'
