@@ -1,0 +1,36 @@
+"""What may be wrong with a data set although it can be read: the warnings of all commands, from one place."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from greybox_torch.checking.constant_channels import constant_channels
+from greybox_torch.checking.lone_samples import lone_samples
+from greybox_torch.checking.missing_inputs import missing_inputs
+from greybox_torch.checking.shared_rows import shared_rows
+from greybox_torch.checking.time_stamps import odd_time_stamps
+from greybox_torch.data import DataSet
+from greybox_torch.drafting.contradicted import contradictions
+from greybox_torch.model import GreyBoxModel
+
+
+class DataWarning(Protocol):
+    """``found`` says what is there, ``write`` what to write instead; as text it is both in a sentence."""
+
+    @property
+    def found(self) -> str: ...
+
+    @property
+    def write(self) -> str: ...
+
+
+def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning]:
+    """Those of a data set; without a model, as far as they need none."""
+    return [
+        *contradictions(data.path),
+        *odd_time_stamps(data),
+        *shared_rows(data),
+        *constant_channels(data, model),
+        *lone_samples(data),
+        *(missing_inputs(data, model) if model is not None else ()),
+    ]
