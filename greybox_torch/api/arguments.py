@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
 import torch
 
 from greybox_torch.data import DataSet
@@ -78,6 +79,20 @@ def check_estimation(data: DataSet) -> None:
     if not data.estimation():
         raise UserError(
             f'{data.place("[[experiment]] role:")} no experiment has the role "estimation"; expected at least one'
+        )
+
+
+def check_moving(data: DataSet, model: GreyBoxModel) -> None:
+    """Raises UserError where no output of the model moves in any experiment that is estimated from: every law would do."""
+    values = {
+        output.name: np.concatenate([recording.signals[output.name] for recording in data.estimation()])
+        for output in model.outputs
+    }
+    if values and all(np.nanmax(of) == np.nanmin(of) for of in values.values()):
+        stuck = ", ".join(f"{name}: {np.nanmax(of):.6g} throughout" for name, of in values.items())
+        raise UserError(
+            f"{data.place('[[experiment]]')} no output moves in the experiments of role 'estimation' ({stuck}): nothing can be estimated "
+            "or found from them; expected recordings in which the machine moves, or other columns, where a sensor is stuck"
         )
 
 

@@ -8,18 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from greybox_torch.api.check_result import CheckResult
+from greybox_torch.api.data_warnings import looked_at
 from greybox_torch.checking.examine import examine
 from greybox_torch.checking.finding import Finding, in_order
-from greybox_torch.checking.missing_inputs import MissingInput, missing_inputs
 from greybox_torch.checking.negative_masses import negative_masses
 from greybox_torch.checking.not_finite import not_finite_at_start
-from greybox_torch.checking.shared_rows import SharedRows, shared_rows
 from greybox_torch.checking.source import source_of
-from greybox_torch.checking.time_stamps import OddTime, odd_time_stamps
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.beliefs import beliefs_from_mapping
 from greybox_torch.diagnosis.settings import settings_from_mapping
-from greybox_torch.drafting.contradicted import Contradiction, contradictions
 from greybox_torch.errors import ArgumentError, Kind, UserError
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.experiment_design.limits import limits_of
@@ -57,14 +54,12 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
     with users_code(_file(given), f"model {name}", "checking it"):
         examined = examine(given)
     findings, values = list(examined.findings), dict[str, float]()
-    told: list[Contradiction | OddTime | SharedRows | MissingInput] = []
     if data is not None:
-        told += [*contradictions(data.path), *odd_time_stamps(data), *shared_rows(data)]
-    if data is not None and examined.model is not None and not any(f.level == "error" for f in findings):
-        more, values = _with_data(data, examined.model)
-        findings += more
-        told += missing_inputs(data, examined.model)
-    findings += [Finding("warning", "card", one.found, one.write, data.path) for one in told if data is not None]
+        usable = None if any(f.level == "error" for f in findings) else examined.model
+        if usable is not None:
+            more, values = _with_data(data, usable)
+            findings += more
+        findings += [Finding("warning", "card", one.found, one.write, data.path) for one in looked_at(data, usable)]
     return CheckResult(name, replace(examined, findings=in_order(findings)), in_order(findings), values)
 
 

@@ -11,6 +11,7 @@ from greybox_torch.api.arguments import (
     check_estimation,
     check_kind,
     check_model,
+    check_moving,
     check_seconds,
     check_seed,
 )
@@ -61,7 +62,7 @@ def diagnose(
 
     Raises:
         UserError: there is no C++ compiler (the installation extra ``compiler`` brings one), model and data do not fit, there is no
-            experiment to choose with, or an argument is at fault.
+            experiment to choose with, no output moves, or an argument is at fault.
         NumericalError: even short stretches of the simulation overflow.
 
     Examples:
@@ -73,6 +74,7 @@ def diagnose(
     if device == "cpu":
         check_compiler("a diagnosis")
     make_problem(data, given, data.recordings)  # all of them fit the model, whatever the search takes first
+    check_moving(data, given)
     believed = (data.beliefs, data.place("[beliefs]")) if beliefs is None else (beliefs, "argument beliefs")
     own = settings_from_mapping(data.diagnosis, data.place("[diagnosis]"))
     found = pipeline.diagnose(

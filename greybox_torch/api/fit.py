@@ -11,6 +11,7 @@ from greybox_torch.api.arguments import (
     check_device,
     check_estimation,
     check_model,
+    check_moving,
     check_names,
     check_precision,
     check_seed,
@@ -58,7 +59,8 @@ def fit(
         progress: is told what is being done.
 
     Raises:
-        UserError: model and data do not fit, there is no experiment to estimate from, or an argument is at fault.
+        UserError: model and data do not fit, there is no experiment to estimate from, no output moves there, or an argument is at
+            fault.
         NumericalError: even short stretches of the simulation overflow.
 
     Examples:
@@ -69,6 +71,7 @@ def fit(
     starts = None if starts is None else check_whole("starts", starts, 1, MOST_STARTS)
     check_estimation(check_data(data))
     problem = make_problem(data, given, data.estimation())
+    check_moving(data, given)
     names = check_names("profiles", profiles)
     check_profiled(names, problem.free_names, problem.names, given.title)
     simulator = simulator_for(problem, SimulationOptions(device, precision))

@@ -12,6 +12,7 @@ from greybox_torch.api.arguments import (
     check_device,
     check_estimation,
     check_model,
+    check_moving,
     check_precision,
     check_seed,
     check_whole,
@@ -98,6 +99,7 @@ def fit_many(
         try:
             check_estimation(each)
             problem = make_problem(each, given, each.estimation())
+            check_moving(each, given)
             if _in_a_batch(problem):
                 machines.append(_Machine(place, each, problem))
             else:

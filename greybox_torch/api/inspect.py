@@ -11,11 +11,9 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
+from greybox_torch.api.data_warnings import DataWarning, looked_at
 from greybox_torch.api.result import HELD_OUT, Result
-from greybox_torch.checking.shared_rows import SharedRows, shared_rows
-from greybox_torch.checking.time_stamps import OddTime, odd_time_stamps
 from greybox_torch.data import DataSet
-from greybox_torch.drafting.contradicted import Contradiction, contradictions
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
 
@@ -32,10 +30,14 @@ _COLUMNS = ["channel", "unit", "samples", "sample time [s]", "min", "max", "std"
 
 @dataclass(frozen=True, eq=False, repr=False)
 class InspectionResult(Result):
-    """What is in a data set; ``model`` is the name of the model that it was checked against, None where there is none."""
+    """What is in a data set; ``model`` is the name of the model that it was checked against, and ``checked`` the model.
+
+    Both are None where there is none.
+    """
 
     data: DataSet
     model: str | None = None
+    checked: GreyBoxModel | None = None
 
     @property
     def rows(self) -> list[dict[str, Any]]:
@@ -47,14 +49,9 @@ class InspectionResult(Result):
         ]
 
     @cached_property
-    def contradicted(self) -> list[Contradiction]:
-        """Units on the card that the names of its columns contradict."""
-        return contradictions(self.data.path)
-
-    @cached_property
-    def warnings(self) -> list[Contradiction | OddTime | SharedRows]:
-        """Those, what is odd about time stamps, and rows that are both estimated from and judged on."""
-        return [*self.contradicted, *odd_time_stamps(self.data), *shared_rows(self.data)]
+    def warnings(self) -> list[DataWarning]:
+        """What may be wrong with the data although they can be read."""
+        return looked_at(self.data, self.checked)
 
     def __repr__(self) -> str:
         return f"<inspection of {self.data.name}: {', '.join(r.name for r in self.data.recordings)}>"
@@ -152,7 +149,7 @@ def inspect(data: DataSet, model: GreyBoxModel | str | None = None) -> Inspectio
 
     given = load_model(wanted) if isinstance(wanted, str) else wanted
     make_problem(data, given, data.recordings)
-    return InspectionResult(data, wanted if isinstance(wanted, str) else model_reference(given))
+    return InspectionResult(data, wanted if isinstance(wanted, str) else model_reference(given), given)
 
 
 def _extent(recording: Recording) -> str:

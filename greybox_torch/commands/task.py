@@ -10,15 +10,12 @@ from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.api.arguments import check_device, check_precision, named_model
+from greybox_torch.api.data_warnings import data_warnings
 from greybox_torch.api.simulate import START
-from greybox_torch.checking.missing_inputs import missing_inputs
-from greybox_torch.checking.shared_rows import shared_rows
-from greybox_torch.checking.time_stamps import odd_time_stamps
 from greybox_torch.checkpoint import checkpoint_name
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.results_folder import check_folder, others_model
 from greybox_torch.data import DataSet, load_dataset
-from greybox_torch.drafting.contradicted import contradictions
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.restored import load_beside
@@ -53,7 +50,7 @@ def load_task(dataset: Path, options: Options, *, writes_model: str = "") -> Tas
     model = named_model(dataset, data, options.model)
     make_problem(data, model, data.recordings)  # card and model fit together, whatever the command then takes of it
     log = Console(stderr=True, highlight=False)
-    for found in (*contradictions(data.path), *odd_time_stamps(data), *shared_rows(data), *missing_inputs(data, model)):
+    for found in data_warnings(data, model):
         log.print(Text(f"warning: {dataset}: {found}", style="yellow"), soft_wrap=True)
     if writes_model and (replaced := others_model(folder, writes_model)):
         log.print(Text(f"warning: {replaced}", style="yellow"), soft_wrap=True)

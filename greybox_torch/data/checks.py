@@ -14,6 +14,8 @@ FEWEST_SAMPLES = 10
 LARGEST = 1e100
 """Largest sample: squares and sums of squares of larger ones are no numbers any more."""
 
+_DAY = 86400.0
+
 KINDS = {"U": "text", "S": "text", "T": "text", "c": "complex numbers", "O": "cells or objects", "V": "a structure"}
 """What an array holds, by the kind of its dtype, in words for messages."""
 
@@ -43,8 +45,19 @@ def check_time(time: NDArray[np.float64], place: Place) -> None:
         later = int(backward[0]) + 1
         raise UserError(
             f"{place(later)}: found {time[later]:.9g} s after {time[later - 1]:.9g} s; "
-            "expected time stamps that increase from sample to sample"
+            f"expected time stamps that increase from sample to sample{_past_midnight(time, later)}"
         )
+
+
+def _past_midnight(time: NDArray[np.float64], later: int) -> str:
+    """What to do where a time of day begins anew, to end a message; empty elsewhere."""
+    before, after = time[later - 1], time[later]
+    if not (0.0 <= after < before <= _DAY and before - after > _DAY / 2):
+        return ""
+    return (
+        f"; the time of day passes midnight here: give stamps with the date, or sample_time = {time[1] - time[0]:.6g} in the place of "
+        "time, or two experiments, with the rows before this sample and from it on"
+    )
 
 
 def check_length(length: int, place: str) -> None:

@@ -63,7 +63,7 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
         source = source_of(files, experiment.join, list(dict.fromkeys(needed)), clock, read)
     start, stop = _rows(place, source, experiment.rows)
     check_length(stop - start, place)
-    time, sample_time = _time(path, card, source, clock, start, stop)
+    time, sample_time = _time(place, path, card, source, clock, start, stop)
     signals = {
         name: _signal(f'{place}, channel "{name}"', card.channels[name], formula, source, start, stop)
         for name, formula in formulas.items()
@@ -96,7 +96,7 @@ def _rows(place: str, source: Source, rows: list[int] | None) -> tuple[int, int]
 
 
 def _time(
-    path: Path, card: Card, source: Source, clock: str | None, start: int, stop: int
+    place: str, path: Path, card: Card, source: Source, clock: str | None, start: int, stop: int
 ) -> tuple[NDArray[np.float64], float]:
     """Time stamps (N,) and the median step, in seconds."""
     if card.time is None or clock is None:
@@ -111,7 +111,7 @@ def _time(
     _check_unit_of_time(path, card.time, source, clock)
     time = source.columns[clock][start:stop]
     time = time if card.time.unit == "s" else time * card.time.seconds
-    check_time(time, lambda sample: source.place(clock, start + sample))
+    check_time(time, lambda sample: f"{place}: {source.place(clock, start + sample)}")
     return time, float(np.median(np.diff(time)))
 
 
@@ -155,6 +155,7 @@ def _in_unit(
     if found and entry.unit and entry.derivative is None and "scale" not in entry.model_fields_set:
         factor = slip(found, entry.unit)
         if factor is not None:
+            conversion(found, entry.unit, place)  # says so where nobody can tell the factor
             raise UserError(
                 f'{place}: {source.tables[0].path} has column "{formula.text}" in "{found}", the card says "{entry.unit}"; '
                 f'expected file_unit = "{found}" to convert it ({factor:.6g}), or the scale'

@@ -2,24 +2,40 @@
 
 from __future__ import annotations
 
+import math
 import re
 from functools import cache
 from typing import Any
 
-from greybox_torch.errors import UserError
+from greybox_torch.errors import UserError, did_you_mean
 
 _PLAIN = re.compile(r"[A-Za-zµμΩ°%/·*^().²³0-9 \-]{1,40}")
 _LONG_NUMBER = re.compile(r"\d{3,}|\*\*|\^\s*-?\s*\d{2,}")
 _TURNS = re.compile(r"(1|U|r|tr|rev)\s*/\s*min|min\s*\^?\s*(-1|⁻¹)")
-"""Turns per minute, as data loggers write them; beside angles, for a rate of anything else may be 1/min."""
-_ANGLE = re.compile(r"\b(rad|deg|degree|rev|turn|mrad)\b|°")
+"""Turns per minute, as data loggers write them; beside angles and turns, for a rate of anything else may be 1/min."""
+_NAMED_TURNS = re.compile(r"^\W*(?:U|r|tr|rev)\s*/\s*(min|s)\b\W*(?=$|/)")
+_ANGLE = re.compile(r"\b(rad|deg|degrees?|rev|revolutions?|turns?|cycles?|mrad|rps)\b|rpm\b|°")
+_RATE = " / s"
 _WRITTEN = {"°C": "degC", "°F": "degF", "°": "deg", "·": "*", "²": "^2", "³": "^3", "μ": "µ"}
+_POWER = re.compile(r"(?<=[A-Za-zµ])(-?[1-4])(?![\w.])")
+"""A power without its sign: the 2 of m/s2, the -1 of rad s-1; not that of mH2O."""
+_USUAL = (
+    "rpm", "rad/s", "deg/s", "rev/s", "rad", "deg", "degC", "degF", "K", "Hz", "kHz", "W", "kW", "MW", "J", "kJ", "N", "kN", "N m", "kN m",
+    "Pa", "hPa", "kPa", "MPa", "bar", "mbar", "psi", "V", "mV", "kV", "A", "mA", "ohm", "m", "mm", "cm", "km", "m/s", "mm/s", "km/h",
+    "m/s^2", "kg", "s", "ms", "min", "h", "l/min", "m^3/h", "m^3/s", "l", "%",
+)  # fmt: skip
+"""What may be meant by a unit that is none, or one of another quantity but for its capitals."""
+
+
+class TurnOrRadian(UserError):
+    """One unit counts turns or says nothing of what it counts, the other counts turns or angles: the factor may be 2 pi or 1."""
 
 
 def conversion(source: str, target: str, place: str) -> tuple[float, float]:
     """Factor and offset: value in `target` = factor × value in `source` + offset.
 
-    Raises UserError, beginning with `place`, where a unit is unknown or they are not of one quantity.
+    A hertz beside turns is a turn per second. Raises UserError, beginning with `place`, where a unit is unknown or they are not of one
+    quantity, and TurnOrRadian where they are but nobody can tell the factor: hertz beside rad/s, 1/s beside rpm.
     """
     import pint
 
@@ -27,27 +43,72 @@ def conversion(source: str, target: str, place: str) -> tuple[float, float]:
     try:
         pair = (_turns(source, target), _turns(target, source))
         units = [registry.Unit(_written(unit)) for unit in pair]
-        if {"hertz" in str(unit) for unit in units} == {True, False} and any("radian" in str(unit) for unit in units):
-            raise UserError(f'{place}: "{source}" and "{target}" differ by a turn; give the factor as scale')
+        of_hertz = _hertz_in_turns(source, target, units, place)
         zero, one = (registry.Quantity(value, units[0]).to(units[1]).magnitude for value in (0.0, 1.0))
     except pint.DimensionalityError:
+        meant = _meant(source, target, capitals=True) if place else ""
         raise UserError(
-            f'{place}: "{source}" cannot be converted to "{target}"; expected units of one quantity'
+            f'{place}: "{source}" cannot be converted to "{target}"{meant}; expected units of one quantity'
         ) from None
     except UserError:
         raise
     except Exception as error:  # pint's parser raises what its tokenizer does
+        meant = (_meant(source, target) or _meant(target, source)) if place else ""
         raise UserError(
-            f'{place}: cannot convert "{source:.40}" to "{target:.40}": {" ".join(str(error).split()):.100}; '
+            f'{place}: cannot convert "{source:.40}" to "{target:.40}": {" ".join(str(error).split()):.100}{meant}; '
             'expected units such as "deg/s", "rpm" or "N cm", or a scale'
         ) from None
-    return float(one - zero), float(zero)
+    return float(one - zero) * of_hertz, float(zero)
+
+
+def _hertz_in_turns(source: str, target: str, units: list[Any], place: str) -> float:
+    """What a factor by pint, to which a hertz is a radian per second, is to be multiplied with."""
+    kinds = [_counted(unit) for unit in units]
+    if units[0].dimensionality != units[1].dimensionality or set(units[0].dimensionality) != {"[time]"}:
+        return 1.0
+    if set(kinds) == {"hertz", "angle"}:
+        raise TurnOrRadian(f'{place}: "{source}" and "{target}" differ by a turn; give the factor as scale')
+    if set(kinds) == {"", "turns"}:
+        bare, turns = (source, target) if kinds[1] else (target, source)
+        raise TurnOrRadian(
+            f'{place}: "{bare}" beside "{turns}" may count turns or radians; expected a unit that says which, such as "rev/s" or "rad/s", '
+            "or the factor as scale"
+        )
+    return {("hertz", "turns"): 2 * math.pi, ("turns", "hertz"): 0.5 / math.pi}.get((kinds[0], kinds[1]), 1.0)
+
+
+def _counted(unit: Any) -> str:
+    """What a frequency or an angular speed counts: turns, angle, hertz, or nothing that it says."""
+    words = {"turn": "turns", "rev": "turns", "radian": "angle", "degree": "angle", "hertz": "hertz"}
+    return next((kind for word, kind in words.items() if word in str(unit)), "")
+
+
+def _meant(unit: str, other: str, *, capitals: bool = False) -> str:
+    """A usual unit of the quantity of `other`, to end a message about `unit`; with `capitals`, one that differs in them alone."""
+    if not capitals and _dimension(unit) is not None:
+        return ""
+    quantity = _dimension(other)
+    near = [usual for usual in _USUAL if quantity is None or _dimension(usual) == quantity]
+    return did_you_mean(unit, [usual for usual in near if not capitals or usual.lower() == unit.lower()])
+
+
+def written_alike(one: str, other: str) -> bool:
+    """Whether two units are one but for the freedom in writing it: spaces, signs, and capitals where these make no other scale."""
+    spelt = [_spelt(unit).replace("*", " ").replace(" ", "") for unit in (one, other)]
+    if spelt[0].lower() != spelt[1].lower():
+        return False
+    return spelt[0] == spelt[1] or slip(one, other) is None
 
 
 def slip(found: str, given: str) -> float | None:
-    """The factor from the unit that a file says to the one that a card says, where both are known and the factor is not 1."""
+    """The factor from the unit that a file says to the one that a card says, where both are known and the factor is not 1.
+
+    NaN where nobody can tell it, see TurnOrRadian.
+    """
     try:
         factor, offset = conversion(found, given, "")
+    except TurnOrRadian:
+        return math.nan
     except UserError:
         return None
     return None if abs(factor - 1.0) < 1e-9 and offset == 0.0 else factor
@@ -70,16 +131,30 @@ def per_minute(unit: str) -> bool:
 
 
 def _turns(unit: str, other: str) -> str:
-    """Turns per minute where that is meant: "1/min" beside an angle."""
-    return "rpm" if per_minute(unit) and _ANGLE.search(other) else unit
+    """Turns per minute where that is meant: "1/min" beside an angle or turns."""
+    plain = unit.removesuffix(_RATE)
+    return "rpm" + unit[len(plain) :] if per_minute(plain) and _ANGLE.search(_spelt(other)) else unit
+
+
+def _dimension(unit: str) -> dict[str, float] | None:
+    try:
+        return dimensionality(unit)
+    except ValueError:
+        return None
 
 
 def _written(unit: str) -> str:
     if not _PLAIN.fullmatch(unit) or _LONG_NUMBER.search(unit):
         raise ValueError("not a unit")
+    return _spelt(unit)
+
+
+def _spelt(unit: str) -> str:
+    """A unit as pint writes it."""
+    unit = _NAMED_TURNS.sub(lambda turns: {"min": "rpm", "s": "rps"}[turns[1]], unit)
     for sign, word in _WRITTEN.items():
         unit = unit.replace(sign, word)
-    return unit
+    return _POWER.sub(r"^\1", unit)
 
 
 @cache
@@ -89,5 +164,8 @@ def _registry() -> Any:
     registry = pint.UnitRegistry()
     registry.define("rev = turn")
     registry.define("Nm = newton * meter")
+    registry.define("Ncm = newton * centimeter")
+    registry.define("Nmm = newton * millimeter")
     registry.define("Ohm = ohm")
+    registry.define("lpm = liter / minute")
     return registry

@@ -47,8 +47,8 @@ class Clock:
 def clock_of(file: Recorded) -> Clock:
     """The clock of a file, as far as names and numbers tell."""
     rising = {name: values for name, values in file.columns.items() if _rises(values)}
-    named = [name for name in rising if _TIME.search(name)]
-    other = [name for name in rising if unevenness(rising[name]) < _EVEN_ENOUGH and name == next(iter(file.columns))]
+    named = [name for name in rising if named_like_a_clock(name)]
+    other = [name for name in rising if is_clock(rising[name]) and name == next(iter(file.columns))]
     for column in (*named, *other):
         return _clock(column, rising[column], file.units.get(column, ""))
     for name, value in file.numbers.items():
@@ -58,6 +58,16 @@ def clock_of(file: Recorded) -> Clock:
         if value > 0 and _RATE.match(last):
             return Clock(sample_time=1.0 / value, remark=f"1 / {name}, {name} = {value:g} in {file.path.name}")
     return Clock(remark="no column rises from sample to sample, and no number is called Ts, dt or fs")
+
+
+def named_like_a_clock(column: str) -> bool:
+    """Whether a column is called like time stamps."""
+    return bool(_TIME.search(column))
+
+
+def is_clock(values: NDArray[np.float64]) -> bool:
+    """Whether values (N,) rise from sample to sample, in steps that hardly differ."""
+    return _rises(values) and unevenness(values) < _EVEN_ENOUGH
 
 
 def _clock(column: str, values: NDArray[np.float64], unit: str) -> Clock:

@@ -72,7 +72,7 @@ def _found(card: Card) -> Iterator[Contradiction]:
             if column is None:
                 continue
             if name == TIME and card.time is not None:
-                told = _time_in(column)
+                told = time_in(column)
                 if told and _differ(told, card.time.unit):
                     write = f'time = {{ column = "{column}", unit = "{told}" }}, which converts the stamps to s, if the equations are in s'
                     yield Contradiction(f"{where}{TIME}", column, told, card.time.unit, write)
@@ -109,7 +109,7 @@ def _unit_of(column: str, columns: set[str]) -> tuple[str, bool]:
     return told, told in _SURE or last in _AS_WRITTEN
 
 
-def _time_in(column: str) -> str:
+def time_in(column: str) -> str:
     """The unit that the name of a column of time stamps tells."""
     bracketed = re.search(r"[\[(]\s*([^\W\d_]+)\s*[\])]\s*$", column)
     if bracketed:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.data import DataSet, Recording
-from greybox_torch.data.units import dimensionality
+from greybox_torch.data.units import dimensionality, written_alike
 from greybox_torch.errors import UserError
 from greybox_torch.files import toml_key
 from greybox_torch.model import GreyBoxModel, Input, Output
@@ -96,7 +96,7 @@ def check_channels(dataset: DataSet, model: GreyBoxModel) -> None:
                 f"expected {_missing(dataset, signal, model)}"
             )
         unit = dataset.channels[name].unit
-        if unit and signal.unit and _plain(unit) != _plain(signal.unit):
+        if unit and signal.unit and not written_alike(unit, signal.unit):
             raise UserError(
                 f"{dataset.place('[channels]')} {name}: unit is '{unit}', model {model.title} expects '{signal.unit}'; "
                 f"{_other_unit(dataset, unit, signal.unit)}"
@@ -136,11 +136,6 @@ def _other_unit(dataset: DataSet, found: str, wanted: str) -> str:
     if dataset.path is None:
         return "expected values and unit of the model"
     return f'expected unit = "{wanted}" with file_unit = "{found}", or with a scale, to convert the values of the file'
-
-
-def _plain(unit: str) -> str:
-    """A unit without the freedom in writing it: spaces, dots and stars between factors."""
-    return unit.replace("·", " ").replace("*", " ").replace("²", "^2").replace(" ", "").lower()
 
 
 def _held(values: np.ndarray) -> np.ndarray:

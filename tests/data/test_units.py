@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greybox_torch.data.units import conversion, slip
+from greybox_torch.data.units import TurnOrRadian, conversion, slip, written_alike
+from greybox_torch.errors import UserError
 
 TURNS = 2 * np.pi / 60
 
@@ -20,3 +21,74 @@ def test_turns_per_minute(written: str) -> None:
 def test_a_rate_that_is_not_of_turns() -> None:
     assert conversion("1/min", "1/s", "")[0] == pytest.approx(1 / 60)
     assert conversion("1/min", "1/h", "")[0] == pytest.approx(60)
+
+
+@pytest.mark.parametrize(
+    "written", ["1/min", "U/min", "r/min", "rev/min", "tr/min", "min^-1", "[1/min]", "[U/min]", "rpm"]
+)
+def test_turns_per_minute_are_rpm(written: str) -> None:
+    assert conversion(written, "rpm", "") == pytest.approx((1.0, 0.0))
+    assert conversion("rpm", written, "")[0] == pytest.approx(1.0)
+    assert conversion(written, "rev/s", "")[0] == pytest.approx(1 / 60)
+    assert slip(written, "rpm") is None
+
+
+def test_the_rate_of_turns_per_minute() -> None:
+    assert conversion("1/min / s", "rad/s^2", "")[0] == pytest.approx(TURNS)
+    assert conversion("U/min / s", "rpm/s", "")[0] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("source", "target", "factor"),
+    [("Hz", "rpm", 60), ("rpm", "Hz", 1 / 60), ("kHz", "rev/s", 1e3), ("U/s", "rpm", 60)],
+)
+def test_a_hertz_is_a_turn_per_second(source: str, target: str, factor: float) -> None:
+    assert conversion(source, target, "")[0] == pytest.approx(factor)
+
+
+@pytest.mark.parametrize(("source", "target"), [("1/s", "rpm"), ("rev/s", "1/s"), ("Hz", "rad/s"), ("deg/s", "Hz")])
+def test_nobody_can_tell_turns_from_radians(source: str, target: str) -> None:
+    with pytest.raises(TurnOrRadian, match=r"^here: .* the factor as scale$"):
+        conversion(source, target, "here")
+    assert np.isnan(slip(source, target) or 0.0)
+
+
+def test_a_per_second_beside_an_angle_is_of_radians() -> None:
+    assert conversion("1/s", "rad/s", "")[0] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("source", "target", "factor"),
+    [
+        ("m/s2", "m/s^2", 1),
+        ("m s-2", "m/s^2", 1),
+        ("N/m2", "Pa", 1),
+        ("Ncm", "N m", 0.01),
+        ("lpm", "l/min", 1),
+        ("mH2O", "Pa", 9806.65),
+    ],
+)
+def test_usual_spellings(source: str, target: str, factor: float) -> None:
+    assert conversion(source, target, "")[0] == pytest.approx(factor)
+
+
+@pytest.mark.parametrize(
+    ("source", "target", "meant"),
+    [("kw", "W", "kW"), ("RPM", "rad/s", "rpm"), ("kpa", "Pa", "kPa"), ("KN", "N", "kN"), ("ma", "A", "mA")],
+)
+def test_what_may_be_meant(source: str, target: str, meant: str) -> None:
+    with pytest.raises(UserError, match=f'did you mean "{meant}"'):
+        conversion(source, target, "here")
+
+
+def test_no_unit_of_another_quantity_is_meant() -> None:
+    with pytest.raises(UserError, match='"m/s" cannot be converted to "m/s\\^2"; expected'):
+        conversion("m/s", "m/s^2", "here")
+
+
+def test_written_alike() -> None:
+    assert all(
+        written_alike(*pair)
+        for pair in [("°C", "degC"), ("degc", "degC"), ("N·m", "N m"), ("m/s2", "m/s²"), ("U/min", "rpm")]
+    )
+    assert not any(written_alike(*pair) for pair in [("mW", "MW"), ("W", "V"), ("mN m", "MN m")])

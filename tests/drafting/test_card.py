@@ -78,6 +78,23 @@ def test_units_of_the_file_are_converted(folder: Path) -> None:
     np.testing.assert_allclose(data.recordings[0].signals["voltage"], V[:75], atol=1e-6)
 
 
+@pytest.mark.parametrize(("header", "refused"), [("1/min", False), ("U/min", False), ("1/s", True)])
+def test_turns_per_minute_are_not_converted_to_themselves(folder: Path, header: str, refused: bool) -> None:
+    """Whether 1/s counts turns or radians is asked rather than guessed."""
+
+    class Stirrer(gt.GreyBoxModel):
+        states = [gt.State("speed", "rpm")]
+        inputs, outputs = [gt.Input("voltage", "V")], [gt.Output("speed", "rpm")]
+
+    csv(folder / "a.csv", f"t,voltage,speed [{header}]", T, V, W)
+    gt.card(folder / "a.csv", Stirrer()).save()
+    if refused:
+        with pytest.raises(gt.UserError, match='"1/s" beside "rpm" may count turns or radians'):
+            gt.load_dataset(folder / "dataset.toml")
+    else:
+        np.testing.assert_allclose(gt.load_dataset(folder / "dataset.toml").recordings[0].signals["speed"], W[:75])
+
+
 def test_words_of_other_languages_and_the_only_column_left(folder: Path) -> None:
     """A German log: the voltage by its word, the speed by its word and turns a minute, or by nothing but its unit."""
     for names in ("Zeit [s],Spannung [V],Drehzahl [1/min]", "Zeit [s],Spannung [V],Kanal7 [1/min]"):

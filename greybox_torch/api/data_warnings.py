@@ -1,0 +1,63 @@
+"""What may be wrong with a data set although it can be read: the warnings of all commands, from one place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+from greybox_torch.checking.constant_channels import constant_channels
+from greybox_torch.checking.lone_samples import lone_samples
+from greybox_torch.checking.missing_inputs import missing_inputs
+from greybox_torch.checking.shared_rows import shared_rows
+from greybox_torch.checking.time_stamps import odd_time_stamps
+from greybox_torch.data import DataSet
+from greybox_torch.drafting.contradicted import contradictions
+from greybox_torch.drafting.contradicted_steps import contradicted_steps
+from greybox_torch.model import GreyBoxModel
+
+
+class DataWarning(Protocol):
+    """``found`` says what is there, ``write`` what to write instead; as text it is both in a sentence."""
+
+    @property
+    def found(self) -> str: ...
+
+    @property
+    def write(self) -> str: ...
+
+
+@dataclass(frozen=True)
+class NothingToEstimateFrom:
+    """No experiment has the role "estimation"."""
+
+    found: str = (
+        '[[experiment]] role: no experiment has the role "estimation", which `greybox fit`, `diagnose` and `train` need'
+    )
+    write: str = 'role = "estimation" for at least one'
+
+    def __str__(self) -> str:
+        return f"{self.found}; expected {self.write}"
+
+
+def looked_at(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning]:
+    """The warnings where data are looked at before anything is done with them, for what the other commands refuse or do not need."""
+    return [*_nothing_to_estimate_from(data), *data_warnings(data, model)]
+
+
+def _nothing_to_estimate_from(data: DataSet) -> Iterator[NothingToEstimateFrom]:
+    if not data.estimation():
+        yield NothingToEstimateFrom()
+
+
+def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning]:
+    """Those of a data set; without a model, as far as they need none."""
+    return [
+        *contradictions(data.path),
+        *contradicted_steps(data),
+        *odd_time_stamps(data),
+        *shared_rows(data),
+        *constant_channels(data, model),
+        *lone_samples(data),
+        *(missing_inputs(data, model) if model is not None else ()),
+    ]

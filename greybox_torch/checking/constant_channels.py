@@ -1,0 +1,85 @@
+"""Channels that never move: a sensor that is stuck, a column that was never written, an input that nobody used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.data import DataSet, Recording
+from greybox_torch.model import GreyBoxModel
+
+_SHOWN = 4
+"""Most experiments that a message names."""
+
+
+@dataclass(frozen=True)
+class ConstantChannel:
+    """``value`` in the channel's unit, one text where it differs between the ``experiments``; ``lacks`` what cannot be told from it."""
+
+    channel: str
+    value: str
+    experiments: tuple[str, ...]
+    lacks: str
+    write: str
+
+    @property
+    def found(self) -> str:
+        """What is there, in a sentence."""
+        named = ", ".join(f'"{name}"' for name in self.experiments[:_SHOWN])
+        more = f" and {len(self.experiments) - _SHOWN} more" if len(self.experiments) > _SHOWN else ""
+        one = "experiment" if len(self.experiments) == 1 else "experiments"
+        return f'channel "{self.channel}" is constant ({self.value}) in {one} {named}{more}: {self.lacks}'
+
+    def __str__(self) -> str:
+        return f"{self.found}; expected {self.write}"
+
+
+def constant_channels(data: DataSet, model: GreyBoxModel | None) -> Iterator[ConstantChannel]:
+    """Outputs that do not move in an experiment, and inputs that do not move in any that is estimated from.
+
+    An input may well rest in one experiment, for a free decay or an even load. Where no model says which channels are inputs, those are
+    told that move nowhere.
+    """
+    inputs = None if model is None else {one.name for one in model.inputs}
+    for name, channel in data.channels.items():
+        resting = [recording for recording in data.recordings if _rests(recording, name)]
+        estimated = data.estimation() or data.recordings
+        values = sorted({_value(recording, name) for recording in resting})
+        if not resting or (inputs is None and (len(resting) < len(data.recordings) or len(values) > 1)):
+            continue
+        if inputs is not None and name in inputs:
+            resting = [recording for recording in resting if recording in estimated]
+            values = sorted({_value(recording, name) for recording in resting})
+            if len(resting) < len(estimated) or len(values) > 1:
+                continue
+        unit = f" {channel.unit}" if channel.unit else ""
+        shown = f"{values[0]:.6g}{unit}" if len(values) == 1 else "at a value of its own in each"
+        yield ConstantChannel(name, shown, tuple(recording.name for recording in resting), *_told(name, inputs))
+
+
+def _told(name: str, inputs: set[str] | None) -> tuple[str, str]:
+    if inputs is None:
+        return (
+            "nothing can be learned from it",
+            "a channel that moves; or is the sensor stuck, or another column meant?",
+        )
+    if name in inputs:
+        return (
+            "an input that never moves cannot show what it does",
+            "an experiment in which it moves, where what it does is to be estimated or found; or another column",
+        )
+    return (
+        "an output that never moves says nothing of what moves it",
+        "a sensor that is not stuck, or no such channel and output; where the machine rested, rows in which it moves",
+    )
+
+
+def _rests(recording: Recording, name: str) -> bool:
+    values = recording.signals[name]
+    return bool(np.nanmax(values) == np.nanmin(values))
+
+
+def _value(recording: Recording, name: str) -> float:
+    return float(np.nanmax(recording.signals[name]))

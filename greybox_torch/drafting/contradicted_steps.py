@@ -1,0 +1,84 @@
+"""A sample time on the card that a column of time stamps beside the channels contradicts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from greybox_torch.data import DataSet
+from greybox_torch.data.card import read_card
+from greybox_torch.data.columns import columns_of
+from greybox_torch.data.readers import read_table
+from greybox_torch.data.units import conversion
+from greybox_torch.drafting.clock import is_clock, named_like_a_clock
+from greybox_torch.drafting.contradicted import time_in
+from greybox_torch.errors import UserError
+from greybox_torch.files import toml_text
+
+_SAME = 0.02
+"""Share by which steps may differ from the sample time: stamps are rounded, and a few samples may be lost."""
+_UNITS = ("s", "ms", "us", "ns", "min", "h")
+
+
+@dataclass(frozen=True)
+class ContradictedSteps:
+    """``step`` is the usual one of the stamps in ``unit``, which is empty where nothing says it; ``sample_time`` the card's, in s."""
+
+    file: str
+    column: str
+    step: float
+    unit: str
+    sample_time: float
+
+    @property
+    def found(self) -> str:
+        """What is there, in a sentence."""
+        steps = f"{self.step:.6g} {self.unit}".rstrip()
+        return f'sample_time: column "{self.column}" of {self.file} has steps of {steps}, but the card says {self.sample_time:.6g} s'
+
+    @property
+    def write(self) -> str:
+        """What to write instead."""
+        column = toml_text(self.column)
+        if self.unit in ("", "s"):
+            doubt = "" if self.unit else ", if the stamps are in s"
+            return f"time = {column} in its place, or sample_time = {self.step:.6g}{doubt}"
+        return f"time = {{ column = {column}, unit = {toml_text(self.unit)} }} in its place"
+
+    def __str__(self) -> str:
+        return f"{self.found}; expected {self.write}"
+
+
+def contradicted_steps(data: DataSet) -> Iterator[ContradictedSteps]:
+    """The first file whose stamps say another sample time than the card; none where the card names its time stamps."""
+    if data.path is None or not data.path.is_file():
+        return
+    card = read_card(data.path)
+    if card.time is not None or card.sample_time is None:
+        return
+    for file in dict.fromkeys(data.path.parent / name for entry in card.experiment for name in entry.file):
+        try:
+            told = _told(file, card.sample_time)
+        except UserError:  # a format that cannot list its columns, or a column of text
+            continue
+        if told is not None:
+            yield told
+            return
+
+
+def _told(file: Path, sample_time: float) -> ContradictedSteps | None:
+    for name in filter(named_like_a_clock, columns_of(file).names):
+        stamps = read_table(file, (name,)).columns[name]
+        if not is_clock(stamps):
+            continue
+        steps = np.diff(stamps)
+        usual, unit = float(np.median(steps)), time_in(name)
+        if not unit and usual == 1.0:  # counts samples
+            return None
+        seconds = [conversion(one, "s", "")[0] for one in ((unit,) if unit else _UNITS)]
+        same = [abs(step * s / sample_time - 1.0) < _SAME for step in (usual, float(steps.mean())) for s in seconds]
+        return None if any(same) else ContradictedSteps(file.name, name, usual, unit, sample_time)
+    return None

@@ -1,0 +1,70 @@
+"""An error value of the logger among normal samples is told with its place; steps, pulses and resting encoders are not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greybox_torch.api.data_warnings import data_warnings
+from greybox_torch.checking.lone_samples import lone_samples
+from greybox_torch.data import DataSet, Recording, load_dataset
+
+TIME: np.ndarray = 0.01 * np.arange(400)
+NOISE: np.ndarray = np.random.default_rng(0).normal(0.0, 0.01, 400)
+STEPS: np.ndarray = np.repeat([0.0, 2.0, 0.0, 1.0], 100)
+CARD = """sample_time = 0.01
+[channels]
+a = { column = "a", unit = "m", file_unit = "mm" }
+[[experiment]]
+name = "run"
+file = "run.csv"
+"""
+
+
+def told(values: np.ndarray) -> list[str]:
+    return [str(one) for one in lone_samples(DataSet([Recording.from_arrays("run", {"a": values}, sample_time=0.01)]))]
+
+
+def changed(values: np.ndarray, at: list[int], value: float) -> np.ndarray:
+    values = values.copy()
+    values[at] = value
+    return values
+
+
+@pytest.mark.parametrize("values", [np.sin(TIME) + NOISE, STEPS, 20.0 + 60.0 * TIME])
+def test_an_error_value(values: np.ndarray) -> None:
+    (one,) = told(changed(values, [150], -9999.0))
+    assert 'channel "a": sample 150 (the first is 0): found -9999 between' in one
+    (both,) = told(changed(values, [120, 150], -9999.0))
+    assert "(and 1 more such samples)" in both
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        np.sin(TIME) + NOISE,
+        STEPS,
+        changed(0 * TIME, [150], 1.0),  # an impulse
+        changed(NOISE, [150, 151], 50.0),  # a spike of two samples
+        changed(np.sin(TIME), [150], 3.0),
+        changed(np.round(5.0 * TIME**2), [30], 1.0),  # an encoder that flickers
+        np.random.default_rng(0).standard_t(2, 400),
+    ],
+)
+def test_nothing_is_told(values: np.ndarray) -> None:
+    assert told(values) == []
+
+
+def test_the_line_of_the_file(tmp_path: Path) -> None:
+    values = changed(1e3 * np.sin(TIME), [350], 65535e3)  # in the quarter that is held out
+    (tmp_path / "run.csv").write_text("a\n" + "".join(f"{value}\n" for value in values))
+    (tmp_path / "dataset.toml").write_text(CARD)
+    (one,) = data_warnings(load_dataset(tmp_path / "dataset.toml"), None)
+    assert '"run (held out)", channel "a": ' in one.found
+    assert (
+        f'{tmp_path / "run.csv"}, line 352, column "a", sample 350 (the first is 0): found 6.5535e+07 between'
+        in one.found
+    )
+    assert one.write.startswith("an empty cell")

@@ -1,0 +1,62 @@
+"""A sample time that the file's own time stamps contradict is told; counters, other units and rounded stamps are not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greybox_torch.api.data_warnings import data_warnings
+from greybox_torch.data import load_dataset
+from greybox_torch.drafting.contradicted_steps import contradicted_steps
+
+CARD = """sample_time = {sample_time}
+[channels]
+a = {{ column = "a" }}
+[[experiment]]
+name = "run"
+file = "run.csv"
+"""
+
+
+def card(folder: Path, column: str, stamps: np.ndarray, sample_time: float) -> Path:
+    rows = [f"{column},a", *(f"{t!r},{0.1 * (k % 7):g}" for k, t in enumerate(stamps.tolist()))]
+    (folder / "run.csv").write_text("\n".join(rows) + "\n")
+    (folder / "dataset.toml").write_text(CARD.format(sample_time=sample_time))
+    return folder / "dataset.toml"
+
+
+@pytest.mark.parametrize(
+    ("column", "step", "sample_time", "write"),
+    [
+        ("time_s", 10.0, 10000.0, 'time = "time_s" in its place, or sample_time = 10'),
+        ("time", 0.01, 10.0, 'time = "time" in its place, or sample_time = 0.01, if the stamps are in s'),
+        ("t_ms", 5.0, 5.0, 'time = { column = "t_ms", unit = "ms" } in its place'),
+    ],
+)
+def test_contradicted(tmp_path: Path, column: str, step: float, sample_time: float, write: str) -> None:
+    (told,) = data_warnings(load_dataset(card(tmp_path, column, step * np.arange(60), sample_time)), None)
+    assert told.found.startswith(f'sample_time: column "{column}" of run.csv has steps of {step:g}')
+    assert told.write == write
+
+
+@pytest.mark.parametrize(
+    ("column", "stamps", "sample_time"),
+    [
+        ("time", 10.0 * np.arange(60), 0.01),  # milliseconds
+        ("t_ms", 10.0 * np.arange(60), 0.01),
+        ("time", 1.0 * np.arange(60), 0.02),  # counts samples
+        ("time_s", np.round(np.arange(60) / 30, 2), 1 / 30),
+        ("time", np.sin(np.arange(60)), 0.5),
+        ("force", 10.0 * np.arange(60), 0.5),
+    ],
+)
+def test_nothing_to_tell(tmp_path: Path, column: str, stamps: np.ndarray, sample_time: float) -> None:
+    assert list(contradicted_steps(load_dataset(card(tmp_path, column, stamps, sample_time)))) == []
+
+
+def test_a_card_that_names_its_time_stamps(tmp_path: Path) -> None:
+    path = card(tmp_path, "time_s", 10.0 * np.arange(60), 1.0)
+    path.write_text(path.read_text().replace("sample_time = 1.0", 'time = "time_s"'))
+    assert list(contradicted_steps(load_dataset(path))) == []
