@@ -163,8 +163,9 @@ def _past_inputs(first: Detection, detected: Sequence[Detection], effects: bool)
     within = f" up to {first.band:.3g} Hz" if first.feedback else ""
     if not first.plain.past.judged:
         return (
-            f"Whether the free run's errors are correlated with past inputs{within} cannot be judged from these recordings: input and"
-            f" errors change so slowly beside their length that chance alone gives any correlation (the largest is {first.plain.past.value:.2g})."
+            f"Whether the free run's errors are correlated with past inputs{within} cannot be judged from these recordings: beside "
+            "their length input and errors change so slowly that chance alone gives any correlation "
+            f"(the largest is {first.plain.past.value:.2g})."
         )
     return (
         f"The free run's errors, model as it stands, are {'' if first.plain.past.beyond else 'not '}correlated with past inputs{within}"
