@@ -15,8 +15,9 @@ from greybox_torch.api.design_files import CARD, FIGURE, INPUT, RECORDED, card_t
 from greybox_torch.api.expected import WANTED, Expected
 from greybox_torch.api.result import Result
 from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.experiment_design.excitation import Excitation
-from greybox_torch.experiment_design.limits import Limits
+from greybox_torch.experiment_design.limits import EVERY_INPUT, Limits
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
@@ -92,19 +93,16 @@ class DesignResult(Result):
         """What the recording is expected to do, in a sentence."""
         kinds = " and ".join(dict.fromkeys(e.kind for e in self.excitations)) + self._as_set_points
         if self.parameter is not None:
-            return (
-                f"{self.seconds:.3g} s of {kinds} are expected to bring the standard deviation of {self.parameter} "
-                f"from {self.before:.2g} to {self.after:.2g} {self.unit}".rstrip()
-                + "."
-            )
+            change = f"from {self.before:.2g} to {self.after:.2g} {self.unit}".rstrip()
+            return f"{digits(self.seconds, 4)} s of {kinds} are expected to bring the standard deviation of {self.parameter} {change}."
         if not self.expected.decides:
             return (
                 f"No {self._what} within the limits was found that tells these hypotheses apart, whichever is right: "
                 f"{', '.join(self.names[k] for k in self.expected.in_question)}."
             )
         told = (
-            f"{self.seconds:.3g} s of {kinds} are expected to bring the right one of {len(self.names)} hypotheses to a probability of "
-            f"{self.expected.after:.2f}"
+            f"{digits(self.seconds, 4)} s of {kinds} are expected to bring the right one of {len(self.names)} hypotheses to a "
+            f"probability of {self.expected.after:.2f}"
         )
         if max(self.expected.before) >= WANTED:
             likely = self.names[int(np.argmax(self.expected.before))]
@@ -114,7 +112,7 @@ class DesignResult(Result):
             )
         if self.needed < HARDLY_ANY * self.seconds:
             return f"{told}; for {WANTED:.2f} a small part of it would do."
-        return f"{told}; for {WANTED:.2f} it takes {self.needed:.2g} s." if np.isfinite(self.needed) else f"{told}."
+        return f"{told}; for {WANTED:.2f} it takes {digits(self.needed)} s." if np.isfinite(self.needed) else f"{told}."
 
     def __repr__(self) -> str:
         return f"<design for {self.data.name}: {self.sentence}>"
@@ -161,9 +159,11 @@ class DesignResult(Result):
         lines = [*self.left_out, *self._told_apart]
         if self.limits.seconds > 1.001 * self.seconds:
             lines.append(
-                f"Designed for the first {self.seconds:.3g} of {self.limits.seconds:.3g} s; "
+                f"Designed for the first {digits(self.seconds, 4)} of {digits(self.limits.seconds, 4)} s; "
                 "repeated, it says more in proportion to the time."
             )
+        if len(self.inputs) > 1:
+            lines.append(EVERY_INPUT)
         if self.parameter is None and not self.expected.decides:
             return [
                 *lines,
@@ -187,7 +187,7 @@ class DesignResult(Result):
         if self.parameter is not None or not self.expected.decides:
             return
         for a, b in self.alike:
-            yield f"No {self._what} within the limits was found that tells {a} from {b} in {self.seconds:.3g} s, whichever is right."
+            yield f"No {self._what} within the limits was found that tells {a} from {b} in {digits(self.seconds, 4)} s, whichever is right."
         if self.alike:
             yield "Those count as one in the probability that is expected."
         if self.expected.random is not None:

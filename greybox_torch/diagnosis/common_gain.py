@@ -192,7 +192,7 @@ def _effect(study: Study, effect: Attachment, gain: CommonGain, likely: Sequence
         separating_experiment=effect.mechanism.experiment,
         size=gain.share,
         one_of=_one_of(study, likely, {**shares, effect.named: own}),
-        equation=effect.mechanism.described(),
+        equation=effect.mechanism.described_here(),
         made_up_for=_made_up_for(moves, gain),
     )
 

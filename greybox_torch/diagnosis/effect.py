@@ -52,7 +52,10 @@ class FreeCurve:
 
 @dataclass(frozen=True)
 class Curve:
-    """The effect's own law: ``force`` (n,) over ``signal`` (n,); ``force_unit`` as at the port. ``spread`` (n,) one standard deviation."""
+    """The effect's own law: ``force`` (n,) over ``signal`` (n,); ``force_unit`` as at the port. ``spread`` (n,) one standard deviation.
+
+    ``seen`` (b,): how many samples of the estimation records lie in each of b equal bins from the lowest to the highest of ``values``.
+    """
 
     signal: str
     unit: str
@@ -61,6 +64,7 @@ class Curve:
     force_unit: str
     spread: np.ndarray | None = None
     free: FreeCurve | None = None
+    seen: np.ndarray | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Its entry `curve` of an effect that has no name."""

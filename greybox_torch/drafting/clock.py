@@ -74,7 +74,7 @@ def _clock(column: str, values: NDArray[np.float64], unit: str) -> Clock:
     step, uneven = float(np.median(np.diff(values))), unevenness(values) > EVEN
     for known in ("s", "ms", "us", "µs", "ns", "min", "h"):
         if unit.strip("[]() ").lower() == known:
-            return Clock(column, known, remark=f"the file says {known}; {_step(step, known)}", uneven=uneven)
+            return Clock(column, known, remark=f"read in {known}; {_step(step, known)}", uneven=uneven)
     for known, pattern in _UNITS.items():
         if pattern.search(column):
             return Clock(column, known, remark=f"by its name; {_step(step, known)}", uneven=uneven)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import count
 
 import numpy as np
 
@@ -53,6 +54,9 @@ METHODS: tuple[Method, ...] = (descending, descending_on_logarithms, descending)
 BETTER_BEGUN = METHODS[1:]
 """From start values that were looked for."""
 
+Report = Callable[[int, float, float], None]
+"""Called with an iteration of a descent, the cost there, and the step."""
+
 Progress = Callable[[str, int, float], None]
 """Called with a stage's name, an iteration and the mean squared error there."""
 
@@ -75,6 +79,8 @@ class DescentOptions:
     progress: Progress | None = None
     seed: int = 0
     to_beat: float = float("inf")
+    numbers: Iterator[int] = field(default_factory=lambda: count(1), compare=False, repr=False)
+    """Of the descents on whole records, for whom they are told to."""
 
     def fine_enough(self, problem: Problem) -> Simulator:
         """The simulator with as many sub-steps as ``problem`` needs at its values."""
@@ -185,10 +191,10 @@ def _whole_records(
 
 def _optimum(run: FreeRun, options: DescentOptions, before: int, methods: Sequence[Method]) -> Descent | None:
     """Descend by one method after the other, until the plain one has arrived; where it creeps, logarithms are for."""
-    samples, progress = run.problem.samples, options.progress
-    report = None
+    samples, progress, number = run.problem.samples, options.progress, next(options.numbers)
+    report, stage = None, "whole records" if number == 1 else f"whole records, descent {number} (the best is kept)"
     if progress is not None:
-        report = lambda i, cost, _: progress("whole records", i, 2 * cost / samples)  # noqa: E731
+        report = lambda i, cost, _: progress(stage, i, 2 * cost / samples)  # noqa: E731
     found = answered(by_methods(run, options.settings, methods, report), run.quadratic, run.admissible)
     return None if found is None else Descent(run, found, before + found.evaluations)
 
@@ -197,7 +203,7 @@ def by_methods(
     run: FreeRun,
     settings: Settings,
     methods: Sequence[Method],
-    report: Callable[[int, float, float], None] | None = None,
+    report: Report | None = None,
 ) -> Descending[None]:
     """The questions of a descent by one method after the other, see :func:`_optimum`; its optimum counts the passes of all."""
     z, iterations, evaluations, optimum = run.start, 0, 0, None
@@ -207,7 +213,7 @@ def by_methods(
             limited = replace(limited, tolerance=max(CREEPING, settings.tolerance))
         if limited.iterations <= 0:
             break
-        here = yield from method(z, *run.bounds, settings=limited, on_iteration=report)
+        here = yield from method(z, *run.bounds, settings=limited, on_iteration=_counted_on(report, iterations))
         if here is None:
             return None
         z, iterations, evaluations = here.point, iterations + here.iterations, evaluations + here.evaluations
@@ -215,6 +221,11 @@ def by_methods(
         if method is descending and here.termination is not Termination.iteration_limit:
             break
     return optimum
+
+
+def _counted_on(report: Report | None, before: int) -> Report | None:
+    """The next method's iterations, counted on from those ``before``: seen was a log that began anew every twenty."""
+    return report if report is None else lambda i, cost, step: report(before + i, cost, step)
 
 
 def _better(one: Descent | None, other: Descent | None) -> Descent | None:

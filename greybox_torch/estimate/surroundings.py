@@ -8,6 +8,7 @@ import numpy as np
 import torch
 
 from greybox_torch.estimate.excitation import excited_up_to
+from greybox_torch.estimate.force_unit import force_unit
 from greybox_torch.estimate.free_run import visited_states
 from greybox_torch.estimate.measured_range import as_measured, farther, no_farther
 from greybox_torch.estimate.problem import Problem
@@ -20,7 +21,7 @@ from greybox_torch.mechanisms.unknown import INPUT
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port, Signals
 from greybox_torch.model.along_motion import ALONG, DIRECTION, direction, inputs_that_push
 from greybox_torch.model.joined_bodies import turns_with
-from greybox_torch.model.own_rate import RATE, adds_to_rate, balanced_state, without_laws
+from greybox_torch.model.own_rate import RATE, balanced_state, without_laws
 from greybox_torch.model.port_forces import no_forces
 from greybox_torch.model.ports import Actuator, Sensor, Signal, driving_body
 from greybox_torch.model.sensed_states import sensed_states
@@ -114,7 +115,7 @@ def _around(
             ranges |= {signal: A_TURN, fast: _range(_evaluated(body.speed, x, u, p, times))}
             units |= {signal: "rad", fast: "rad/s"}
     step = float(np.median(problem.records.dt))
-    return Surroundings(ranges, units, _force_unit(model, port, units), step, hidden, passed_once=once)
+    return Surroundings(ranges, units, force_unit(model, port, units), step, hidden, passed_once=once)
 
 
 def _load(
@@ -230,15 +231,3 @@ def _of_sums(model: GreyBoxModel, port: Port, x: Signals, u: Signals, p: Signals
         if len(units) == 1 and "" not in units:
             found[name] = units.pop()
     return found
-
-
-def _force_unit(model: GreyBoxModel, port: Port, units: dict[str, str]) -> str:
-    """The unit of the force at a port; empty where it is not known, as where a balance's is divided by a capacity."""
-    if isinstance(port, Actuator):
-        return units["input"]
-    if isinstance(port, Sensor):
-        return units["output"]
-    if isinstance(port, Balance):
-        return f"{units['level']}/s" if units.get("level") and adds_to_rate(model, port) else ""
-    place = units.get("position" if isinstance(port, Body) else "deflection", "")
-    return {"rad": "N m", "m": "N"}.get(place, "")

@@ -17,6 +17,12 @@ SECONDS = "seconds"
 WIDENED = 0.1
 """Share of what was recorded by which outputs may go beyond it, each way, where no limit is given: noise ends no recording."""
 
+EVERY_INPUT = (
+    "Every input is designed: one that nobody can set, as a recorded temperature, is given limits as narrow as it stays by itself "
+    "([limits] on the card, in Python limits=)."
+)
+"""What a reader has to know of a model with several inputs."""
+
 
 @dataclass(frozen=True)
 class Range:
@@ -108,7 +114,10 @@ def _range(entry: Any, place: str, default: Range | None) -> Range:
     lower = _number(entry.get("lower", -math.inf if default is None else default.lower), f"{place}, lower")
     upper = _number(entry.get("upper", math.inf if default is None else default.upper), f"{place}, upper")
     if not lower < upper:
-        raise UserError(f"{place}: lower = {lower:g} is not below upper = {upper:g}; expected a range, lower first")
+        raise UserError(
+            f"{place}: lower = {lower:g} is not below upper = {upper:g}; expected a range, lower first; "
+            "a narrow one for an input that stays as it is"
+        )
     return Range(lower, upper, _positive(entry.get("rate", math.inf), f"{place}, rate"))
 
 

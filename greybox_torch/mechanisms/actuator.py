@@ -139,6 +139,11 @@ class TorqueSaturation(ByDirection):
             self.needs = ("input", "speed")
             self.experiment = "large inputs of both signs, at low and at high speed"  # type: ignore[misc]
 
+    def described_here(self) -> str:
+        differs = "; limit is (1 + asymmetry) times that above zero and (1 − asymmetry) times that below"
+        falls = "; beyond base_speed it falls as 1 / speed"
+        return f"{self.described()}{differs if self.by_direction else ''}{falls if self.limited_power else ''}"
+
     def parameters(self, around: Surroundings) -> list[Parameter]:
         reach = around.ranges["input"].reach
         return [
@@ -204,6 +209,10 @@ class ActuatorDeadzone(ByDirection):
     explanation = "Small inputs do nothing (valve overlap, amplifier dead band)."
     source = "G. Tao, P. V. Kokotović, Adaptive Control of Systems with Actuator and Sensor Nonlinearities, 1996"
     experiment = "small inputs around zero"
+
+    def described_here(self) -> str:
+        ends = "above (1 + asymmetry) half_width and below −(1 − asymmetry) half_width"
+        return f"The input acts only {ends if self.by_direction else 'beyond ±half_width'}"
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         reach = around.ranges["input"].reach

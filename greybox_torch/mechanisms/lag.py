@@ -31,6 +31,11 @@ class Lag(Mechanism):
     def __init__(self, second_order: bool = False) -> None:
         self.second_order = second_order
 
+    def described_here(self) -> str:
+        first, _, second = self.described().partition("; with second_order ")
+        begun = first[: first.index(": ") + 2] if ": " in first else ""
+        return f"{begun}{second.replace('2ζ', '(2 damping)')}" if self.second_order else first
+
     def parameters(self, around: Surroundings) -> list[Parameter]:
         step = around.sample_time
         told = "mean delay" if self.second_order else "time constant"

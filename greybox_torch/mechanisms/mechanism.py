@@ -213,6 +213,10 @@ class Mechanism:
         first = inspect.cleandoc(cls.__doc__ or "").split("\n\n")[0]
         return " ".join(first.replace("``", "").split()).rstrip(".")
 
+    def described_here(self) -> str:
+        """The law in words in the form that it has: :meth:`described`, but for laws that have several."""
+        return self.described()
+
     def options(self) -> dict[str, Any]:
         """What the constructor was told, by argument, so that the same mechanism can be made again."""
         return {name: vars(self)[name] for name in inspect.signature(type(self)).parameters if name in vars(self)}

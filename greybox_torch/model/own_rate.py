@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import torch
 
+from greybox_torch.model.declarations import Parameter
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.port_forces import no_forces, with_one
 from greybox_torch.model.ports import Balance, Body, Port
@@ -39,8 +40,34 @@ def adds_to_rate(model: GreyBoxModel, port: Port) -> bool:
     """Whether a force of one at a port raises that rate by one: then it has the rate's unit."""
     if balanced_state(model, port) is None:
         return False
+    return _is_one(_raised(model, port, {}))
+
+
+def divided_by(model: GreyBoxModel, port: Port) -> Parameter | None:
+    """The parameter by which a port's force is divided in that rate, a capacity; None where that is not one parameter alone."""
+    if balanced_state(model, port) is None:
+        return None
+    raised = _raised(model, port, {})
+    acting = [
+        q
+        for q in model.declared_parameters
+        if not torch.allclose(_raised(model, port, {q.name: 2.0 * q.value + 1.0}), raised, rtol=1e-9)
+    ]
+    if len(acting) != 1 or not _is_one(raised * acting[0].value):
+        return None
+    (one,) = acting
+    other = 2.0 * one.value + 1.0
+    return one if _is_one(_raised(model, port, {one.name: other}) * other) else None
+
+
+def _is_one(values: torch.Tensor) -> bool:
+    return bool(torch.allclose(values, torch.ones((), dtype=torch.float64), rtol=1e-9))
+
+
+def _raised(model: GreyBoxModel, port: Port, changed: Mapping[str, float]) -> torch.Tensor:
+    """By how much a force of one raises that rate, at random points, with some parameters ``changed``."""
     *points, p = random_points(model)
     x, u = model.named_signals(*points)
-    none = no_forces(model)
+    none, p = no_forces(model), p.replaced(**{n: torch.as_tensor(v, dtype=torch.float64) for n, v in changed.items()})
     without, there = (torch.as_tensor(own_rate(model, port, x, u, p, f)) for f in (none, with_one(none, port.name)))
-    return bool(torch.allclose(there - without, torch.ones((), dtype=torch.float64), rtol=1e-9))
+    return there - without

@@ -22,6 +22,9 @@ _GREEK = {
     "omega": "ω",
 }
 
+MOST_DIGITS = 8
+"""Of a value whose standard deviation is next to nothing: seen were more than a hundred, off the page."""
+
 
 def number(value: float, digits: int = 3) -> str:
     """So many significant digits, a true minus sign, a power of ten only where plain digits would be hard to read."""
@@ -46,6 +49,8 @@ def measured(value: float, deviation: float | None) -> str:
         digits = max(0, place)
         return f"{round(value, place):.{digits}f} ± {round(deviation, place):.{digits}f}".replace("-", "−")
     scale, digits = 10.0**largest, max(0, place + largest)
+    if digits > MOST_DIGITS:
+        return f"{number(value, MOST_DIGITS)} ± {number(deviation, 2)}"
     ten = f"10{str(largest).translate(_SUPERSCRIPT)}"
     return f"({value / scale:.{digits}f} ± {deviation / scale:.{digits}f})·{ten}".replace("-", "−")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from greybox_torch.api.hypotheses import hypothesis_files, read_hypotheses
 from greybox_torch.checkpoint import checkpoint_files
 from greybox_torch.cli import app
 from greybox_torch.errors import ArgumentError, UserError
+from greybox_torch.experiment_design.limits import EVERY_INPUT
 from greybox_torch.files import write_all
 
 from .conftest import sticking
@@ -76,6 +78,11 @@ def test_precision(undecided) -> None:
     found = gt.design(undecided, precision="J", seconds=1.0)
     assert found.after is not None and found.before is not None and 0 < found.after < found.before
     assert "standard deviation of J from" in found.sentence and found.sentence.endswith(" kg m^2.")
+    assert found.sentence.startswith("1 s of ") and EVERY_INPUT not in found.notes
+    long = replace(found, time=np.arange(3600.0))
+    assert long.sentence.startswith("3600 s of ")  # seen: 3.6e+03 s
+    two = replace(found, inputs={**found.inputs, "room": found.inputs["voltage"]})
+    assert EVERY_INPUT in two.notes
     told = found.to_dict()
     assert told["deviation"]["after"] == found.after and "hypotheses" not in told
 

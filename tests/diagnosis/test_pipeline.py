@@ -31,7 +31,7 @@ def test_dead_zone_is_found_named_and_measured(found) -> None:
     assert half_width["unit"] == "V"
     assert effect.explained > 0.95
     assert effect.signals == ("voltage",)
-    assert effect.curve is not None and effect.profiles
+    assert effect.curve is not None and effect.curve.seen is not None and effect.profiles
     (along,) = effect.timelines
     assert along.experiment == "run 2" and along.share.sum() == pytest.approx(1.0)
     assert effect.ceiling is not None and 0.5 < effect.ceiling <= 1.0

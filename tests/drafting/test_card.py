@@ -201,3 +201,13 @@ def test_files_that_are_no_recordings(folder: Path, name: str, content: str | No
     assert done.exit_code == 2
     assert message in done.stderr
     assert not (folder / "dataset.toml").exists()
+
+
+def test_of_a_column_of_dates_no_unit_is_told_that_the_file_does_not_have(folder: Path) -> None:
+    """Seen: "the file says s" beside dates. They are read in seconds."""
+    rows = [f"2026-11-23 10:00:{k:02d};{v:.6g};{w:.6g}" for k, v, w in zip(range(60), V, W, strict=False)]
+    (folder / "dates.csv").write_text("\n".join(["Zeitstempel;voltage;speed", *rows]) + "\n")
+    done = CliRunner().invoke(app, ["card", str(folder / "dates.csv"), "--model", f"{folder / 'my_motor.py'}:Motor"])
+    assert done.exit_code == 0, done.output
+    card = (folder / "dataset.toml").read_text()
+    assert "read in s; steps of 1 s" in card and "the file says s" not in card

@@ -78,6 +78,24 @@ def test_a_good_start_is_not_left(oscillation: Any) -> None:
     assert found.problem.values == pytest.approx(list(TRUTH.values()), rel=1e-6)
 
 
+def test_every_descent_is_told_by_its_number_and_counts_on(oscillation: Any) -> None:
+    """Seen: sixty lines "whole records, iteration 1 … 20" that began anew, whichever start and method they were of."""
+    told: list[tuple[str, int]] = []
+    fit_records(oscillation, starts=24, progress=lambda stage, k, _: told.append((stage, k)))
+    stages = list(dict.fromkeys(stage for stage, _ in told if stage.startswith("whole")))
+    assert stages[:2] == ["whole records", "whole records, descent 2 (the best is kept)"]
+    for stage in stages:
+        iterations = [k for name, k in told if name == stage]
+        assert iterations == sorted(set(iterations))
+
+
+def test_iterations_count_on_from_one_method_to_the_next(oscillation: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(descent, "PATIENCE", 1)
+    told: list[int] = []
+    fit_records(oscillation, starts=1, progress=lambda stage, k, _: told.append(k) if "whole" in stage else None)
+    assert max(told) > 1 and told == list(range(1, len(told) + 1))
+
+
 def test_nothing_finite_is_none(oscillation: Any) -> None:
     lost = oscillation.with_values(np.array([np.inf, 1.0]))
     assert descend(lost, DescentOptions(Simulator.of(lost.model, lost.free_names), DEFAULT), 1) is None

@@ -11,7 +11,7 @@ import greybox_torch as gt
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.surroundings import surroundings_along
 from greybox_torch.model import Balance, GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.model.own_rate import adds_to_rate
+from greybox_torch.model.own_rate import adds_to_rate, divided_by
 
 
 class Room(GreyBoxModel):
@@ -34,7 +34,7 @@ class Room(GreyBoxModel):
         return {"air": x.air}
 
 
-@pytest.mark.parametrize(("port", "adds", "unit"), [("room", False, ""), ("tank", True, "m/s"), ("mean", False, "")])
+@pytest.mark.parametrize(("port", "adds", "unit"), [("room", False, "W"), ("tank", True, "m/s"), ("mean", False, "")])
 def test_a_force_at_a_balance_has_the_unit_of_the_rate_where_it_adds_to_it(port: str, adds: bool, unit: str) -> None:
     """Seen: heights of a curve of watts, told in K/s."""
     model = Room()
@@ -43,3 +43,43 @@ def test_a_force_at_a_balance_has_the_unit_of_the_rate_where_it_adds_to_it(port:
     problem = make_problem(gt.DataSet([recording]), model, (recording,))
     around = surroundings_along(model, problem, np.ones((problem.records.u.shape[1], 2)))
     assert around[port].force_unit == unit
+
+
+@pytest.mark.parametrize(
+    ("level", "unit", "force"),
+    [
+        ("degC", "J/K", "W"),
+        ("K", "kJ/K", "kW"),
+        ("m", "m^2", "m^3/s"),
+        ("bar", "m^3/bar", "m^3/s"),
+        ("m", "kg/K", ""),
+        ("m", "", ""),
+    ],
+)
+def test_a_force_divided_by_a_capacity_has_the_unit_of_what_that_stores_per_second(
+    level: str, unit: str, force: str
+) -> None:
+    """Seen: the axis of a curve of watts without a unit. A capacity of one is a capacity all the same."""
+
+    class Store(Room):
+        states: ClassVar = [State("air", level), State("water", "m")]
+        parameters: ClassVar = [Parameter("C", 1.0, unit=unit)]
+
+    model = Store()
+    recording = gt.Recording.from_arrays("run", {"heat": np.ones(20), "air": np.ones(20)}, sample_time=1.0)
+    problem = make_problem(gt.DataSet([recording]), model, (recording,))
+    around = surroundings_along(model, problem, np.ones((problem.records.u.shape[1], 2)))
+    assert around["room"].force_unit == force
+
+
+def test_a_force_divided_by_more_than_one_parameter_is_divided_by_none_of_them() -> None:
+    class Block(Room):
+        parameters: ClassVar = [Parameter("C", 500.0, unit="J/(kg K)"), Parameter("m", 1.0, unit="kg")]
+
+        def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+            return {"air": (u.heat + port.room) / (p.m * p.C), "water": port.tank - 0.1 * x.water}
+
+    room, port = Room(), Room.ports[0]
+    found = divided_by(room, port)
+    assert found is not None and found.name == "C"
+    assert divided_by(Block(), port) is None and divided_by(room, Room.ports[1]) is None

@@ -39,6 +39,8 @@ def test_number(value: float, digits: int, shown: str) -> None:
         (0.5, math.inf, "0.5000"),
         (0.5, 0.0, "0.5000"),
         (math.nan, 0.1, "—"),
+        (21.997952936470842, 3e-130, "21.997953 ± 3.0·10⁻¹³⁰"),
+        (-2.5e300, 1.0, "−2.5000000·10³⁰⁰ ± 1.0"),
     ],
 )
 def test_value_with_its_deviation(value: float, deviation: float | None, shown: str) -> None:

@@ -14,7 +14,7 @@ from greybox_torch.diagnosis.describe.equation import equation
 from greybox_torch.diagnosis.describe.indistinguishable import one_of
 from greybox_torch.diagnosis.describe.law_over_data import over_data
 from greybox_torch.diagnosis.describe.memory import remembered, settled_curve
-from greybox_torch.diagnosis.describe.profiles import explained_energy, local_signals, most_of, profile
+from greybox_torch.diagnosis.describe.profiles import explained_energy, local_signals, most_of, profile, with_samples
 from greybox_torch.diagnosis.effect import Curve, Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.one_of import Alternative
@@ -97,7 +97,8 @@ def _effect(
     taken = state.step_beside_others(attachment.prefix)
     probability, alternatives = _probability(study, state, attachment, taken, left)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
-    profiles = _profiles(study, state, model, attachment, site)
+    local = local_signals(model, attachment, state.current.fits[0], state.current.simulator)
+    profiles = _profiles(study, state, model, attachment, site, local)
     timelines = () if gain is None else gain.timelines
     mechanism, around = attachment.mechanism, study.surroundings[attachment.port]
     curve = settled_curve(attachment, around, final) or over_data(study, state.current, attachment, final.problem)
@@ -113,7 +114,7 @@ def _effect(
         parameters=parameters,
         explained=round(explained, 4),
         alternatives=alternatives,
-        curve=as_named(curve, model.base, site),
+        curve=as_named(with_samples(curve, local), model.base, site),
         memory=remembered(attachment, around, final, named(mechanism.signals()[0])) if mechanism.free else None,
         profiles=profiles,
         explanation=mechanism.explanation,
@@ -217,11 +218,9 @@ def _parameters(model: AugmentedModel, attachment: Attachment, final: Final) -> 
 
 
 def _profiles(
-    study: Study, state: SearchState, model: AugmentedModel, attachment: Attachment, site: Port
+    study: Study, state: SearchState, model: AugmentedModel, attachment: Attachment, site: Port, local: dict[str, Any]
 ) -> tuple[Profile, ...]:
-    hypothesis = state.current
-    energy = explained_energy(state.without.get(attachment.prefix, state.plain), hypothesis)
-    local = local_signals(model, attachment, hypothesis.fits[0], hypothesis.simulator)
+    energy = explained_energy(state.without.get(attachment.prefix, state.plain), state.current)
     units = study.surroundings[attachment.port].units
     wanted = attachment.mechanism.signals() or tuple(site.signals)[:1]
     return tuple(

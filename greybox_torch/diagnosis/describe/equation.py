@@ -33,13 +33,13 @@ def equation(
         return ""
     deflects = law.kinematic and isinstance(site, Coupling)
     if not isinstance(site, Body | Coupling | Balance) or law.states(around) or (law.kinematic and not deflects):
-        return law.described()
+        return law.described_here()
     try:
         text = _formula(law, around, named, parameters)
     except Exception:  # a law of one's own may compute its force in any way
-        return law.described()
+        return law.described_here()
     if len(text) > LONGEST:
-        return law.described()
+        return law.described_here()
     if not deflects:
         return f"port.{site.name} += {text}"
     words = set(re.findall(r"\w+", text))

@@ -140,11 +140,8 @@ def detection_sentences(detected: Sequence[Detection], effects: bool) -> list[st
     """What the errors of the free runs show, where that is clearest, and which recordings were made under feedback."""
     lines = []
     if detected:
-        first = max(detected, key=lambda d: d.plain.past.ratio)
         lines.append(
-            f"The free run's errors, model as it stands, are {'' if first.plain.past.beyond else 'not '}correlated with past inputs"
-            + (f" up to {first.band:.3g} Hz" if first.feedback else "")
-            + _changed(first.plain.past, first.final.past, "correlation", effects, _place(first, detected))
+            _past_inputs(max(detected, key=lambda d: (d.plain.past.judged, d.plain.past.ratio)), detected, effects)
         )
         first = max(detected, key=lambda d: d.plain.colour.ratio)
         lines.append(
@@ -162,12 +159,27 @@ def detection_sentences(detected: Sequence[Detection], effects: bool) -> list[st
     return lines
 
 
+def _past_inputs(first: Detection, detected: Sequence[Detection], effects: bool) -> str:
+    within = f" up to {first.band:.3g} Hz" if first.feedback else ""
+    if not first.plain.past.judged:
+        return (
+            f"Whether the free run's errors are correlated with past inputs{within} cannot be judged from these recordings: beside "
+            "their length input and errors change so slowly that chance alone gives any correlation "
+            f"(the largest is {first.plain.past.value:.2g})."
+        )
+    return (
+        f"The free run's errors, model as it stands, are {'' if first.plain.past.beyond else 'not '}correlated with past inputs{within}"
+        + _changed(first.plain.past, first.final.past, "correlation", effects, _place(first, detected))
+    )
+
+
 def _place(where: Detection, detected: Sequence[Detection]) -> str:
     return f", in {where.output} of {where.experiment}" if len(detected) > 1 else ""
 
 
 def _changed(before: Largest, after: Largest, what: str, effects: bool, place: str) -> str:
-    with_effects = f"; with the effects {after.value:.2g} (bound {after.bound:.2g})" if effects else ""
+    bound = f"bound {after.bound:.2g}" if after.judged else "which cannot be judged"
+    with_effects = f"; with the effects {after.value:.2g} ({bound})" if effects else ""
     return f" ({_size(before, what)}{place}){with_effects}."
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
+
 import numpy as np
 import torch
 
@@ -16,6 +19,7 @@ from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.simulation.simulator import Simulator
 
 BINS = 24
+SEEN_BINS = 100
 POINTS = 201
 
 
@@ -77,3 +81,11 @@ def law_curve(model: AugmentedModel, attachment: Attachment, around: Surrounding
     unit = around.units.get("deflection", "") if attachment.mechanism.kinematic else around.force_unit
     values = np.broadcast_to(np.asarray(force, dtype=float), (POINTS,))
     return Curve(name, around.units.get(name, ""), grid.numpy(), values, unit)
+
+
+def with_samples(curve: Curve | None, along: Mapping[str, np.ndarray]) -> Curve | None:
+    """The curve with how many samples lie where along it, by the signals ``along`` the records (N,)."""
+    if curve is None or curve.signal not in along:
+        return curve
+    ends = float(np.min(curve.values)), float(np.max(curve.values))
+    return replace(curve, seen=np.histogram(along[curve.signal], SEEN_BINS, ends)[0]) if ends[0] < ends[1] else curve

@@ -36,6 +36,11 @@ class Largest:
         return self.value > self.bound
 
     @property
+    def judged(self) -> bool:
+        """Whether the bound says anything: no correlation exceeds one, however short or slow the recordings."""
+        return self.bound < 1.0
+
+    @property
     def ratio(self) -> float:
         """Its size in bounds."""
         return self.value / max(self.bound, 1e-300)

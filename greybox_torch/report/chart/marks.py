@@ -11,6 +11,9 @@ from greybox_torch.report.chart.scale import Scale
 WIDTH, HEIGHT = 2000, 1000
 """The picture's own coordinates; the page stretches them."""
 
+RUG = 0.08
+"""Share of the picture's height that a rug reaches."""
+
 BINS = 700
 """A curve with more than four samples to a bin is drawn by the extremes in each: what the eye would see, in a fraction of the bytes."""
 
@@ -72,6 +75,18 @@ def bars(x: Scale, y: Scale, edges: np.ndarray, heights: np.ndarray, series: str
     boxes = [
         f"M{a + gap:.0f} {foot:.0f}V{top:.0f}H{b - gap:.0f}V{foot:.0f}Z"
         for a, b, top in zip(across[:-1], across[1:], tops, strict=True)
+    ]
+    return Mark("bars", series, "".join(boxes))
+
+
+def rug(x: Scale, low: float, high: float, counts: np.ndarray, series: str) -> Mark:
+    """Bars on the foot of the picture, from ``low`` to ``high``, as high as the square root of counts (b,): few are seen beside many."""
+    across = WIDTH * np.clip(x.place(np.linspace(low, high, len(counts) + 1)), 0.0, 1.0)
+    tall = RUG * HEIGHT * np.where(counts > 0, np.maximum(np.sqrt(counts / max(float(counts.max()), 1.0)), 0.2), 0.0)
+    boxes = [
+        f"M{a:.0f} {HEIGHT}V{HEIGHT - h:.0f}H{b:.0f}V{HEIGHT}Z"
+        for a, b, h in zip(across[:-1], across[1:], tall, strict=True)
+        if h > 0
     ]
     return Mark("bars", series, "".join(boxes))
 

@@ -25,6 +25,7 @@ COLOURS = {
     "law": "#0868b0",
     "detail": "#1c2127",
     "data": "#5a636e",
+    "seen": "#5a636e",
     "dots": "#5a636e",
 }
 """By series; the others are in ink."""

@@ -6,11 +6,17 @@ import numpy as np
 
 from greybox_torch.diagnosis.effect import Curve, Effect
 from greybox_torch.report import text
-from greybox_torch.report.chart.marks import Mark, band, line, points
+from greybox_torch.report.chart.marks import Mark, band, line, points, rug
 from greybox_torch.report.chart.panel import Chart, Key, Panel, side_by_side
 from greybox_torch.report.chart.scale import Scale, linear
 
-LAW, BEYOND, DATA, BAND = "effect", "beyond", "data", "free"
+LAW, BEYOND, DATA, BAND, SEEN = "effect", "beyond", "data", "free", "seen"
+
+HARDLY = 0.05
+"""Share of the samples that a bin would have if they were spread evenly, below which it has hardly any."""
+
+A_GAP = 5
+"""Bins with hardly any sample side by side from which a free curve is a guess there."""
 
 _AT_PORT = ("speed", "position", "deflection", "rate", "level", "load", "input", "output")
 """Names that signals have at a port, whatever the model calls them."""
@@ -34,20 +40,42 @@ def law_chart(effect: Effect, curve: Curve) -> Chart:
 
 
 def _marks(effect: Effect, curve: Curve, x: Scale, y: Scale) -> list[Mark]:
+    seen = [] if curve.seen is None else [rug(x, *_ends(curve), curve.seen, SEEN)]
+    return [*seen, *_curves(effect, curve, x, y)]
+
+
+def _curves(effect: Effect, curve: Curve, x: Scale, y: Scale) -> list[Mark]:
     free, law = curve.free, line(x, y, curve.values, curve.force, LAW)
     if free is None:
-        return [law] if curve.spread is None else [_band(x, y, curve.values, curve.force, curve.spread, LAW), law]
+        drawn = _extrapolated(curve, ~_gaps(curve), x, y) if effect.mechanism == "unknown" else [law]
+        spread = [] if curve.spread is None else [_band(x, y, curve.values, curve.force, curve.spread, LAW)]
+        return [*spread, *drawn]
     dots = points(x, y, free.at, free.asked, DATA)
     if effect.mechanism == "unknown":
         around = _band(x, y, curve.values, curve.force, free.spread, LAW)
-        return [around, *_extrapolated(curve, free.spread, x, y), dots]
+        return [around, *_extrapolated(curve, np.isfinite(free.spread) & ~_gaps(curve), x, y), dots]
     around = _band(x, y, curve.values, free.force, free.spread, BAND)
     return [around, line(x, y, curve.values, free.force, BAND), law, dots]
 
 
-def _extrapolated(curve: Curve, spread: np.ndarray, x: Scale, y: Scale) -> list[Mark]:
+def _ends(curve: Curve) -> tuple[float, float]:
+    return float(np.min(curve.values)), float(np.max(curve.values))
+
+
+def _gaps(curve: Curve) -> np.ndarray:
+    """Which of the curve's values (n,) lie where hardly any sample is, nor near them."""
+    if curve.seen is None:
+        return np.zeros(len(curve.values), dtype=bool)
+    few = curve.seen < max(1.0, HARDLY * float(curve.seen.mean()))
+    runs = np.split(np.arange(len(few)), np.flatnonzero(np.diff(few)) + 1)
+    wide = np.concatenate([np.full(len(run), few[run[0]] and len(run) >= A_GAP) for run in runs])
+    low, high = _ends(curve)
+    place = ((curve.values - low) / (high - low) * len(few)).astype(int)
+    return wide[np.clip(place, 0, len(few) - 1)]
+
+
+def _extrapolated(curve: Curve, known: np.ndarray, x: Scale, y: Scale) -> list[Mark]:
     """The curve where there are data, and from there on where there are none."""
-    known = np.isfinite(spread)
     if known.all():
         return [line(x, y, curve.values, curve.force, LAW)]
     inside = known & np.concatenate([[False], known[:-1]]) & np.concatenate([known[1:], [False]])
@@ -91,16 +119,25 @@ def _caption(effect: Effect, curve: Curve) -> str:
     over = f"what it adds at {effect.port} over {text.words(_over(effect, curve))}{settled}"
     if curve.free is None:
         spread = "" if curve.spread is None else ", with two standard deviations on either side"
-        return f"The effect's own curve{spread}: {over}."
+        return f"The effect's own curve{spread}: {over}.{_where_seen(effect, curve)}"
     data = (
         "Dots are partial residuals: the law plus the constant force that best explains the errors of one window of the estimation "
         "experiments, all other parameters as fitted."
     )
     if effect.mechanism == "unknown":
-        return (
-            f"The effect's own curve: {over}. Dashed and without a band it is extrapolated: there are no data. {data}"
-        )
-    return f"The law, and a free curve estimated in its place: {over}. The free curve is drawn only where there are data. {data}"
+        return f"The effect's own curve: {over}. Dashed it is extrapolated: there are hardly any data. {data}{_where_seen(effect, curve)}"
+    return (
+        f"The law, and a free curve estimated in its place: {over}. The free curve is drawn only where there are data. {data}"
+        f"{_where_seen(effect, curve)}"
+    )
+
+
+def _where_seen(effect: Effect, curve: Curve) -> str:
+    if curve.seen is None:
+        return ""
+    guessed = effect.mechanism == "unknown" and curve.free is None and bool(_gaps(curve).any())
+    guess = "; where the curve is dashed hardly any does, and it is a guess" if guessed else ""
+    return f" The bars along the foot show where the samples lie{guess}."
 
 
 def _over(effect: Effect, curve: Curve) -> str:

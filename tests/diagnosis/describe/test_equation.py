@@ -17,6 +17,7 @@ from greybox_torch.model.ports import Actuator, Port
 SIGNALS = ("speed", "position", "time", "deflection", "rate", "load", "input")
 AROUND = Surroundings({name: Range(-1.0, 1.0, 1.0) for name in SIGNALS}, {}, "N m", 0.01)
 DRUM, ROPE = Body("drum", speed="omega", position="angle"), Coupling("rope", deflection="stretch", rate="rate")
+ACTUATOR = Actuator("actuator", "torque")
 NAMED = {"speed": "omega", "position": "angle", "deflection": "stretch"}
 
 
@@ -43,7 +44,21 @@ def told(mechanism: Mechanism, site: Port = DRUM) -> str:
             "the spring at rope sees stretch - min(max(stretch, -half_gap), half_gap); damping acts beside that",
         ),
         ("presliding_hysteresis", {}, DRUM, "−F z / z_0 with dz/dt = v − |v| z / z_0 (Dahl)"),
-        ("input_gain", {}, Actuator("actuator", "torque"), "The input that acts is (1 + gain_error) u"),
+        ("input_gain", {}, ACTUATOR, "The input that acts is (1 + gain_error) u"),
+        ("input_lag", {}, ACTUATOR, "w acts in the place of the input u: T dw/dt = u − w"),
+        (
+            "input_lag",
+            {"second_order": True},
+            ACTUATOR,
+            "w acts in the place of the input u: (T/(2 damping))² d²w/dt² + T dw/dt = u − w",
+        ),
+        ("actuator_deadzone", {}, ACTUATOR, "The input acts only beyond ±half_width"),
+        (
+            "actuator_deadzone",
+            {"by_direction": True},
+            ACTUATOR,
+            "The input acts only above (1 + asymmetry) half_width and below −(1 − asymmetry) half_width",
+        ),
     ],
 )
 def test_equations(mechanism: str, options: dict[str, Any], site: Port, expected: str) -> None:
@@ -63,3 +78,14 @@ def test_a_curve_has_none_and_a_law_that_is_no_formula_its_description() -> None
 
     assert told(Unknown("speed")) == ""
     assert told(Odd()) == "Sticks"
+
+
+@pytest.mark.parametrize("mechanism", ["input_lag", "sensor_lag", "actuator_deadzone", "torque_saturation"])
+@pytest.mark.parametrize("richer", [False, True])
+def test_words_name_the_parameters_of_the_form_that_was_found_alone(mechanism: str, richer: bool) -> None:
+    """Seen: an asymmetry and a damping in the law of a result that has neither."""
+    law = LIBRARY[mechanism](richer)
+    around = Surroundings({n: Range(-1.0, 1.0, 1.0) for n in ("input", "output", "speed")}, {}, "V", 0.01)
+    for name in {"damping", "asymmetry", "base_speed"}:
+        assert (name in law.described_here()) == (name in {p.name for p in law.parameters(around)})
+    assert not {"second_order", "by_direction", "ζ"} & set(law.described_here().replace("(", " ").split())

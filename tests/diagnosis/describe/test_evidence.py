@@ -45,6 +45,16 @@ def test_the_clearest_of_several_and_feedback() -> None:
     assert "Coherence above 60 Hz, where the input is hardly excited, is not counted as evidence." in feedback
 
 
+def test_a_bound_of_one_or_more_judges_nothing() -> None:
+    """Seen: "not correlated with past inputs (largest correlation 0.94, 99 % bound 1.5)"."""
+    slow = Remains(Largest(0.01, 0.03), Largest(0.94, 1.5))
+    (past, _) = detection_sentences([Detection("Steps", "speed", slow, slow, CALM, 40.0)], True)
+    assert "cannot be judged from these recordings" in past and "0.94" in past and "1.5" not in past
+    both = [Detection("Steps", "speed", one, slow, CALM, 40.0) for one in (slow, WHITE)]
+    past, _ = detection_sentences(both, True)
+    assert "99 % bound 0.05" in past and "with the effects 0.94 (which cannot be judged)" in past
+
+
 def test_no_estimation_experiment_that_could_be_followed() -> None:
     assert detection_sentences([], True) == []
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.describe.law_over_data import over_data
+from greybox_torch.diagnosis.describe.profiles import with_samples
 from greybox_torch.diagnosis.effect import Curve
 from greybox_torch.mechanisms.actuator import ActuatorDeadzone, InputGain, InputLag
 from greybox_torch.mechanisms.attachment import attach
@@ -90,3 +91,12 @@ def test_the_signal_is_the_measured_one(begun, motor_data, motor) -> None:
     speeds = search.problem.records.y[0]
     assert curve.values[known][0] == pytest.approx(np.quantile(speeds, 0.002), abs=0.2)
     assert np.abs(np.interp(curve.free.at, curve.values, law) - curve.free.asked).std() < 0.006
+
+
+def test_where_the_samples_lie_along_a_curve() -> None:
+    curve = Curve("stirrer", "rpm", np.linspace(0.0, 600.0, 7), np.zeros(7), "W")
+    shown = with_samples(curve, {"stirrer": np.array([0.0, 300.0, 300.0, 600.0, 700.0])})
+    assert shown is not None and shown.seen is not None
+    assert (len(shown.seen), shown.seen[0], shown.seen[50], shown.seen[99], shown.seen.sum()) == (100, 1, 2, 1, 4)
+    assert shown.as_json() == curve.as_json()
+    assert with_samples(curve, {}) is curve and with_samples(None, {}) is None

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from greybox_torch.report.chart.marks import BINS, band, bars, line, points, span, thinned
+from greybox_torch.report.chart.marks import BINS, band, bars, line, points, rug, span, thinned
 from greybox_torch.report.chart.scale import Scale
 
 X, Y = Scale(0.0, 10.0), Scale(0.0, 1.0)
@@ -67,3 +67,8 @@ def test_span_is_cut_at_the_edges() -> None:
 def test_bars_stand_on_zero() -> None:
     path = bars(X, Scale(-1.0, 1.0), np.array([0.0, 5.0, 10.0]), np.array([1.0, -0.5]), "effect").path
     assert re.findall(r"V(-?\d+)", path) == ["0", "500", "750", "500"]
+
+
+def test_a_rug_stands_on_the_foot_and_few_samples_are_seen_beside_many() -> None:
+    mark = rug(X, 0.0, 10.0, np.array([10_000, 0, 1]), "seen")
+    assert (mark.kind, mark.path) == ("bars", "M0 1000V920H667V1000ZM1333 1000V984H2000V1000Z")

@@ -78,3 +78,35 @@ def test_a_signal_has_the_name_of_the_state() -> None:
     assert chart.columns[0][0].x_label.startswith("angle") and "over angle" in chart.caption
     elsewhere = replace(own, curve=replace(BACKLASH.curve, signal="rate of the input"))
     assert drawn(elsewhere).columns[0][0].x_label.startswith("rate of the input")
+
+
+def over_levels(effect: Effect) -> Effect:
+    """With samples at three levels of the signal alone: both ends and the middle."""
+    assert effect.curve is not None
+    seen = np.zeros(100, dtype=int)
+    seen[[0, *range(44, 56), 99]] = 400
+    return replace(effect, curve=replace(effect.curve, spread=None, seen=seen))
+
+
+def test_an_unknown_curve_is_dashed_where_hardly_any_sample_lies() -> None:
+    """Seen: a stirrer at five speeds only, and a hump between two of them in one solid line."""
+    chart = drawn(over_levels(UNKNOWN))
+    foot, solid, dashed = chart.columns[0][0].marks
+    assert (foot.kind, foot.series, foot.path.count("M")) == ("bars", "seen", 14)
+    assert (solid.series, dashed.series, dashed.path.count("M")) == ("effect", "beyond", 2)
+    assert "hardly any does, and it is a guess" in chart.caption
+
+
+def test_a_law_shows_where_the_samples_lie_and_stays_solid() -> None:
+    chart = drawn(over_levels(BACKLASH))
+    assert [m.series for m in chart.columns[0][0].marks] == ["seen", "effect"]
+    assert chart.caption.endswith("The bars along the foot show where the samples lie.")
+
+
+def test_a_free_band_does_not_hide_a_gap() -> None:
+    effect = over_data(UNKNOWN)
+    assert effect.curve is not None
+    seen = np.where(np.abs(np.arange(100) - 50) < 10, 0, 30)
+    chart = drawn(replace(effect, curve=replace(effect.curve, seen=seen)))
+    solid, dashed = chart.columns[0][0].marks[2:4]
+    assert (solid.path.count("M"), dashed.path.count("M")) == (2, 3)

@@ -1,0 +1,44 @@
+"""The unit of the force at a port, as far as the declared units say."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from greybox_torch.model import Balance, Body, GreyBoxModel, Port
+from greybox_torch.model.own_rate import adds_to_rate, divided_by
+from greybox_torch.model.ports import Actuator, Sensor
+
+_PER_SECOND = {"J": "W", "kJ": "kW", "MJ": "MW", "W s": "W", "A s": "A", "C": "A"}
+"""What a store that has so much of it for each unit of its level takes in, where that has a name of its own."""
+
+_TIMES = {("m", "m^2"): "m^3/s", ("V", "F"): "A", ("V", "A s/V"): "A"}
+"""By the units of a level and of what its rate is multiplied by."""
+
+_TEMPERATURES = {"K", "degC", "°C", "C"}
+
+
+def force_unit(model: GreyBoxModel, port: Port, units: Mapping[str, str]) -> str:
+    """The unit of the force at a port, by the ``units`` of its signals; empty where it is not known."""
+    if isinstance(port, Actuator):
+        return units["input"]
+    if isinstance(port, Sensor):
+        return units["output"]
+    if isinstance(port, Balance):
+        return _of_balance(model, port, units.get("level", ""))
+    place = units.get("position" if isinstance(port, Body) else "deflection", "")
+    return {"rad": "N m", "m": "N"}.get(place, "")
+
+
+def _of_balance(model: GreyBoxModel, port: Balance, level: str) -> str:
+    """That of the level's rate, or where the port's force is divided by a capacity what that stores, per second."""
+    if not level:
+        return ""
+    capacity = divided_by(model, port)
+    if capacity is None:
+        return f"{level}/s" if adds_to_rate(model, port) else ""
+    if (level, capacity.unit) in _TIMES:
+        return _TIMES[level, capacity.unit]
+    stored, _, per = capacity.unit.rpartition("/")
+    if not stored or (per != level and not {per, level} <= _TEMPERATURES):
+        return ""
+    return _PER_SECOND.get(stored, f"{stored}/s")
