@@ -86,7 +86,7 @@ def test_nothing_is_held_where_nothing_begins_at_zero(problem: Problem, monkeypa
     told: list[str] = []
     fit_records(problem, starts=1, progress=lambda stage, k, error: told.append(stage))
     assert [int(p.free.sum()) for p in seen] == [2, 3, 2]
-    assert "with r held at zero: whole records" in told
+    assert any(stage.startswith("with r held at zero: whole records") for stage in told)
 
 
 def test_the_simpler_model_is_told_what_it_has_to_beat(problem: Problem, monkeypatch: pytest.MonkeyPatch) -> None:
