@@ -38,21 +38,23 @@ def _names(study: Study, state: SearchState) -> Iterator[SearchState]:
 
 
 def _curve(study: Study, state: SearchState) -> Iterator[SearchState]:
-    """The state with the free curve that the first step took, or that went farthest there, if by more than the margin of curves."""
-    for step in state.steps[:1]:
-        taken = step.taken is not None and step.taken.unknown
-        curve = step.taken if taken else next((r for r in step.ranked if r.unknown and sound(study, r)), None)
-        if not step.parent.effects and curve is not None and curve.gain > study.settings.curve_margin:
-            beside = () if taken else (replace(step, taken=curve),)
-            yield replace(state.at(curve.fitted), steps=(*state.steps, *beside))
+    """The state with the curve or response that the first step took, or that went farthest there, if by more than the margin of curves."""
+    step = next(iter(state.steps), None)
+    if step is None or step.parent.effects:
+        return
+    taken = step.taken is not None and step.taken.unknown
+    curve = step.taken if taken else next((r for r in step.ranked if r.unknown and sound(study, r)), None)
+    if curve is not None and curve.gain > study.settings.curve_margin:
+        beside = () if taken else (replace(step, taken=curve),)
+        yield replace(state.at(curve.fitted), steps=(*state.steps, *beside))
 
 
-def _first_found(state: SearchState, most: int = 2) -> list[tuple[RankedCandidate, ...]]:
-    """What the first step took, and what the first two took, the second built upon the first; at most ``most`` steps."""
+def _first_found(state: SearchState) -> list[tuple[RankedCandidate, ...]]:
+    """What the first step took, and what the first two took, the second built upon the first."""
     begun: list[tuple[RankedCandidate, ...]] = []
     for step in state.steps:
         before = begun[-1] if begun else ()
         built_upon = {taken.candidate.attachment.prefix for taken in before}
-        if step.taken is not None and {e.prefix for e in step.parent.effects} == built_upon and len(begun) < most:
+        if step.taken is not None and {e.prefix for e in step.parent.effects} == built_upon and len(begun) < 2:
             begun.append((*before, step.taken))
     return begun

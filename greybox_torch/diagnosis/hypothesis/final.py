@@ -62,7 +62,8 @@ def finish(
     """Fit whole records by simulation error, from the values of every window length and from the card's; the best of the results.
 
     Where the effects of a hypothesis leave noise alone over windows, what a free run leaves beyond it is a slow disturbance, and the errors
-    are weighed by their spectrum. (The model as it stands is always fitted to simulation error as it is: the best that it can do.)
+    are weighed by their spectrum. (The model as it stands is always fitted to simulation error: the best that it can do.) Elsewhere each of
+    several outputs is weighed by what is left of it, see :func:`weighed_by_what_is_left`.
 
     Where no whole record can be simulated, the values of the longest windows stand.
 
@@ -88,6 +89,7 @@ def finish(
     ended = _descended(run, point, budget.record_iterations)
     point = point if ended is None else ended.point
     run, point = weighed_by_what_is_left(run, point, budget.record_iterations)
+    # What compares hypotheses goes by the weights that all of them share.
     return Final(replace(run.at(point), weights=hypothesis.problem.weights), uncertainty(run, point))
 
 

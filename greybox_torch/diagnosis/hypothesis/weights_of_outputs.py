@@ -45,9 +45,10 @@ def weighed_by_what_is_left(run: FreeRun, point: np.ndarray, settings: Settings)
 
 
 def _better(after: np.ndarray, before: np.ndarray, spread: np.ndarray) -> bool:
-    """Whether less is left, in the logarithm and in units of the outputs' spread (n_y,)."""
-    in_spread = ((after / np.maximum(spread, 1e-300)) ** 2).sum() <= ((before / np.maximum(spread, 1e-300)) ** 2).sum()
-    return bool(in_spread and np.log(after).sum() < np.log(before).sum() - LEAST)
+    """Whether less is left, in the logarithm and in units of the spread (n_y,) of those outputs that move."""
+    moves = spread > 0
+    in_spread = [float(((left[moves] / spread[moves]) ** 2).sum()) for left in (after, before)]
+    return in_spread[0] <= in_spread[1] and bool(np.log(after).sum() < np.log(before).sum() - LEAST)
 
 
 def _alike(ratios: np.ndarray) -> bool:
@@ -60,6 +61,6 @@ def _left(run: FreeRun, point: np.ndarray) -> np.ndarray | None:
     found = run.errors(point)
     if found is None:
         return None
-    errors = np.concatenate([errors for errors, _ in found]) / run.problem.weights
-    left = np.sqrt(np.nanmean(errors**2, axis=0))
+    errors = np.concatenate([errors for errors, _ in found]) / run.problem.weights  # zero where nothing was measured
+    left = np.sqrt((errors**2).sum(axis=0) / np.maximum((~np.isnan(run.problem.records.y)).sum(axis=1), 1))
     return left if np.isfinite(left).all() and (left > 0).all() else None

@@ -78,7 +78,7 @@ def _with_parts(study: Study, curves: Sequence[ScreenScore], first: Sequence[Scr
     the place at once, and refits have to decide at which of them it acts.
     """
     most = max((c.explained for c in first if _over_part(c)), default=np.inf)
-    near = (c for c in curves if _over_part(c) and c.explained > study.budget.part_elsewhere * most)
+    near = (c for c in curves if _over_part(c) and c.explained > study.budget.part_at_other_bodies * most)
     return [*first, *(c for c in near if all(c is not one for one in first))]
 
 

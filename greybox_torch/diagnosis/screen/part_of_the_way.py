@@ -46,11 +46,12 @@ def curves_over_parts(
 def _best_parts(study: Study, screen: Screen, fitted: WindowFit, answer: LinearAnswer) -> Iterator[ScreenScore]:
     """For every body the curve of neighbouring bumps that explains most of the residual."""
     _, before = answer.beside_parameters(np.arange(0))
-    at, knots = len(screen.free_names), study.budget.knots_of_part
+    at = len(screen.free_names)
     for group, (along, _) in zip(screen.directions, screen.probed, strict=True):
+        knots = min(study.budget.knots_of_part, len(group))
         answers = [answer.beside_parameters(np.arange(at + k, at + k + knots)) for k in range(len(group) - knots + 1)]
         at += len(group)
-        best = int(np.argmin([left for _, left in answers]))
+        best = int(np.argmin([left if np.isfinite(left) else np.inf for _, left in answers]))
         size, left = answers[best]
         assert isinstance(along.mechanism, Unknown)
         centres = along.mechanism.centres(study.surroundings[along.port])

@@ -111,11 +111,17 @@ def _followed(
             before = found.get(identity)
             if before is None:
                 found[identity] = own
-            elif score.explained > before.explained:
-                found[identity] = replace(own, starts=(*starts, *before.starts))
-            else:
-                found[identity] = replace(before, starts=(*before.starts, *starts))
+                continue
+            better, other = (own, before) if score.explained > before.explained else (before, own)
+            alike = _knots(better.attachment) == _knots(other.attachment)
+            found[identity] = replace(better, starts=(*better.starts, *other.starts)) if alike else better
     return sorted(found.values(), key=lambda candidate: -candidate.explained)
+
+
+def _knots(attachment: Attachment) -> tuple[int, tuple[float, float] | None]:
+    """How many knots a curve has, and over what part: the heights of others are those of another force. Alike for all laws."""
+    mechanism = attachment.mechanism
+    return getattr(mechanism, "knots", 0), getattr(mechanism, "part", None)
 
 
 def with_substeps(candidate: Candidate, count: int) -> Candidate:

@@ -77,7 +77,7 @@ def _with_narrow_curves(study: Study, state: SearchState, scored: Screened) -> S
 def _less_left(there: Sequence[ScreenScore], narrow: Sequence[ScreenScore], most: float) -> list[ScreenScore]:
     """Those of the ``narrow`` curves that leave less than the part ``most`` of what any of the same signal that are ``there`` leave."""
     left: dict[tuple, float] = {}
-    for s in there:
+    for s in (s for s in there if np.isfinite(s.explained)):
         identity = identity_of(s.attachment)
         left[identity] = min(1.0 - s.explained, left.get(identity, 1.0))
     return [s for s in narrow if 1.0 - s.explained < most * left.get(identity_of(s.attachment), 1.0)]

@@ -46,8 +46,10 @@ class Linear:
         return Problem(self.problem.weights, z)
 
     def errors(self, z: np.ndarray) -> list:
-        slopes = COLUMNS * np.array([1.0, 100.0])[:, None] * self.problem.weights[:, None]
-        return [(MEASURED * self.problem.weights - slopes @ z, slopes)]
+        """Both are zero where the measurement is missing."""
+        known = ~np.isnan(self.problem.records.y.T)
+        slopes = COLUMNS * np.array([1.0, 100.0])[:, None] * (self.problem.weights * known)[:, :, None]
+        return [(np.where(known, MEASURED, 0.0) * self.problem.weights - slopes @ z, slopes)]
 
     def quadratic(self, z: np.ndarray) -> Quadratic:
         ((errors, slopes),) = self.errors(z)
@@ -67,6 +69,18 @@ def test_weights_become_what_is_left_of_each_output(wrong) -> None:
     np.testing.assert_allclose(point, solved(1.0 / LEFT), atol=2e-3)
     assert np.abs(point - TRUE).max() < np.abs(solved(wrong) - TRUE).max()
     np.testing.assert_allclose(run.problem.weights[0] / run.problem.weights[1], LEFT[1] / LEFT[0], rtol=0.5)
+
+
+def test_what_was_not_measured_is_no_error_of_zero() -> None:
+    rare = MEASURED.T.copy()
+    rare[1, np.arange(200) % 10 > 0] = np.nan
+    run: Any = Linear(Problem(1.0 / LEFT, TRUE, Records(rare)))
+    np.testing.assert_allclose(module._left(run, TRUE), LEFT, rtol=0.4)
+
+
+def test_an_output_that_never_moves_does_not_judge() -> None:
+    after, before, spread = np.array([0.5, 1.0]), np.array([1.0, 1.0]), np.array([10.0, 0.0])
+    assert module._better(after, before, spread) and not module._better(2 * after, before, spread)
 
 
 def test_weights_that_are_about_right_stand() -> None:

@@ -82,6 +82,22 @@ def test_the_same_at_two_lengths_is_one_hypothesis(found) -> None:
     assert [s["rotor.constant_bias.bias"] for s in candidate.starts] == [0.4, 0.4, 0.3, 0.3]
 
 
+@pytest.mark.parametrize(
+    ("other", "taken_over"), [(Unknown("position", 4), True), (Unknown("position", 5), False), (None, False)]
+)
+def test_a_curve_begins_with_no_heights_of_another_ones_knots(found, other, taken_over) -> None:
+    """The second height of 14 knots along the whole way is no force over the second of ten along a part of it."""
+    other = other or Unknown("position", 4, part=(0.1, 0.2))
+
+    def seen(curve: Unknown, explained: float, height: float) -> ScreenScore:
+        heights = tuple(f"w_{k}" for k in range(curve.knots))
+        return score(curve, explained, *([height] * curve.knots), directions=heights)
+
+    (candidate,) = found([seen(Unknown("position", 4), 0.9, 1.0)], [seen(other, 0.6, 2.0)])
+    assert candidate.explained == 0.9
+    assert any(start["rotor.unknown.w_0"] == 2.0 for start in candidate.starts) is taken_over
+
+
 def test_it_is_known_over_which_windows_an_effect_shows_most(found) -> None:
     weak, strong = (score(ConstantBias(), e, 0.3) for e in (0.1, 0.6))
     for order in ([weak], [replace(strong, length=400)]), ([replace(strong, length=400)], [weak]):
