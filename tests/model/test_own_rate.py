@@ -83,3 +83,15 @@ def test_a_force_divided_by_more_than_one_parameter_is_divided_by_none_of_them()
     found = divided_by(room, port)
     assert found is not None and found.name == "C"
     assert divided_by(Block(), port) is None and divided_by(room, Room.ports[1]) is None
+
+
+def test_a_parameter_of_minus_one_is_changed_as_well() -> None:
+    """Seen by reading: twice minus one and one more is minus one, so that what acts was taken for what does not."""
+
+    class Turned(Room):
+        parameters: ClassVar = [Parameter("C", 500.0, unit="J/K"), Parameter("sign", -1.0)]
+
+        def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+            return {"air": (u.heat + port.room) / (p.C * p.sign**2), "water": port.tank - 0.1 * x.water}
+
+    assert divided_by(Turned(), Room.ports[0]) is None
