@@ -19,7 +19,7 @@ from greybox_torch.api.result import Result
 from greybox_torch.api.scores import print_scores, print_substeps, score_rows, score_table
 from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError
-from greybox_torch.estimate.comparison import MODELS
+from greybox_torch.estimate.comparison import AUGMENTED, START
 from greybox_torch.evaluation import Evaluation, evaluated
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
@@ -30,12 +30,6 @@ if TYPE_CHECKING:
 
 OPPOSITE = -0.8
 """Correlation of simulated with measured below which an output is told to move the other way: noise and wrong parameters leave less."""
-
-START = "start"
-"""The name of the model with its start values."""
-
-AUGMENTED = MODELS[-1]
-"""That of one with effects."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

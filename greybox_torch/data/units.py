@@ -94,10 +94,15 @@ def _meant(unit: str, other: str, *, capitals: bool = False) -> str:
 
 def written_alike(one: str, other: str) -> bool:
     """Whether two units are one but for the freedom in writing it: spaces, signs, and capitals where these make no other scale."""
-    spelt = [_spelt(unit).replace("*", " ").replace(" ", "") for unit in (one, other)]
+    spelt = [bare(unit) for unit in (one, other)]
     if spelt[0].lower() != spelt[1].lower():
         return False
     return spelt[0] == spelt[1] or slip(one, other) is None
+
+
+def bare(unit: str) -> str:
+    """A unit without the freedom in writing it, for comparing alone: "m2" as "m^2", "A·s" and "A s" as "As"."""
+    return _spelt(unit).replace("*", " ").replace(" ", "")
 
 
 def slip(found: str, given: str) -> float | None:

@@ -80,7 +80,9 @@ class DescentOptions:
     seed: int = 0
     to_beat: float = float("inf")
     numbers: Iterator[int] = field(default_factory=lambda: count(1), compare=False, repr=False)
-    """Of the descents on whole records, for whom they are told to."""
+    """Of the descents on whole records, for whom they are told to. It stands here since descents of one estimation are begun in many
+    places; :func:`descend_nested` begins it anew.
+    """
 
     def fine_enough(self, problem: Problem) -> Simulator:
         """The simulator with as many sub-steps as ``problem`` needs at its values."""

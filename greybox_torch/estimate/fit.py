@@ -11,6 +11,7 @@ from greybox_torch.estimate.correlation import CorrelationMatrix, correlation_ma
 from greybox_torch.estimate.descent import Descent, DescentOptions, Progress
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.identifiability import Unidentifiable, identifiability
+from greybox_torch.estimate.information import UNSEEN, energy_of
 from greybox_torch.estimate.levenberg_marquardt import DEFAULT, Settings
 from greybox_torch.estimate.nested import descend_nested
 from greybox_torch.estimate.notes import notes
@@ -20,6 +21,9 @@ from greybox_torch.estimate.termination import Outcome, Termination
 from greybox_torch.estimate.uncertainty import Uncertainty, uncertainty
 from greybox_torch.linear_algebra import on_one_thread
 from greybox_torch.simulation.simulator import Simulator
+
+SAME_COST = {"double": 1e-9, "single": 1e-5}
+"""Relative change of the cost that rounding alone accounts for."""
 
 
 @dataclass(frozen=True)
@@ -141,7 +145,8 @@ def estimation_of(
 def _begun_where_without_effect(found: Descent, unidentifiable: tuple[Unidentifiable, ...]) -> np.ndarray:
     """The optimum (d,) with parameters that nothing depends on as they began: a descent leaves them where rounding errors lead it.
 
-    Where the cost is not the same there, they had an effect on the way, and it stays as it is.
+    Where the cost is not the same there, they had an effect on the way, and it stays as it is. So it does where the values as they began
+    and those found together break a constraint of the model.
     """
     run, point = found.run, found.optimum.point.copy()
     names, expected = run.problem.free_names, run.problem.expected[run.problem.free]
@@ -150,5 +155,14 @@ def _begun_where_without_effect(found: Descent, unidentifiable: tuple[Unidentifi
             point[names.index(one.parameters[0])] = expected[names.index(one.parameters[0])]
     if np.array_equal(point, found.optimum.point):
         return point
-    same = cost_of(run.at(point), run.simulator) <= (1 + 1e-9) * found.optimum.model.cost
-    return point if same else found.optimum.point
+    return point if run.admissible(point) and _as_good(run, point, found.optimum.point) else found.optimum.point
+
+
+def _as_good(run: FreeRun, point: np.ndarray, optimum: np.ndarray) -> bool:
+    """Whether the cost at ``point`` (d,) is that of the ``optimum`` (d,), but for rounding and for effects too small to be seen.
+
+    Both are computed anew: a run that has learned where its windows start rounds in another way.
+    """
+    precision = run.simulator.options.precision
+    there, here = (cost_of(run.at(z), run.simulator) for z in (point, optimum))
+    return there <= (1 + SAME_COST[precision]) * here + UNSEEN[precision] * energy_of(run)

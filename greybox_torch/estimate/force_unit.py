@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from greybox_torch.data.units import bare
 from greybox_torch.model import Balance, Body, GreyBoxModel, Port
 from greybox_torch.model.own_rate import adds_to_rate, divided_by
 from greybox_torch.model.ports import Actuator, Sensor
 
-_PER_SECOND = {"J": "W", "kJ": "kW", "MJ": "MW", "W s": "W", "A s": "A", "C": "A"}
-"""What a store that has so much of it for each unit of its level takes in, where that has a name of its own."""
+_PER_SECOND = {"J": "W", "kJ": "kW", "MJ": "MW", "Ws": "W", "As": "A", "C": "A"}
+"""What a store that has so much of it for each unit of its level takes in, where that has a name of its own; keys are bare."""
 
-_TIMES = {("m", "m^2"): "m^3/s", ("V", "F"): "A", ("V", "A s/V"): "A"}
-"""By the units of a level and of what its rate is multiplied by."""
+_TIMES = {("m", "m^2"): "m^3/s", ("V", "F"): "A", ("V", "As/V"): "A"}
+"""By the units of a level and of what its rate is multiplied by, bare."""
 
-_TEMPERATURES = {"K", "degC", "°C", "C"}
+_TEMPERATURES = {"K", "degC", "C"}
 
 
 def force_unit(model: GreyBoxModel, port: Port, units: Mapping[str, str]) -> str:
@@ -36,9 +37,9 @@ def _of_balance(model: GreyBoxModel, port: Balance, level: str) -> str:
     capacity = divided_by(model, port)
     if capacity is None:
         return f"{level}/s" if adds_to_rate(model, port) else ""
-    if (level, capacity.unit) in _TIMES:
-        return _TIMES[level, capacity.unit]
-    stored, _, per = capacity.unit.rpartition("/")
-    if not stored or (per != level and not {per, level} <= _TEMPERATURES):
+    if (bare(level), bare(capacity.unit)) in _TIMES:
+        return _TIMES[bare(level), bare(capacity.unit)]
+    stored, _, per = (part.strip() for part in capacity.unit.rpartition("/"))
+    if not stored or (bare(per) != bare(level) and not {bare(per), bare(level)} <= _TEMPERATURES):
         return ""
-    return _PER_SECOND.get(stored, f"{stored}/s")
+    return _PER_SECOND.get(bare(stored), f"{stored}/s")

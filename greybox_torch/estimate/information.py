@@ -44,7 +44,7 @@ class Information:
     def unmoved(self) -> list[int]:
         """The unknowns that, changed by their own size, do not change the outputs."""
         diagonal, own = np.diag(self.hessian), np.abs(self.z)
-        energy = max(_energy(self.run), 1e-300)
+        energy = max(energy_of(self.run), 1e-300)
         parameter = np.arange(len(self.z)) < self.run.n_parameters
         unseen = parameter & (own > 0) & (own**2 * diagonal < UNSEEN[self.precision] * energy)
         return np.flatnonzero(unseen | (diagonal <= 0)).tolist()
@@ -87,7 +87,7 @@ def echelon(null: np.ndarray, negligible: float = NEGLIGIBLE) -> np.ndarray:
     return np.where(np.abs(rows) < negligible * largest, 0.0, rows)
 
 
-def _energy(run: FreeRun) -> float:
+def energy_of(run: FreeRun) -> float:
     """Sum of squares of the weighted outputs about their means."""
     y = run.problem.records.y * run.problem.weights[:, None]
     return float(np.nansum((y - np.nanmean(y, axis=1, keepdims=True)) ** 2))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 
@@ -25,6 +26,7 @@ def descend_nested(problem: Problem, options: DescentOptions, starts: int | None
     It never ends worse than the simpler model estimated in the same way; a search of that for other valleys is given up where it is clearly
     behind what was found.
     """
+    options = replace(options, numbers=count(1))
     found = descend(problem, options, starts)
     zero = problem.free & (problem.values == 0.0)
     if not zero.any() or zero.sum() == problem.free.sum():

@@ -32,6 +32,7 @@ class InputLag(Lag):
     explanation = "The input acts through a lag (current loop, valve)."
     experiment = "a step or a chirp of the input, to tell a lag from a delay"
     looks = (2, 6, 20, 60)
+    acting, symbol = "w acts in the place of the input u", "u"
 
     def unit(self, around: Surroundings) -> str:
         return around.force_unit

@@ -27,14 +27,17 @@ class Lag(Mechanism):
     source = "L. Ljung, System Identification, 2nd ed., 1999"
     looks: tuple[int, ...]
     """Time constants that the screen looks at, in samples."""
+    acting: str
+    """Where w acts, in words."""
+    symbol: str
+    """The signal's, in the formula."""
 
     def __init__(self, second_order: bool = False) -> None:
         self.second_order = second_order
 
     def described_here(self) -> str:
-        first, _, second = self.described().partition("; with second_order ")
-        begun = first[: first.index(": ") + 2] if ": " in first else ""
-        return f"{begun}{second.replace('2ζ', '(2 damping)')}" if self.second_order else first
+        second = "(T/(2 damping))² d²w/dt² + " if self.second_order else ""
+        return f"{self.acting}: {second}T dw/dt = {self.symbol} − w"
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         step = around.sample_time

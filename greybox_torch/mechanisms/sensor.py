@@ -30,6 +30,7 @@ class SensorLag(Lag):
     explanation = "The output is recorded through a lag (filter, sensor dynamics)."
     experiment = "a second sensor, or a known motion"
     looks = (2, 6, 20)
+    acting, symbol = "w is recorded in the place of the output y", "y"
 
     def unit(self, around: Surroundings) -> str:
         return around.units.get("output", "")

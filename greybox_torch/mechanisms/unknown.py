@@ -154,6 +154,14 @@ class Unknown(Mechanism):
         spacing = reached.span / (self.knots - 3)
         return [reached.low + spacing * (k - 1) for k in range(self.knots)]
 
+    def grid(self, around: Surroundings, points: int) -> torch.Tensor:
+        """So many values of the signal over its range; over a part of that as many more, in their order, since it may be narrow."""
+        span = around.ranges[self.signal]
+        whole = torch.linspace(span.low, span.high, points, dtype=torch.float64)
+        if not self.part:
+            return whole
+        return torch.cat([whole, torch.linspace(*self.part, points, dtype=torch.float64)]).sort().values
+
     def _heights(self, p: Signals) -> dict[int, Any]:
         """The heights of the bumps by number; over a turn of those before and after it as well."""
         numbers = range(-REACH, self.knots + REACH) if self.closed else range(self.knots)

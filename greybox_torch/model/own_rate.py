@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -51,13 +52,18 @@ def divided_by(model: GreyBoxModel, port: Port) -> Parameter | None:
     acting = [
         q
         for q in model.declared_parameters
-        if not torch.allclose(_raised(model, port, {q.name: 2.0 * q.value + 1.0}), raised, rtol=1e-9)
+        if not torch.allclose(_raised(model, port, {q.name: _changed(q.value)}), raised, rtol=1e-9)
     ]
     if len(acting) != 1 or not _is_one(raised * acting[0].value):
         return None
     (one,) = acting
-    other = 2.0 * one.value + 1.0
+    other = _changed(one.value)
     return one if _is_one(_raised(model, port, {one.name: other}) * other) else None
+
+
+def _changed(value: float) -> float:
+    """Another value, farther from zero on the same side: none stays as it is, none is its negative, and none becomes zero."""
+    return 2.0 * value + math.copysign(1.0, value)
 
 
 def _is_one(values: torch.Tensor) -> bool:

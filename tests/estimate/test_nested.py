@@ -10,9 +10,10 @@ import pytest
 
 import greybox_torch as gt
 from greybox_torch.estimate import nested
-from greybox_torch.estimate.descent import descend
+from greybox_torch.estimate.descent import DescentOptions, descend
 from greybox_torch.estimate.fit import fit_records
 from greybox_torch.estimate.global_search import look_around
+from greybox_torch.estimate.levenberg_marquardt import DEFAULT
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.simulation.simulator import Simulator
 
@@ -107,3 +108,15 @@ def test_a_search_that_is_clearly_behind_is_given_up(problem: Problem, share: fl
     simulator, best = Simulator.of(problem.model, problem.free_names), fit_records(problem, starts=1).mse
     found = look_around(problem, simulator, starts=8, to_beat=share * best)
     assert (found is None) is given_up
+
+
+def test_options_used_twice_number_the_descents_anew(problem: Problem) -> None:
+    """Seen by reading: the descents of a second estimation went on from the number of the last of the first."""
+    told: list[str] = []
+    options = DescentOptions(
+        Simulator.of(problem.model, problem.free_names), DEFAULT, lambda stage, k, error: told.append(stage)
+    )
+    nested.descend_nested(problem, options, 1)
+    first, told[:] = told.copy(), []
+    nested.descend_nested(problem, options, 1)
+    assert "whole records" in first and told == first

@@ -51,6 +51,11 @@ def test_a_force_at_a_balance_has_the_unit_of_the_rate_where_it_adds_to_it(port:
         ("degC", "J/K", "W"),
         ("K", "kJ/K", "kW"),
         ("m", "m^2", "m^3/s"),
+        ("m", "m²", "m^3/s"),
+        ("m", "m2", "m^3/s"),
+        ("V", "A·s/V", "A"),
+        ("bar", "m³ / bar", "m³/s"),
+        ("°C", "W·s/K", "W"),
         ("bar", "m^3/bar", "m^3/s"),
         ("m", "kg/K", ""),
         ("m", "", ""),
@@ -83,3 +88,15 @@ def test_a_force_divided_by_more_than_one_parameter_is_divided_by_none_of_them()
     found = divided_by(room, port)
     assert found is not None and found.name == "C"
     assert divided_by(Block(), port) is None and divided_by(room, Room.ports[1]) is None
+
+
+def test_a_parameter_of_minus_one_is_changed_as_well() -> None:
+    """Seen by reading: twice minus one and one more is minus one, so that what acts was taken for what does not."""
+
+    class Turned(Room):
+        parameters: ClassVar = [Parameter("C", 500.0, unit="J/K"), Parameter("sign", -1.0)]
+
+        def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+            return {"air": (u.heat + port.room) / (p.C * p.sign**2), "water": port.tank - 0.1 * x.water}
+
+    assert divided_by(Turned(), Room.ports[0]) is None

@@ -15,7 +15,8 @@ from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit, states_along
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
+from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.simulation.simulator import Simulator
 
 BINS = 24
@@ -71,16 +72,24 @@ def law_curve(model: AugmentedModel, attachment: Attachment, around: Surrounding
     signals = attachment.mechanism.signals()
     if attachment.mechanism.states(around) or not signals or signals[0] not in around.ranges:
         return None
-    name = signals[0]
-    grid = torch.linspace(around.ranges[name].low, around.ranges[name].high, POINTS, dtype=torch.float64)
+    name, grid = signals[0], _grid(attachment.mechanism, around)
     if "delayed" in attachment.mechanism.needs or attachment.mechanism.links:
         return None
     still = [n for n in around.ranges if n.startswith("speed")] if attachment.mechanism.by_rate else ()
     held = {n: torch.full_like(grid, around.ranges[n].rms * (n not in still)) for n in around.ranges if n != name}
     force = model.curve(attachment, {**held, name: grid}, problem.parameter_tensors)
     unit = around.units.get("deflection", "") if attachment.mechanism.kinematic else around.force_unit
-    values = np.broadcast_to(np.asarray(force, dtype=float), (POINTS,))
+    values = np.broadcast_to(np.asarray(force, dtype=float), grid.shape)
     return Curve(name, around.units.get(name, ""), grid.numpy(), values, unit)
+
+
+def _grid(mechanism: Mechanism, around: Surroundings) -> torch.Tensor:
+    """Values of the first signal that a law is drawn over, within its range: more of them where a free curve is over a part of that."""
+    span = around.ranges[mechanism.signals()[0]]
+    if isinstance(mechanism, Unknown):
+        grid = mechanism.grid(around, POINTS)
+        return grid[(grid >= span.low) & (grid <= span.high)]
+    return torch.linspace(span.low, span.high, POINTS, dtype=torch.float64)
 
 
 def with_samples(curve: Curve | None, along: Mapping[str, np.ndarray]) -> Curve | None:

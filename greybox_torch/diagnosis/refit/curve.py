@@ -141,7 +141,8 @@ def drawing(
 ) -> dict[str, float]:
     """The values of a hypothesis with a free curve in the place of a law, whose force it draws over the signal's range."""
     around = surroundings[curve.port]
-    grid = _grid(curve, around)
+    assert isinstance(curve.mechanism, Unknown)
+    grid = curve.mechanism.grid(around, POINTS)
     force = force_of(fitted, law, {_signal(curve): grid})
     return values_without(fitted, law) | _heights(curve, around, grid, np.broadcast_to(force, len(grid)))
 
@@ -166,16 +167,9 @@ def _heights(curve: Attachment, around: Surroundings, grid: torch.Tensor, force:
 
 def _drawn(fitted: Hypothesis, curve: Attachment, around: Surroundings) -> tuple[torch.Tensor, np.ndarray]:
     """Values of the curve's signal over its range, and the learned force there."""
-    grid = _grid(curve, around)
-    return grid, force_of(fitted, curve, {_signal(curve): grid})
-
-
-def _grid(curve: Attachment, around: Surroundings) -> torch.Tensor:
-    """Values of the curve's signal over its range; over a part of that as many more, in their order."""
     assert isinstance(curve.mechanism, Unknown)
-    span, part = around.ranges[curve.mechanism.signal], curve.mechanism.part
-    whole = torch.linspace(span.low, span.high, POINTS, dtype=torch.float64)
-    return torch.cat([whole, torch.linspace(*part, POINTS, dtype=torch.float64)]).sort().values if part else whole
+    grid = curve.mechanism.grid(around, POINTS)
+    return grid, force_of(fitted, curve, {_signal(curve): grid})
 
 
 def _signal(curve: Attachment) -> str:

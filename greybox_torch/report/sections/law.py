@@ -16,7 +16,7 @@ HARDLY = 0.05
 """Share of the samples that a bin would have if they were spread evenly, below which it has hardly any."""
 
 A_GAP = 5
-"""Bins with hardly any sample side by side from which a free curve is a guess there."""
+"""A gap is at least so many bins side by side with hardly any sample: a free curve is a guess there; a shorter stretch its ends hold."""
 
 _AT_PORT = ("speed", "position", "deflection", "rate", "level", "load", "input", "output")
 """Names that signals have at a port, whatever the model calls them."""
@@ -63,7 +63,7 @@ def _ends(curve: Curve) -> tuple[float, float]:
 
 
 def _gaps(curve: Curve) -> np.ndarray:
-    """Which of the curve's values (n,) lie where hardly any sample is, nor near them."""
+    """Which of the curve's values (n,) lie in a gap: among at least A_GAP bins side by side, each with hardly any sample."""
     if curve.seen is None:
         return np.zeros(len(curve.values), dtype=bool)
     few = curve.seen < max(1.0, HARDLY * float(curve.seen.mean()))

@@ -88,4 +88,19 @@ def test_words_name_the_parameters_of_the_form_that_was_found_alone(mechanism: s
     around = Surroundings({n: Range(-1.0, 1.0, 1.0) for n in ("input", "output", "speed")}, {}, "V", 0.01)
     for name in {"damping", "asymmetry", "base_speed"}:
         assert (name in law.described_here()) == (name in {p.name for p in law.parameters(around)})
-    assert not {"second_order", "by_direction", "ζ"} & set(law.described_here().replace("(", " ").split())
+    assert not [word for word in ("second_order", "by_direction", "ζ") if word in law.described_here()]
+
+
+@pytest.mark.parametrize("mechanism", ["input_lag", "sensor_lag"])
+def test_the_law_of_a_lag_is_the_one_of_its_documentation(mechanism: str) -> None:
+    """Whatever words stand between the two forms there."""
+    first, second = (LIBRARY[mechanism](richer) for richer in (False, True))
+    assert first.described().startswith(first.described_here())
+    assert second.described().endswith(second.described_here().split(": ")[1].replace("(2 damping)", "2ζ"))
+
+
+def test_the_law_of_a_lag_does_not_hang_on_the_sentence_of_its_documentation() -> None:
+    class Reworded(LIBRARY["input_lag"]):
+        """A lag. Of second order it has a damping as well."""
+
+    assert Reworded(True).described_here() == LIBRARY["input_lag"](True).described_here()

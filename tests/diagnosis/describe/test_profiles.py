@@ -1,0 +1,44 @@
+"""The law of an effect as a curve."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import torch
+
+from greybox_torch.diagnosis.describe.profiles import POINTS, law_curve
+from greybox_torch.diagnosis.effect import Curve
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.mechanism import Range, Surroundings
+from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.model.signals import parameter_signals
+
+AROUND = Surroundings({"speed": Range(-6.0, 6.0, 3.0)}, {}, "N m", 0.01)
+
+
+def drawn(motor, law: Unknown, highest: int) -> Curve:
+    """A curve whose bump of that number alone is one high."""
+    effect = attach(motor, "rotor", law)
+    model = AugmentedModel(motor, [effect], {"rotor": AROUND})
+    values = {q.name: q.value for q in model.declared_parameters} | {f"{effect.prefix}.w_{highest}": 1.0}
+    curve = law_curve(model, effect, AROUND, SimpleNamespace(parameter_tensors=parameter_signals(values)))
+    assert curve is not None
+    return curve
+
+
+@pytest.mark.parametrize("highest", range(1, 19, 4))
+def test_a_curve_over_a_part_is_drawn_with_its_peaks(motor, highest: int) -> None:
+    """Seen by reading: a twelfth of the range, and hardly one point for each of its twenty bumps."""
+    curve = drawn(motor, Unknown("speed", 20, part=(2.03, 3.03)), highest)
+    assert curve.force.max() == pytest.approx(1.0, abs=0.01)
+    assert len(curve.values) == 2 * POINTS and (np.diff(curve.values) >= 0).all()
+
+
+def test_a_curve_over_the_range_is_drawn_evenly_and_none_beyond_the_range(motor) -> None:
+    even = torch.linspace(-6.0, 6.0, POINTS, dtype=torch.float64).numpy()
+    np.testing.assert_array_equal(drawn(motor, Unknown("speed"), 3).values, even)
+    beyond = drawn(motor, Unknown("speed", 8, part=(5.5, 6.5)), 3).values
+    assert (beyond.min(), beyond.max()) == (-6.0, 6.0) and set(even) <= set(beyond)
