@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, TypeVar
 
-import numpy as np
 import torch
 
+from greybox_torch.checking.constant_channels import resting_at, rests
 from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
 from greybox_torch.estimate.precision import PRECISIONS
@@ -84,15 +84,13 @@ def check_estimation(data: DataSet) -> None:
 
 def check_moving(data: DataSet, model: GreyBoxModel) -> None:
     """Raises UserError where no output of the model moves in any experiment that is estimated from: every law would do."""
-    values = {
-        output.name: np.concatenate([recording.signals[output.name] for recording in data.estimation()])
-        for output in model.outputs
-    }
-    if values and all(np.nanmax(of) == np.nanmin(of) for of in values.values()):
-        stuck = ", ".join(f"{name}: {np.nanmax(of):.6g} throughout" for name, of in values.items())
+    runs, outputs = data.estimation(), [output.name for output in model.outputs]
+    if outputs and all(rests(run, name) for run in runs for name in outputs):
+        stuck = ", ".join(f"{name}: {resting_at(runs, name, None)}" for name in outputs)
         raise UserError(
-            f"{data.place('[[experiment]]')} no output moves in the experiments of role 'estimation' ({stuck}): nothing can be estimated "
-            "or found from them; expected recordings in which the machine moves, or other columns, where a sensor is stuck"
+            f"{data.place('[[experiment]]')} no output moves in the experiments of role 'estimation' ({stuck}, constant throughout): "
+            "nothing can be estimated or found from them; expected recordings in which the machine moves, or other columns, where a "
+            "sensor is stuck"
         )
 
 

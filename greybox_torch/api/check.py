@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from greybox_torch.api.check_result import CheckResult
-from greybox_torch.api.data_warnings import looked_at
+from greybox_torch.api.data_warnings import all_warnings
 from greybox_torch.checking.examine import examine
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.checking.negative_masses import negative_masses
@@ -59,7 +59,7 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
         if usable is not None:
             more, values = _with_data(data, usable)
             findings += more
-        findings += [Finding("warning", "card", one.found, one.write, data.path) for one in looked_at(data, usable)]
+        findings += [Finding("warning", "card", one.found, one.write, data.path) for one in all_warnings(data, usable)]
     return CheckResult(name, replace(examined, findings=in_order(findings)), in_order(findings), values)
 
 

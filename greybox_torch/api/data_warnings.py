@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Protocol
 
 from greybox_torch.checking.constant_channels import constant_channels
@@ -27,27 +25,22 @@ class DataWarning(Protocol):
     def write(self) -> str: ...
 
 
-@dataclass(frozen=True)
 class NothingToEstimateFrom:
     """No experiment has the role "estimation"."""
 
-    found: str = (
+    found = (
         '[[experiment]] role: no experiment has the role "estimation", which `greybox fit`, `diagnose` and `train` need'
     )
-    write: str = 'role = "estimation" for at least one'
+    write = 'role = "estimation" for at least one'
 
     def __str__(self) -> str:
         return f"{self.found}; expected {self.write}"
 
 
-def looked_at(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning]:
-    """The warnings where data are looked at before anything is done with them, for what the other commands refuse or do not need."""
-    return [*_nothing_to_estimate_from(data), *data_warnings(data, model)]
-
-
-def _nothing_to_estimate_from(data: DataSet) -> Iterator[NothingToEstimateFrom]:
-    if not data.estimation():
-        yield NothingToEstimateFrom()
+def all_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning]:
+    """Those of :func:`data_warnings`, and before them what other commands refuse: for those that look at data before anything is done."""
+    refused = () if data.estimation() else (NothingToEstimateFrom(),)
+    return [*refused, *data_warnings(data, model)]
 
 
 def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning]:

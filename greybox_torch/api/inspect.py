@@ -11,7 +11,7 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.api.data_warnings import DataWarning, looked_at
+from greybox_torch.api.data_warnings import DataWarning, all_warnings
 from greybox_torch.api.result import HELD_OUT, Result
 from greybox_torch.data import DataSet
 from greybox_torch.report import notebook
@@ -51,7 +51,7 @@ class InspectionResult(Result):
     @cached_property
     def warnings(self) -> list[DataWarning]:
         """What may be wrong with the data although they can be read."""
-        return looked_at(self.data, self.checked)
+        return all_warnings(self.data, self.checked)
 
     def __repr__(self) -> str:
         return f"<inspection of {self.data.name}: {', '.join(r.name for r in self.data.recordings)}>"

@@ -9,14 +9,13 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from greybox_torch.api.arguments import (
     check_data,
     check_device,
     check_estimation,
     check_kind,
     check_model,
+    check_moving,
     check_names,
     check_whole,
 )
@@ -24,8 +23,8 @@ from greybox_torch.api.train_range import beyond_learned
 from greybox_torch.api.train_result import TrainingResult
 from greybox_torch.api.train_scores import HYBRID, free_runs_of
 from greybox_torch.data import DataSet
-from greybox_torch.errors import ArgumentError, UserError
-from greybox_torch.estimate.problem import Problem, make_problem
+from greybox_torch.errors import ArgumentError
+from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.training import Explanation, Report, Trained, TrainingSettings, train_hybrid
 from greybox_torch.training import explain as explain_network
@@ -83,7 +82,7 @@ def train(
     if resume and snapshot is None:
         raise ArgumentError("resume", True, "expected a snapshot to take the training up from")
     make_problem(data, given, data.recordings)  # all of them fit the model, whatever is trained on
-    _check_moving(data, make_problem(data, given, data.estimation()))
+    check_moving(data, given)
     trained = partial(
         train_hybrid,
         data,
@@ -100,18 +99,6 @@ def train(
     progress(Report("scoring", 1.0))
     runs = free_runs_of(data, given, found, explanation, device)
     return TrainingResult(data, given, found, explanation, runs, beyond_learned(data, given, found, runs[HYBRID]))
-
-
-def _check_moving(data: DataSet, problem: Problem) -> None:
-    """Raises UserError where no output of the experiments to train on moves: every network would do."""
-    records = problem.records
-    spans = [records.y[:, records.span(e)] for e in range(len(records.first))]
-    if not any(np.nanmax(y) > np.nanmin(y) for one in spans for y in one if not np.isnan(y).all()):
-        outputs = ", ".join(output.name for output in problem.model.outputs)
-        raise UserError(
-            f"{data.place('[[experiment]]')} no output moves in the experiments of role 'estimation' ({outputs}: constant throughout); "
-            "expected recordings in which the machine moves"
-        )
 
 
 def _explained(

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from greybox_torch.data import DataSet, Recording
+from greybox_torch.estimate.name_lists import brief
 from greybox_torch.model import GreyBoxModel
-
-_SHOWN = 4
-"""Most experiments that a message names."""
 
 
 @dataclass(frozen=True)
@@ -27,10 +25,9 @@ class ConstantChannel:
     @property
     def found(self) -> str:
         """What is there, in a sentence."""
-        named = ", ".join(f'"{name}"' for name in self.experiments[:_SHOWN])
-        more = f" and {len(self.experiments) - _SHOWN} more" if len(self.experiments) > _SHOWN else ""
+        named = brief([f'"{name}"' for name in self.experiments])
         one = "experiment" if len(self.experiments) == 1 else "experiments"
-        return f'channel "{self.channel}" is constant ({self.value}) in {one} {named}{more}: {self.lacks}'
+        return f'channel "{self.channel}" is constant ({self.value}) in {one} {named}: {self.lacks}'
 
     def __str__(self) -> str:
         return f"{self.found}; expected {self.write}"
@@ -44,18 +41,17 @@ def constant_channels(data: DataSet, model: GreyBoxModel | None) -> Iterator[Con
     """
     inputs = None if model is None else {one.name for one in model.inputs}
     for name, channel in data.channels.items():
-        resting = [recording for recording in data.recordings if _rests(recording, name)]
+        resting = [recording for recording in data.recordings if rests(recording, name)]
         estimated = data.estimation() or data.recordings
-        values = sorted({_value(recording, name) for recording in resting})
+        values = _values(resting, name)
         if not resting or (inputs is None and (len(resting) < len(data.recordings) or len(values) > 1)):
             continue
         if inputs is not None and name in inputs:
             resting = [recording for recording in resting if recording in estimated]
-            values = sorted({_value(recording, name) for recording in resting})
+            values = _values(resting, name)
             if len(resting) < len(estimated) or len(values) > 1:
                 continue
-        unit = f" {channel.unit}" if channel.unit else ""
-        shown = f"{values[0]:.6g}{unit}" if len(values) == 1 else "at a value of its own in each"
+        shown = resting_at(resting, name, channel.unit)
         yield ConstantChannel(name, shown, tuple(recording.name for recording in resting), *_told(name, inputs))
 
 
@@ -76,10 +72,17 @@ def _told(name: str, inputs: set[str] | None) -> tuple[str, str]:
     )
 
 
-def _rests(recording: Recording, name: str) -> bool:
+def rests(recording: Recording, name: str) -> bool:
+    """Whether a channel has one value throughout a recording."""
     values = recording.signals[name]
     return bool(np.nanmax(values) == np.nanmin(values))
 
 
-def _value(recording: Recording, name: str) -> float:
-    return float(np.nanmax(recording.signals[name]))
+def resting_at(recordings: Sequence[Recording], name: str, unit: str | None) -> str:
+    """In words, where a channel rests in recordings."""
+    values = _values(recordings, name)
+    return " ".join(filter(None, [f"{values[0]:.6g}", unit])) if len(values) == 1 else "at a value of its own in each"
+
+
+def _values(recordings: Sequence[Recording], name: str) -> list[float]:
+    return sorted({float(np.nanmax(recording.signals[name])) for recording in recordings})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -14,12 +15,17 @@ from greybox_torch.data.readers import read_table
 from greybox_torch.data.source import source_of
 from greybox_torch.errors import UserError
 
-_RANGES, _SPREADS = 5.0, 200.0
-"""How far away it is: in ranges of the channel, and in what a sample usually differs from the middle of its neighbours."""
+_ODD = 0.05
+"""Share of the samples at either end that the range leaves out, so that the error values themselves do not widen it."""
+_RANGES = 5.0
+"""Ranges of the channel that one lies off at least: what a machine does in one sample stays near the range it moves in, and error values
+are the largest number of a format, or one that nobody would measure."""
+_SPREADS = 600.0
+"""And what a sample usually differs from the middle of its neighbours, the median: about 500 standard deviations of noise. A blow in a
+channel that rests otherwise leaves its range far behind, but is seldom that far above the noise."""
 _RANGES_OF_STEPS = 100.0
-"""In ranges, where samples seldom differ from their neighbours: an input in steps, an encoder at rest."""
-_WITHIN, _USUAL = 98.0, 95.0
-"""Percent of the samples that a range and a usual difference are of, so that a few odd ones and their neighbours do not widen them."""
+"""In ranges, where most samples lie between their neighbours exactly and there is no noise to measure with: an encoder at rest may flicker,
+an input in steps may have a single pulse. -9999 is that far away wherever a channel moves within less than 100 units."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +43,7 @@ class LoneSample:
     @property
     def found(self) -> str:
         """What is there, in a sentence."""
-        others = f" (and {self.count - 1} more such samples)" if self.count > 1 else ""
+        others = f" (and {self.count - 1} more such sample{'s' * (self.count > 2)})" if self.count > 1 else ""
         return (
             f'[[experiment]] "{self.experiment}", channel "{self.channel}": {self.place}: found {self.value:.6g} between '
             f"{self.before:.6g} and {self.after:.6g}{others}, as loggers write where a value is missing"
@@ -79,8 +85,9 @@ def _lone(values: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.flo
     if len(values) < 10:
         return np.empty(0, dtype=np.intp), np.empty(0)
     left, right = values[1:-1] - values[:-2], values[1:-1] - values[2:]
-    low, high = np.percentile(values, [100.0 - _WITHIN, _WITHIN])
-    usual = float(np.percentile(np.abs(left + right) / 2.0, _USUAL))
+    cut = math.ceil(_ODD * len(values))
+    low, high = np.sort(values)[[cut, -1 - cut]]
+    usual = float(np.median(np.abs(left + right))) / 2.0  # every lone sample spoils three of them, a percentile soon
     least = max(_RANGES * (high - low), _SPREADS * usual) if usual > 0.0 else _RANGES_OF_STEPS * (high - low)
     nearer = np.where(left * right > 0.0, np.minimum(np.abs(left), np.abs(right)), 0.0)
     lone = np.flatnonzero(nearer > least) if high > low else np.empty(0, dtype=np.intp)
@@ -89,19 +96,24 @@ def _lone(values: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.flo
 
 def _read_again(data: DataSet, recording: Recording, name: str, sample: int) -> tuple[str, NDArray[np.float64] | None]:
     """Where a sample stands, and the samples as the file has them; None where the channel is not a column of one."""
-    place = f"sample {sample} (the first is 0)"
+    try:
+        found = _in_its_file(data, recording, name, sample)
+    except (UserError, KeyError):  # the card or the file was replaced meanwhile
+        found = None
+    return found or (f"sample {sample} (the first is 0)", None)
+
+
+def _in_its_file(data: DataSet, recording: Recording, name: str, sample: int) -> tuple[str, NDArray[np.float64]] | None:
     if data.path is None or recording.source is None:
-        return place, None
+        return None
     card = read_card(data.path)
     said = {f"{entry.name}{end}": entry for entry in card.experiment for end in ("", " (held out)")}.get(recording.name)
     if said is None or card.decimate or card.resample or card.channels[name].derivative or len(said.file) > 1:
-        return place, None
+        return None
     columns = card.channels[name].expression(said.columns.get(name)).columns
     if len(columns) != 1:
-        return place, None
-    try:
-        source = source_of([data.path.parent / said.file[0]], None, columns, None, read_table)
-    except UserError:  # replaced meanwhile
-        return place, None
+        return None
+    source = source_of([data.path.parent / said.file[0]], None, columns, None, read_table)
     start, stop = recording.rows
-    return source.place(columns[0], start + sample), source.columns[columns[0]][start:stop]
+    values = source.columns[columns[0]][start:stop]
+    return (source.place(columns[0], start + sample), values) if len(values) == len(recording.time) else None

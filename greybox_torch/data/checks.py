@@ -52,11 +52,13 @@ def check_time(time: NDArray[np.float64], place: Place) -> None:
 def _past_midnight(time: NDArray[np.float64], later: int) -> str:
     """What to do where a time of day begins anew, to end a message; empty elsewhere."""
     before, after = time[later - 1], time[later]
-    if not (0.0 <= after < before <= _DAY and before - after > _DAY / 2):
+    steps = np.diff(time)
+    if not (0.0 <= after < before <= _DAY and before - after > _DAY / 2 and (steps > 0.0).any()):
         return ""
     return (
-        f"; the time of day passes midnight here: give stamps with the date, or sample_time = {time[1] - time[0]:.6g} in the place of "
-        "time, or two experiments, with the rows before this sample and from it on"
+        "; the time of day passes midnight here: give stamps with the date, or "
+        f"sample_time = {np.median(steps[steps > 0.0]):.6g} in the place of time, or two experiments, with the rows before this sample "
+        "and from it on"
     )
 
 

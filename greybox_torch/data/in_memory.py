@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
@@ -141,8 +141,23 @@ def _seconds(time: Any, where: str) -> NDArray[np.float64]:
         return np.where(np.isnat(stamps), np.nan, seconds)
     dated = isinstance(stamps, np.ndarray) and stamps.dtype.kind == "O" and stamps.ndim == 1 and stamps.size
     if dated and all(isinstance(at, datetime) for at in stamps):
-        return np.array([(at - stamps[0]).total_seconds() for at in stamps])  # with a time zone NumPy knows no dates
+        return _since_the_first(list(stamps), where)
     return numbers(stamps, where)
+
+
+def _since_the_first(stamps: Sequence[datetime], where: str) -> NDArray[np.float64]:
+    """Seconds of dates and times, for with a time zone NumPy knows none. pandas.NaT, which equals nothing, is a missing one."""
+    aware = [at.utcoffset() is not None if at == at else None for at in stamps]
+    if True in aware and False in aware:
+        k = aware.index(not next(one for one in aware if one is not None))
+        found = "with a time zone" if aware[k] else "without a time zone"
+        raise UserError(
+            f"{where}, sample {k} (the first is 0): found {stamps[k]} {found}, unlike those before it; "
+            "expected a time zone in all time stamps, or in none"
+        )
+    if True in aware:  # two of one zone are subtracted by the clock on the wall, which jumps in spring and autumn
+        stamps = [at.astimezone(UTC) if at == at else at for at in stamps]
+    return np.array([(at - stamps[0]).total_seconds() for at in stamps])
 
 
 def _common_length(place: str, arrays: Mapping[str, NDArray]) -> int:

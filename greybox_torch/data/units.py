@@ -14,7 +14,7 @@ _LONG_NUMBER = re.compile(r"\d{3,}|\*\*|\^\s*-?\s*\d{2,}")
 _TURNS = re.compile(r"(1|U|r|tr|rev)\s*/\s*min|min\s*\^?\s*(-1|⁻¹)")
 """Turns per minute, as data loggers write them; beside angles and turns, for a rate of anything else may be 1/min."""
 _NAMED_TURNS = re.compile(r"^\W*(?:U|r|tr|rev)\s*/\s*(min|s)\b\W*(?=$|/)")
-_ANGLE = re.compile(r"\b(rad|deg|degrees?|rev|revolutions?|turns?|cycles?|mrad|rps)\b|rpm\b|°")
+_ANGLE = re.compile(r"\b(rad|deg|degrees?|rev|revolutions?|turns?|cycles?|mrad|rps)\b|rpm\b")
 _RATE = " / s"
 _WRITTEN = {"°C": "degC", "°F": "degF", "°": "deg", "·": "*", "²": "^2", "³": "^3", "μ": "µ"}
 _POWER = re.compile(r"(?<=[A-Za-zµ])(-?[1-4])(?![\w.])")
@@ -93,9 +93,12 @@ def _meant(unit: str, other: str, *, capitals: bool = False) -> str:
 
 
 def written_alike(one: str, other: str) -> bool:
-    """Whether two units are one but for the freedom in writing it: spaces, signs, and capitals where these make no other scale."""
+    """Whether two units are one but for the freedom in writing it: spaces, signs, and capitals where these make no other unit."""
     spelt = [bare(unit) for unit in (one, other)]
     if spelt[0].lower() != spelt[1].lower():
+        return False
+    dimensions = [_dimension(unit) for unit in (one, other)]
+    if None not in dimensions and dimensions[0] != dimensions[1]:  # "m s" and "ms", "A" and "a"
         return False
     return spelt[0] == spelt[1] or slip(one, other) is None
 

@@ -12,6 +12,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.data.card import read_card
 from greybox_torch.data.columns import columns_of
 from greybox_torch.data.readers import read_table
+from greybox_torch.data.readers.table import Table
 from greybox_torch.data.units import conversion
 from greybox_torch.drafting.clock import is_clock, named_like_a_clock
 from greybox_torch.drafting.contradicted import time_in
@@ -60,25 +61,35 @@ def contradicted_steps(data: DataSet) -> Iterator[ContradictedSteps]:
     if card.time is not None or card.sample_time is None:
         return
     for file in dict.fromkeys(data.path.parent / name for entry in card.experiment for name in entry.file):
-        try:
-            told = _told(file, card.sample_time)
-        except UserError:  # a format that cannot list its columns, or a column of text
-            continue
+        told = _told(file, card.sample_time)
         if told is not None:
             yield told
             return
 
 
 def _told(file: Path, sample_time: float) -> ContradictedSteps | None:
-    for name in filter(named_like_a_clock, columns_of(file).names):
-        stamps = read_table(file, (name,)).columns[name]
+    try:
+        names = columns_of(file).names
+    except UserError:  # a format that cannot list its columns
+        return None
+    for name in filter(named_like_a_clock, names):
+        try:
+            table = read_table(file, (name,))
+        except UserError:  # a column of text
+            continue
+        stamps = table.columns[name]
         if not is_clock(stamps):
             continue
         steps = np.diff(stamps)
-        usual, unit = float(np.median(steps)), time_in(name)
+        usual, unit = float(np.median(steps)), _unit(table, name)
         if not unit and usual == 1.0:  # counts samples
             return None
         seconds = [conversion(one, "s", "")[0] for one in ((unit,) if unit else _UNITS)]
         same = [abs(step * s / sample_time - 1.0) < _SAME for step in (usual, float(steps.mean())) for s in seconds]
         return None if any(same) else ContradictedSteps(file.name, name, usual, unit, sample_time)
     return None
+
+
+def _unit(table: Table, column: str) -> str:
+    """The unit of time stamps that the file says, or else their name."""
+    return time_in(f"[{table.units.get(column, '').strip('[]() ')}]") or time_in(column)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -37,7 +38,7 @@ def test_a_stuck_output_is_told_once(rotor: GreyBoxModel) -> None:
     stuck = data((MOVING, STILL, "estimation"), (MOVING, STILL, "validation"))
     (told,) = data_warnings(stuck, rotor)
     assert str(told).startswith(
-        'channel "speed" is constant (22) in experiments "run 0", "run 1": an output that never moves says nothing'
+        'channel "speed" is constant (22) in experiments "run 0" and "run 1": an output that never moves says nothing'
     )
 
 
@@ -60,16 +61,22 @@ def test_an_input_may_rest_in_one_experiment_or_differ_between_them(rotor: GreyB
 def test_without_a_model() -> None:
     (told,) = gt.inspect(data((STILL, MOVING, "estimation"), (STILL, MOVING, "validation"))).warnings
     assert told.found.startswith(
-        'channel "voltage" is constant (22) in experiments "run 0", "run 1": nothing can be learned'
+        'channel "voltage" is constant (22) in experiments "run 0" and "run 1": nothing can be learned'
     )
 
 
-@pytest.mark.parametrize("function", [gt.fit, gt.diagnose])
-def test_nothing_is_found_where_nothing_moves(rotor: GreyBoxModel, function: Callable[..., Any]) -> None:
-    runs = data((MOVING, STILL, "estimation"), (MOVING, MOVING, "validation"))
-    with pytest.raises(
-        gt.UserError, match=r"no output moves in the experiments of role 'estimation' \(speed: 22 throughout\)"
-    ):
+@pytest.mark.parametrize("function", [gt.fit, gt.diagnose, gt.train])
+@pytest.mark.parametrize(("other", "at"), [(STILL, "22"), (2 * STILL, "at a value of its own in each")])
+def test_nothing_is_found_where_nothing_moves(
+    rotor: GreyBoxModel, function: Callable[..., Any], other: np.ndarray, at: str
+) -> None:
+    runs = data((MOVING, STILL, "estimation"), (MOVING, other, "estimation"), (MOVING, MOVING, "validation"))
+    message = f"no output moves in the experiments of role 'estimation' (speed: {at}, constant throughout)"
+    with pytest.raises(gt.UserError, match=re.escape(message)):
         function(rotor, runs)
-    failed = gt.fit_many(rotor, [runs], return_exceptions=True)[0]
-    assert isinstance(failed, gt.UserError)
+    assert message in str(gt.fit_many(rotor, [runs], return_exceptions=True)[0])
+
+
+def test_many_experiments_are_not_all_named(rotor: GreyBoxModel) -> None:
+    (told,) = constant_channels(data(*[(MOVING, STILL, role) for role in ("estimation", *7 * ["validation"])]), rotor)
+    assert '"run 4" and 3 more: ' in told.found

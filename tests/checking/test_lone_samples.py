@@ -24,7 +24,8 @@ file = "run.csv"
 
 
 def told(values: np.ndarray) -> list[str]:
-    return [str(one) for one in lone_samples(DataSet([Recording.from_arrays("run", {"a": values}, sample_time=0.01)]))]
+    run = Recording.from_arrays("run", {"a": values}, sample_time=0.01)
+    return [str(one) for one in lone_samples(DataSet([run], held_out_by_default=False))]
 
 
 def changed(values: np.ndarray, at: list[int], value: float) -> np.ndarray:
@@ -38,7 +39,15 @@ def test_an_error_value(values: np.ndarray) -> None:
     (one,) = told(changed(values, [150], -9999.0))
     assert 'channel "a": sample 150 (the first is 0): found -9999 between' in one
     (both,) = told(changed(values, [120, 150], -9999.0))
-    assert "(and 1 more such samples)" in both
+    assert "(and 1 more such sample), as" in both
+
+
+@pytest.mark.parametrize(("samples", "errors"), [(10, 1), (30, 1), (30, 2), (400, 1), (400, 12)])
+def test_in_short_recordings_and_many_of_them(samples: int, errors: int) -> None:
+    at = np.linspace(3, samples - 4, errors).astype(int).tolist()
+    (one,) = told(changed((np.sin(TIME) + NOISE)[:samples], at, -9999.0))
+    assert ("(and " in one) == (errors > 1)
+    assert errors < 3 or f"(and {errors - 1} more such samples)" in one
 
 
 @pytest.mark.parametrize(
@@ -68,3 +77,22 @@ def test_the_line_of_the_file(tmp_path: Path) -> None:
         in one.found
     )
     assert one.write.startswith("an empty cell")
+
+
+@pytest.mark.parametrize("change", ["no card", "no channel", "short", "no file"])
+def test_files_that_were_replaced_meanwhile(tmp_path: Path, change: str) -> None:
+    card, file = tmp_path / "dataset.toml", tmp_path / "run.csv"
+    file.write_text("a\n" + "".join(f"{value}\n" for value in changed(np.sin(TIME), [150], -9999.0)))
+    card.write_text(CARD)
+    data = load_dataset(card)
+    if change == "no card":
+        card.write_text("[channels")
+    elif change == "no channel":
+        card.write_text(CARD.replace("a = {", "b = {"))
+    elif change == "short":
+        file.write_text("a\n" + "1.0\n" * 20)
+    else:
+        file.unlink()
+    (one,) = lone_samples(data)
+    assert one.place == "sample 150 (the first is 0)"
+    assert one.value == pytest.approx(-9.999)

@@ -108,15 +108,16 @@ def test_faulty_time_stamp(bench: Path, edit: Edit, stamp: str, message: str) ->
     assert message in str(error.value)
 
 
-def test_a_time_of_day_that_passes_midnight(bench: Path) -> None:
-    clock = [f"23:59:{50 + k}" if k < 10 else f"00:00:{k - 10:02}" for k in range(40)]
+@pytest.mark.parametrize("before", [1, 10])
+def test_a_time_of_day_that_passes_midnight(bench: Path, before: int) -> None:
+    clock = [f"23:59:{60 - before + k}" if k < before else f"00:00:{k - before:02}" for k in range(40)]
     (bench / "steps.csv").write_text("t,u,y\n" + "".join(f"{at},{k},{k}\n" for k, at in enumerate(clock)))
     (bench / "dataset.toml").write_text(
         'time = "t"\n[channels]\nvoltage = { column = "u" }\n[[experiment]]\nname = "Steps"\nfile = "steps.csv"\n'
     )
     with pytest.raises(UserError) as error:
         load_dataset(bench / "dataset.toml")
-    assert '[[experiment]] "Steps": ' in str(error.value) and "line 12" in str(error.value)
+    assert '[[experiment]] "Steps": ' in str(error.value) and f"line {2 + before}" in str(error.value)
     assert "passes midnight here: give stamps with the date, or sample_time = 1 in the place of time" in str(
         error.value
     )

@@ -5,7 +5,9 @@ from __future__ import annotations
 import copy
 import doctest
 import pickle
+from datetime import UTC, datetime, timedelta, tzinfo
 from typing import Any
+from zoneinfo import ZoneInfo
 
 import numpy as np
 import pyarrow as pa
@@ -93,6 +95,19 @@ def test_dates_and_times_count_from_the_first(unit: str) -> None:
     stamps = np.datetime64("2026-11-21T08:00:00", unit) + np.arange(N) * np.timedelta64(2, "s")
     np.testing.assert_array_equal(made(sample_time=None, time=stamps).time, np.arange(N) * 2.0)
     np.testing.assert_array_equal(made(sample_time=None, time=stamps - stamps[0]).time, np.arange(N) * 2.0)
+
+
+def test_times_of_a_zone_pass_to_summer_time() -> None:
+    begins = datetime(2026, 3, 29, 1, 59, 50, tzinfo=ZoneInfo("Europe/Berlin"))
+    stamps = [(begins.astimezone(UTC) + k * timedelta(seconds=1)).astimezone(begins.tzinfo) for k in range(N)]
+    np.testing.assert_array_equal(made(sample_time=None, time=stamps).time, np.arange(N) * 1.0)
+
+
+@pytest.mark.parametrize("first", [None, UTC])
+def test_times_with_and_without_a_zone(first: tzinfo | None) -> None:
+    stamps = [datetime(2026, 3, 29, 1, 0, k, tzinfo=UTC if (k == 5) == (first is None) else None) for k in range(N)]
+    with pytest.raises(UserError, match=r"time, sample 5 .* found 2026-03-29 01:00:05.* with.* a time zone"):
+        made(sample_time=None, time=stamps)
 
 
 LONGER = np.arange(N + 1.0)

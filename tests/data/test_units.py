@@ -16,6 +16,7 @@ def test_turns_per_minute(written: str) -> None:
     assert conversion(written, "rad/s", "")[0] == pytest.approx(TURNS)
     assert slip(written, "rad/s") == pytest.approx(TURNS)
     assert conversion("deg/s", written, "")[0] == pytest.approx(1 / 6)
+    assert conversion("°/s", written, "")[0] == pytest.approx(1 / 6)
 
 
 def test_a_rate_that_is_not_of_turns() -> None:
@@ -89,6 +90,22 @@ def test_no_unit_of_another_quantity_is_meant() -> None:
 def test_written_alike() -> None:
     assert all(
         written_alike(*pair)
-        for pair in [("°C", "degC"), ("degc", "degC"), ("N·m", "N m"), ("m/s2", "m/s²"), ("U/min", "rpm")]
+        for pair in [
+            ("°C", "degC"),
+            ("degc", "degC"),
+            ("N·m", "N m"),
+            ("m/s2", "m/s²"),
+            ("U/min", "rpm"),
+            ("KG", "kg"),
+            ("Nm", "N m"),
+        ]
     )
     assert not any(written_alike(*pair) for pair in [("mW", "MW"), ("W", "V"), ("mN m", "MN m")])
+
+
+@pytest.mark.parametrize(
+    ("one", "other"), [("N m", "nm"), ("s", "S"), ("A", "a"), ("h", "H"), ("m s", "ms"), ("mN", "m N")]
+)
+def test_units_of_other_quantities_are_not_alike(one: str, other: str) -> None:
+    assert not written_alike(one, other)
+    assert not written_alike(other, one)

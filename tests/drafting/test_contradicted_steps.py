@@ -60,3 +60,21 @@ def test_a_card_that_names_its_time_stamps(tmp_path: Path) -> None:
     path = card(tmp_path, "time_s", 10.0 * np.arange(60), 1.0)
     path.write_text(path.read_text().replace("sample_time = 1.0", 'time = "time_s"'))
     assert list(contradicted_steps(load_dataset(path))) == []
+
+
+def test_the_unit_that_the_file_says(tmp_path: Path) -> None:
+    path = card(tmp_path, "time", 10.0 * np.arange(60), 0.01)
+    file = tmp_path / "run.csv"
+    file.write_text(file.read_text().replace("time,a\n", "time,a\nms,m\n"))
+    assert list(contradicted_steps(load_dataset(path))) == []
+    path.write_text(path.read_text().replace("sample_time = 0.01", "sample_time = 10.0"))
+    (told,) = contradicted_steps(load_dataset(path))
+    assert told.write == 'time = { column = "time", unit = "ms" } in its place'
+
+
+def test_a_column_of_text_before_the_time_stamps(tmp_path: Path) -> None:
+    path = card(tmp_path, "time_s", 10.0 * np.arange(60), 1.0)
+    first, *rows = (tmp_path / "run.csv").read_text().splitlines()
+    (tmp_path / "run.csv").write_text("\n".join([f"time of day,{first}", *(f"noon,{row}" for row in rows)]))
+    (told,) = contradicted_steps(load_dataset(path))
+    assert told.column == "time_s"
