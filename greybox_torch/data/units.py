@@ -94,6 +94,8 @@ def _meant(unit: str, other: str, *, capitals: bool = False) -> str:
 
 def written_alike(one: str, other: str) -> bool:
     """Whether two units are one but for the freedom in writing it: spaces, signs, and capitals where these make no other unit."""
+    if one == other:
+        return True  # without the unit registry, which takes its time to load
     spelt = [bare(unit) for unit in (one, other)]
     if spelt[0].lower() != spelt[1].lower():
         return False
