@@ -31,8 +31,10 @@ def weighed_by_what_is_left(run: FreeRun, point: np.ndarray, settings: Settings)
 
     Source: Y. Bard, Nonlinear Parameter Estimation, 1974, section 4-9 (unknown diagonal covariance).
     """
+    if len(run.problem.weights) < 2 or not len(point):
+        return run, point
     left = _left(run, point)
-    for _ in range(ROUNDS if len(run.problem.weights) > 1 else 0):
+    for _ in range(ROUNDS):
         if left is None or _alike(left * run.problem.weights):
             break
         anew = replace(run, problem=replace(run.at(point), weights=1.0 / left))

@@ -71,6 +71,11 @@ def test_weights_become_what_is_left_of_each_output(wrong) -> None:
     np.testing.assert_allclose(run.problem.weights[0] / run.problem.weights[1], LEFT[1] / LEFT[0], rtol=0.5)
 
 
+def test_where_nothing_is_estimated_or_one_output_is_measured_nothing_is_weighed() -> None:
+    for run, point in ((Linear(Problem(LEFT, np.zeros(0))), np.zeros(0)), (Linear(Problem(LEFT[:1], TRUE)), TRUE)):
+        assert module.weighed_by_what_is_left(run, point, Settings()) == (run, point)
+
+
 def test_what_was_not_measured_is_no_error_of_zero() -> None:
     rare = MEASURED.T.copy()
     rare[1, np.arange(200) % 10 > 0] = np.nan
