@@ -179,7 +179,12 @@ def _as_found(
         seed=seed,
         seconds=clock.seconds,
         confidence=confidence(
-            study, state, effects, found.complete and (looked or unexplained is not None), unexplained
+            study,
+            state,
+            effects,
+            found.complete and (looked or unexplained is not None),
+            unexplained,
+            judged.left(False)[1],
         ),
         effects=effects,
         scores={name: comparison.scores for name, comparison in judged.comparisons(bool(effects)).items()},

@@ -218,13 +218,14 @@ def are_twins(chosen: RankedCandidate, rival: RankedCandidate) -> bool:
 
 
 def confidence(
-    study: Study, state: SearchState, effects: Sequence[Effect], complete: bool, unexplained: float | None
+    study: Study, state: SearchState, effects: Sequence[Effect], complete: bool, unexplained: float | None, free: float
 ) -> float:
     """How sure the answer to "is anything missing?" is; a search that was stopped before it found anything is not sure of it.
 
     Args:
         complete: whether all was looked for that there was to look for.
         unexplained: how many times the noise the error is, where it is clearly more and no effect explains it.
+        free: how many times the noise free runs of the model as it stands leave; NaN where no output shows the noise.
     """
     settings = study.settings
     if effects:
@@ -234,9 +235,8 @@ def confidence(
         return settings.confidence_stopped
     if unexplained is not None:
         return settings.confidence_missing_unnamed
-    if times_noise(study.problem, state.current, settings) > settings.above_noise and not negligible(
-        study, state.plain
-    ):
+    above = times_noise(study.problem, state.current, settings) > settings.above_noise
+    if (above or free > settings.free_runs_to_doubt_nothing) and not negligible(study, state.plain):
         return settings.confidence_nothing_above_noise
     best = max((r.gain for r in state.steps[-1].ranked), default=0.0) if state.steps else 0.0
     return settings.confidence_nothing if best < settings.least_gain else settings.confidence_nothing_with_rivals

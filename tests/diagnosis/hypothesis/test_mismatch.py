@@ -58,7 +58,7 @@ def test_what_is_negligible_is_said_and_sure(dead_zone_search) -> None:
     (sentence,) = _negligible(study, found.state)
     assert sentence.endswith("nothing was looked for.")
     assert not _negligible(found.study, found.state)
-    assert confidence(study, found.state, (), True, None) == settings.confidence_nothing
+    assert confidence(study, found.state, (), True, None, 30.0) == settings.confidence_nothing
 
 
 def test_what_drifts_over_whole_records_is_not_negligible(dead_zone_search, monkeypatch) -> None:
@@ -113,3 +113,12 @@ def test_more_than_noise_is_looked_into_where_free_runs_drift_however_little_win
     monkeypatch.setattr(module, "times_noise", lambda *given: times)
     monkeypatch.setattr(module, "_share_of_whole_records", lambda *given: whole)
     assert negligible(study, found.plain) == nothing
+
+
+@pytest.mark.parametrize(("free", "sure"), [(1.2, True), (float("nan"), True), (150.0, False)])
+def test_nothing_is_less_sure_where_free_runs_leave_many_times_the_noise(motor_data, motor, begun, free, sure) -> None:
+    """Seen: a drive's limit within the first samples of one experiment: windows left noise alone, and nothing was missing (0.95)."""
+    complete = begun(motor_data(), motor)
+    settings = complete.study.settings
+    said = confidence(complete.study, complete.state, (), True, None, free)
+    assert said == (settings.confidence_nothing if sure else settings.confidence_nothing_above_noise)
