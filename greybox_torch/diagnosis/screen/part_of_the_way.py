@@ -27,12 +27,12 @@ def curves_over_parts(
 
     Also of a position that has to be integrated from the speed, which begins at zero in every experiment.
     """
-    bodies = [q.name for q in study.problem.model.ports if isinstance(q, Body)]
     along = Unknown("position", study.budget.knots_along_parts)
-    bodies = [name for name in bodies if along.available(study.surroundings[name])]
-    if not bodies:
+    bodies = [q.name for q in study.problem.model.ports if isinstance(q, Body)]
+    able = [name for name in bodies if along.available(study.surroundings[name])]
+    offered = [a for a in (attach(study.problem.model, name, along) for name in able) if not study.beliefs.exclude(a)]
+    if not offered:
         return tuple(() for _ in fits)
-    offered = [attach(study.problem.model, name, along) for name in bodies]
     names = fits[-1].problem.free_names
     screen = Screen.of(study.problem.model, effects, offered, study.surroundings, names, study.options)
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from greybox_torch.diagnosis.beliefs import Beliefs
 from greybox_torch.diagnosis.screen.first_few import first_few
 from greybox_torch.diagnosis.screen.part_of_the_way import curves_over_parts
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
@@ -42,6 +43,11 @@ def test_it_is_offered_where_it_leaves_much_less_than_curves_of_few_knots(notche
     shortest, *_ = screen_scores(study, notched.state, curves=True, fine=False)
     found = [s for s in shortest if isinstance(s.attachment.mechanism, Unknown) and s.attachment.mechanism.part]
     assert bool(found) is offered
+
+
+def test_it_is_not_offered_where_the_user_knows_that_nothing_is_missing(notched) -> None:
+    study = replace(notched.study, beliefs=Beliefs({"rotor/unknown": 0.0}))
+    assert not any(curves_over_parts(study, (), notched.state.current.fits))
 
 
 @pytest.mark.parametrize(("share", "passed_on"), [(0.9, True), (0.7, False)])
