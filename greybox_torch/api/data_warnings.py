@@ -2,39 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Protocol
-
 from greybox_torch.checking.constant_channels import constant_channels
 from greybox_torch.checking.lone_samples import lone_samples
 from greybox_torch.checking.missing_inputs import missing_inputs
 from greybox_torch.checking.shared_rows import shared_rows
 from greybox_torch.checking.time_stamps import odd_time_stamps
 from greybox_torch.data import DataSet
+from greybox_torch.data.data_warning import DataWarning, InASentence
 from greybox_torch.drafting.contradicted import contradictions
 from greybox_torch.drafting.contradicted_steps import contradicted_steps
 from greybox_torch.model import GreyBoxModel
 
 
-class DataWarning(Protocol):
-    """``found`` says what is there, ``write`` what to write instead; as text it is both in a sentence."""
-
-    @property
-    def found(self) -> str: ...
-
-    @property
-    def write(self) -> str: ...
-
-
-class NothingToEstimateFrom:
+class NothingToEstimateFrom(InASentence):
     """No experiment has the role "estimation"."""
 
     found = (
         '[[experiment]] role: no experiment has the role "estimation", which `greybox fit`, `diagnose` and `train` need'
     )
     write = 'role = "estimation" for at least one'
-
-    def __str__(self) -> str:
-        return f"{self.found}; expected {self.write}"
 
 
 def all_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning]:

@@ -11,9 +11,10 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.api.data_warnings import DataWarning, all_warnings
+from greybox_torch.api.data_warnings import all_warnings
 from greybox_torch.api.result import HELD_OUT, Result
 from greybox_torch.data import DataSet
+from greybox_torch.data.data_warning import DataWarning
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
 

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.data import DataSet, Recording
+from greybox_torch.data.data_warning import InASentence
 from greybox_torch.estimate.name_lists import brief
 from greybox_torch.model import GreyBoxModel
 
 
 @dataclass(frozen=True)
-class ConstantChannel:
+class ConstantChannel(InASentence):
     """``value`` in the channel's unit, one text where it differs between the ``experiments``; ``lacks`` what cannot be told from it."""
 
     channel: str
@@ -28,9 +29,6 @@ class ConstantChannel:
         named = brief([f'"{name}"' for name in self.experiments])
         one = "experiment" if len(self.experiments) == 1 else "experiments"
         return f'channel "{self.channel}" is constant ({self.value}) in {one} {named}: {self.lacks}'
-
-    def __str__(self) -> str:
-        return f"{self.found}; expected {self.write}"
 
 
 def constant_channels(data: DataSet, model: GreyBoxModel | None) -> Iterator[ConstantChannel]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import read_card
+from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.source import source_of
 from greybox_torch.errors import UserError
@@ -29,7 +30,7 @@ an input in steps may have a single pulse. -9999 is that far away wherever a cha
 
 
 @dataclass(frozen=True)
-class LoneSample:
+class LoneSample(InASentence):
     """The farthest of ``count`` such samples of a channel in an experiment; ``place`` is its line and column where a file has it."""
 
     experiment: str
@@ -53,9 +54,6 @@ class LoneSample:
     def write(self) -> str:
         """What to write instead."""
         return "an empty cell or NaN in its place, which is a missing sample, unless it was measured"
-
-    def __str__(self) -> str:
-        return f"{self.found}; expected {self.write}"
 
 
 def lone_samples(data: DataSet) -> Iterator[LoneSample]:

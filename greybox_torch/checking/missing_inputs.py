@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.data import DataSet
+from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.gaps import SAMPLES_LOST as LONGEST
 from greybox_torch.model import GreyBoxModel
 
 
 @dataclass(frozen=True)
-class MissingInput:
+class MissingInput(InASentence):
     """The longest stretch of missing samples of an input in an experiment: from sample ``first`` on, ``count`` of them, ``seconds`` long;
     ``missing`` of its ``samples`` in all.
     """
@@ -39,9 +40,6 @@ class MissingInput:
     def write(self) -> str:
         """What to write instead."""
         return "one experiment that ends before it and another that begins after it: rows = [first, last] in each [[experiment]]"
-
-    def __str__(self) -> str:
-        return f"{self.found}; expected {self.write}"
 
 
 def missing_inputs(data: DataSet, model: GreyBoxModel) -> Iterator[MissingInput]:

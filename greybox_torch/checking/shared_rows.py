@@ -11,10 +11,11 @@ from pathlib import Path
 from greybox_torch.data import DataSet
 from greybox_torch.data.card import read_card
 from greybox_torch.data.card_channels import ExperimentEntry
+from greybox_torch.data.data_warning import InASentence
 
 
 @dataclass(frozen=True)
-class SharedRows:
+class SharedRows(InASentence):
     """``shared`` says which rows of which file the experiments ``estimated`` and ``judged`` both have. ``held_out``: the card names no
     validation, and the last quarter of each is judged.
     """
@@ -38,9 +39,6 @@ class SharedRows:
     def write(self) -> str:
         """What to write instead."""
         return "rows that do not overlap, or another file for one of them"
-
-    def __str__(self) -> str:
-        return f"{self.found}; expected {self.write}"
 
 
 def shared_rows(data: DataSet) -> Iterator[SharedRows]:

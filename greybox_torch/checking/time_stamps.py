@@ -8,20 +8,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.data import DataSet, Recording
+from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.gaps import Gap, longest_gap
 
 _SAME = 0.01  # of a sample time: how far a ratio may lie from a power of 1000
 
 
 @dataclass(frozen=True)
-class OddTime:
+class OddTime(InASentence):
     """What is odd about an experiment's time stamps, and what to write instead, in a sentence each."""
 
     found: str
     write: str
-
-    def __str__(self) -> str:
-        return f"{self.found}; expected {self.write}"
 
 
 def odd_time_stamps(data: DataSet) -> Iterator[OddTime]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry
+from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.units import conversion, dimensionality, per_minute
 from greybox_torch.drafting.column_units import unit_in
 from greybox_torch.errors import UserError
@@ -39,7 +40,7 @@ _OF_QUANTITY = {
 
 
 @dataclass(frozen=True)
-class Contradiction:
+class Contradiction(InASentence):
     """``place`` is `time`, or `channel "speed"`, and its experiment where that alone has the column; ``write`` what to write instead."""
 
     place: str
@@ -51,9 +52,6 @@ class Contradiction:
     @property
     def found(self) -> str:
         return f'{self.place}: column "{self.column}" is in {self.told} by its name, but the card says {self.said}'
-
-    def __str__(self) -> str:
-        return f"{self.found}; expected {self.write}"
 
 
 def contradictions(card: Path | None) -> list[Contradiction]:

@@ -11,6 +11,7 @@ import numpy as np
 from greybox_torch.data import DataSet
 from greybox_torch.data.card import read_card
 from greybox_torch.data.columns import columns_of
+from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.units import conversion
@@ -25,7 +26,7 @@ _UNITS = ("s", "ms", "us", "ns", "min", "h")
 
 
 @dataclass(frozen=True)
-class ContradictedSteps:
+class ContradictedSteps(InASentence):
     """``step`` is the usual one of the stamps in ``unit``, which is empty where nothing says it; ``sample_time`` the card's, in s."""
 
     file: str
@@ -48,9 +49,6 @@ class ContradictedSteps:
             doubt = "" if self.unit else ", if the stamps are in s"
             return f"time = {column} in its place, or sample_time = {self.step:.6g}{doubt}"
         return f"time = {{ column = {column}, unit = {toml_text(self.unit)} }} in its place"
-
-    def __str__(self) -> str:
-        return f"{self.found}; expected {self.write}"
 
 
 def contradicted_steps(data: DataSet) -> Iterator[ContradictedSteps]:

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from greybox_torch.estimate.levenberg_marquardt import Extra, Quadratic
+from greybox_torch.estimate.levenberg_marquardt import Extra, Optimum, Quadratic, Settings, minimise
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.rough_starts import rough_starts
 from greybox_torch.simulation.parallel_run import ParallelRun
@@ -112,3 +112,8 @@ class FreeRun:
         """Which unknowns an experiment depends on."""
         own = n_p + experiment * n_s
         return np.concatenate([np.arange(n_p), np.arange(own, own + n_s)])
+
+
+def descended(run: FreeRun, start: np.ndarray, settings: Settings) -> Optimum[None] | None:
+    """The optimum that a run reaches from its unknowns ``start`` (d,); None where that cannot be simulated."""
+    return minimise(run.quadratic, start, *run.bounds, settings=settings, admissible=run.admissible)

@@ -119,14 +119,21 @@ class Unknown(Mechanism):
         moment = self._sum_of_bumps(s, p, {k: k * height for k, height in heights.items()})
         steep = 2.0 / p.spacing * (moment - self._place(s, p) * self._sum_of_bumps(s, p, heights))
         there = (s[self.signal] - p.first) / p.spacing
-        return (
-            steep if self.closed or self.part else torch.where((there > 1.0) & (there < self.knots - 2.0), steep, 0.0)
-        )
+        return torch.where((there > 1.0) & (there < self.knots - 2.0), steep, 0.0) if self.level_beyond else steep
 
     @property
     def closed(self) -> bool:
         """Whether the curve ends where it begins: over a turn."""
         return self.signal == TURN or self.signal.startswith(TURN_OF)
+
+    @property
+    def level_beyond(self) -> bool:
+        """Whether the curve stays level beyond its range: one over a turn has no end, one over a part is zero there."""
+        return not (self.closed or self.part)
+
+    def altered(self, **options: Any) -> Unknown:
+        """The same curve but for some of its options."""
+        return Unknown(**{**self.options(), **options})
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(tuple(f"w_{k}" for k in self.bumps))]
@@ -170,7 +177,7 @@ class Unknown(Mechanism):
     def _place(self, s: Signals, p: Signals) -> Any:
         """Where the signal is, in spacings from the first centre."""
         place = (s[self.signal] - p.first) / p.spacing
-        return place if self.closed or self.part else torch.clamp(place, 1.0, self.knots - 2.0)
+        return torch.clamp(place, 1.0, self.knots - 2.0) if self.level_beyond else place
 
     def _sum_of_bumps(self, s: Signals, p: Signals, heights: Mapping[int, Any]) -> Any:
         place, beside = self._place(s, p), REACH if self.closed else 0

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from greybox_torch.estimate.free_run import FreeRun, simulate
+from greybox_torch.estimate.free_run import FreeRun, descended, simulate
 from greybox_torch.estimate.levenberg_marquardt import Optimum, Quadratic, Settings, minimise
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.simulation.simulator import Simulator
@@ -165,11 +165,7 @@ def held_out_error(complete: Problem, at: Problem, simulator: Simulator, course:
 def _physics_alone(course: Curriculum, physics: Problem, plain: Simulator) -> Choice:
     """The plain model on the same footing: estimated without the held-out stretches, unless it is frozen."""
     run = FreeRun(without_samples(physics, course.mask), plain)
-    optimum = (
-        None
-        if course.settings.freeze_physics
-        else minimise(run.quadratic, run.start, *run.bounds, settings=RECORD_SETTINGS, admissible=run.admissible)
-    )
+    optimum = None if course.settings.freeze_physics else descended(run, run.start, RECORD_SETTINGS)
     at = run.problem if optimum is None else run.at(optimum.point)
     return Choice(None, held_out_error(physics, at, plain, course))
 

@@ -25,12 +25,12 @@ def curve_instead(study: Study, state: SearchState, others: HeldOut | None, judg
     """
     settings = study.settings
     asked = (*(() if state.in_place_of is None else (state.in_place_of,)), *state.steps)
-    step = next((s for s in asked if not s.parent.effects and _curves(study, s)), None)
+    step = next((s for s in asked if not s.parent.effects and curves_of(study, s)), None)
     if others is None or step is None or times_noise(study.problem, state.plain, settings) <= settings.above_noise:
         return None
     study.working_on("asking held-out experiments about a curve in the place of names")
     drawn = in_order(
-        side_by_side(partial(as_fine_as_pays, study, step.parent, r) for r in _curves(study, step)), settings
+        side_by_side(partial(as_fine_as_pays, study, step.parent, r) for r in curves_of(study, step)), settings
     )
     best = drawn[0]
     curve = replace(
@@ -43,7 +43,7 @@ def curve_instead(study: Study, state: SearchState, others: HeldOut | None, judg
     return (curve, gains, by_it) if leaves_far_less(gains, by_it, left, settings) else None
 
 
-def _curves(study: Study, step: SelectionStep) -> list[RankedCandidate]:
+def curves_of(study: Study, step: SelectionStep) -> list[RankedCandidate]:
     """The free curves of a step that gain about as much as the best of them, and more than chance."""
     settings = study.settings
     found = [r for r in step.ranked if r.unknown and sound(study, r) and r.gain > settings.curve_margin]

@@ -141,7 +141,7 @@ class Judgement:
         """
         if worse_than_refit(self._rows, but) or self.judges <= but:
             return self.judges <= but
-        before, after = (mean_fit(self._judged(c, but).scores) for c in (self.refit, self.with_effects))
+        before, after = (mean_fit(self.judging(c, but).scores) for c in (self.refit, self.with_effects))
         refit, with_effects = (self._energy(c, but) for c in (self.refit, self.with_effects))
         least = self.settings.unexercised
         return with_effects <= (1 + least) * refit and after >= before - 100 * least
@@ -205,7 +205,7 @@ class Judgement:
         count = known.sum(axis=1)
         return np.sqrt(np.where(count > 0, ratios.sum(axis=1) / np.maximum(count, 1), np.nan))
 
-    def _judged(self, comparison: Comparison, but: frozenset[str]) -> Comparison:
+    def judging(self, comparison: Comparison, but: frozenset[str] = frozenset()) -> Comparison:
         """The experiments that judge alone, ``but`` for some."""
         names = self.judges - but
         return replace(comparison, scores=tuple(s for s in comparison.scores if s.experiment in names))

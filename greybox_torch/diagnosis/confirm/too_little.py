@@ -40,7 +40,5 @@ def without_too_little(
 
 def _points(judged: Judgement) -> float:
     """By how many points the mean fit of the validation experiments rises with the effects."""
-    refit, with_effects = (
-        [s for s in c.scores if s.experiment in judged.judges] for c in (judged.refit, judged.with_effects)
-    )
-    return mean_fit(with_effects) - mean_fit(refit)
+    refit, with_effects = (mean_fit(judged.judging(c).scores) for c in (judged.refit, judged.with_effects))
+    return with_effects - refit

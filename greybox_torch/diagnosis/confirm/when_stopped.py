@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from greybox_torch.diagnosis.confirm.curve_instead import curves_of
 from greybox_torch.diagnosis.confirm.holding import Judged
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.hypothesis.final import from_longest_windows
@@ -43,7 +44,7 @@ def _curve(study: Study, state: SearchState) -> Iterator[SearchState]:
     if step is None or step.parent.effects:
         return
     taken = step.taken is not None and step.taken.unknown
-    curve = step.taken if taken else next((r for r in step.ranked if r.unknown and sound(study, r)), None)
+    curve = step.taken if taken else next(iter(curves_of(study, step)), None)
     if curve is not None and curve.gain > study.settings.curve_margin:
         beside = () if taken else (replace(step, taken=curve),)
         yield replace(state.at(curve.fitted), steps=(*state.steps, *beside))

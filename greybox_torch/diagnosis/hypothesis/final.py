@@ -13,8 +13,7 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.weights_of_outputs import weighed_by_what_is_left
 from greybox_torch.diagnosis.hypothesis.whole_records import coloured, from_windows, whole_runs
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
-from greybox_torch.estimate.free_run import FreeRun
-from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimise
+from greybox_torch.estimate.free_run import FreeRun, descended
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.uncertainty import Uncertainty, of_information, uncertainty
 from greybox_torch.estimate.window_information import window_information
@@ -72,7 +71,7 @@ def finish(
     """
     problems = [from_windows(fit) for fit in reversed(hypothesis.fits)]
     runs = whole_runs(hypothesis, [*problems, _from_the_card(hypothesis)])
-    begun = side_by_side(partial(_descended, run, run.start, budget.record_first_iterations) for run in runs)
+    begun = side_by_side(partial(descended, run, run.start, budget.record_first_iterations) for run in runs)
     best, cost = None, np.inf
     for run, optimum in zip(runs, begun, strict=True):
         if optimum is not None and optimum.model.cost < (1 - 1e-3) * cost:
@@ -86,7 +85,7 @@ def finish(
             return weighed
     if records is not None:
         run = _on_all(hypothesis, records, run.problem)
-    ended = _descended(run, point, budget.record_iterations)
+    ended = descended(run, point, budget.record_iterations)
     point = point if ended is None else ended.point
     run, point = weighed_by_what_is_left(run, point, budget.record_iterations)
     # What compares hypotheses goes by the weights that all of them share.
@@ -138,10 +137,6 @@ def _over_windows(hypothesis: Hypothesis) -> Uncertainty | None:
 def _on_all(hypothesis: Hypothesis, records: Records, problem: Problem) -> FreeRun:
     """The run of a problem on other samples of the same experiments."""
     return whole_runs(hypothesis, [replace(problem, records=records)])[0]
-
-
-def _descended(run: FreeRun, start: np.ndarray, settings: Settings) -> Optimum[None] | None:
-    return minimise(run.quadratic, start, *run.bounds, settings=settings, admissible=run.admissible)
 
 
 def _from_the_card(hypothesis: Hypothesis) -> Problem:

@@ -11,8 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from greybox_torch.estimate.free_run import FreeRun
-from greybox_torch.estimate.levenberg_marquardt import Settings, minimise
+from greybox_torch.estimate.free_run import FreeRun, descended
+from greybox_torch.estimate.levenberg_marquardt import Settings
 
 ROUNDS = 3
 """How often the weights are set to what the fit with those before them leaves."""
@@ -38,7 +38,7 @@ def weighed_by_what_is_left(run: FreeRun, point: np.ndarray, settings: Settings)
         if left is None or _alike(left * run.problem.weights):
             break
         anew = replace(run, problem=replace(run.at(point), weights=1.0 / left))
-        ended = minimise(anew.quadratic, anew.start, *anew.bounds, settings=settings, admissible=anew.admissible)
+        ended = descended(anew, anew.start, settings)
         after = None if ended is None else _left(anew, ended.point)
         if ended is None or after is None or not _better(after, left, np.nanstd(run.problem.records.y, axis=1)):
             break

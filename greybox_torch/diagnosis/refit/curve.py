@@ -111,7 +111,7 @@ def redrawn(
     if part is not None and knots > unknown.knots:
         spacing = (part[1] - part[0]) / (unknown.knots - 1)
         part = (part[0] - spacing, part[1] + spacing)
-    attachment = replace(curve, mechanism=Unknown(unknown.signal, knots, unknown.factor, part=part))
+    attachment = replace(curve, mechanism=unknown.altered(knots=knots, left_out=(), part=part))
     return attachment, values_without(fitted, curve) | _heights(attachment, around, *_drawn(fitted, curve, around))
 
 

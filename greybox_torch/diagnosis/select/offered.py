@@ -53,7 +53,7 @@ def offer_all(study: Study, state: SearchState, *, curves: bool = True, fine: bo
 
 def _with_narrow_curves(study: Study, state: SearchState, scored: Screened) -> Screened:
     """The scores and, where nothing explains nearly all, those of curves over positions that are fine enough for what acts along a part of
-    the way, in the place of those with few knots which leave much more.
+    the way, all along it and over that part alone, in the place of those with few knots which leave much more.
 
     Seen: two dips of a rail a thirtieth of the way long. A curve of few knots explained a half, a ripple of three harmonics more; neither
     held, and nothing was said to be missing. Beside named effects, which are never exact, forty knots always take up something: there fine

@@ -33,9 +33,7 @@ def with_sparser_curve(study: Study, state: SearchState) -> Stage[SearchState]:
     if not idle:
         return state
     study.working_on("leaving out what the curve does not need")
-    sparser = replace(
-        curve, mechanism=Unknown(mechanism.signal, mechanism.knots, mechanism.factor, idle, mechanism.part)
-    )
+    sparser = replace(curve, mechanism=mechanism.altered(left_out=idle))
     effects = tuple(sparser if e is curve else e for e in drawn.effects)
     fitted = fit(study, effects, [drawn.values()], drawn.fits[0], limits=study.budget.window_iterations)
     if fitted is None or fitted.score > drawn.score + study.settings.curve_margin:

@@ -47,6 +47,9 @@ class FreeRuns:
             ]
         )
 
+    def judging(self, comparison: SimpleNamespace) -> SimpleNamespace:
+        return SimpleNamespace(scores=[s for s in comparison.scores if s.experiment in self.judges])
+
     def left(self, effects: bool) -> tuple[float, float, str]:
         assert effects
         return self.share, self.times, "sweep"

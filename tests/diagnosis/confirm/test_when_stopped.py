@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from greybox_torch.diagnosis.confirm import when_stopped
+from greybox_torch.diagnosis.confirm import curve_instead, when_stopped
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
@@ -85,7 +85,8 @@ def test_the_curve_of_the_first_step_stands_where_its_names_do_not(
         without_effects=lambda: None,
     )
     monkeypatch.setattr(when_stopped, "from_longest_windows", lambda hypothesis: hypothesis)
-    monkeypatch.setattr(when_stopped, "sound", lambda study, ranked: True)
+    for module in (when_stopped, curve_instead):
+        monkeypatch.setattr(module, "sound", lambda study, ranked: True)
     by_name, by_curve = (
         stub(fitted=fitted, unknown=unknown, gain=gain, candidate=stub(attachment=effect))
         for fitted, unknown, effect in ((named, False, error), (drawn, True, curve))
