@@ -12,6 +12,7 @@ from dataclasses import replace
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.take_back import held_out_gains, take_back_weakest
+from greybox_torch.diagnosis.confirm.too_little import removes_too_little
 from greybox_torch.diagnosis.hypothesis.final import finish
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
@@ -36,32 +37,44 @@ def far_better(
     left = judged.left(True)[0]
     if state.has_curve and state.named is not None and left > settings.left_to_doubt_a_curve:
         names = replace(state.named, plain=state.plain, named=None)
-        found = _standing(study, result_of(drop_superfluous(study, names)), others, judged)
+        found = _standing(study, result_of(drop_superfluous(study, names)), state, others, judged)
         if found is not None:
             return found
     if len(state.effects) < 2 or not left > settings.left_to_doubt_of_several:
         return None
     if not state.compared_without:
         state = result_of(drop_superfluous(study, state))
-    return _standing(study, take_back_weakest(study, state, gains), others, judged)
+    return _standing(study, take_back_weakest(study, state, gains), state, others, judged)
 
 
-def _standing(study: Study, other: SearchState, others: HeldOut, judged: Judgement) -> Standing | None:
+def _standing(
+    study: Study, other: SearchState, state: SearchState, others: HeldOut, judged: Judgement
+) -> Standing | None:
     """``other`` if its free runs leave far less than those of ``judged``, and windows bear all of its effects out beyond chance; else None.
 
-    Seen: a bump along an arm's speed, whose curve one free run does not follow; a mode, which no window bears out, left a quarter of that.
+    Where ``state`` removes too little to be told, it is enough that ``other`` removes more than that. Seen: a bump along an arm's speed,
+    whose curve one free run does not follow; a mode, which no window bears out, left a quarter of that. The lag of a fan, beside which the
+    waves of a pivot undid all that it brings: both were taken back, and the lag alone leaves 55 % of the mismatch.
     """
     if not other.effects:
         return None
+    settings = study.settings
     gains, by_it = judged_anew(study, other, others, judged)
-    return (other, gains, by_it) if leaves_far_less(gains, by_it, judged.mismatch(True), study.settings) else None
+    far = leaves_far_less(gains, by_it, judged.mismatch(True), settings)
+    if not far and removes_too_little(state, judged, settings):
+        far = _borne_out(gains, by_it, settings) and not removes_too_little(other, by_it, settings)
+    return (other, gains, by_it) if far else None
 
 
 def leaves_far_less(gains: Mapping[str, Gain], by_it: Judgement, than: float, settings: DiagnosisSettings) -> bool:
     """Whether free runs hold and leave far less than the mismatch ``than``, and windows bear all effects out beyond chance."""
+    return _borne_out(gains, by_it, settings) and by_it.mismatch(True) <= settings.left_if_far_better * than
+
+
+def _borne_out(gains: Mapping[str, Gain], by_it: Judgement, settings: DiagnosisSettings) -> bool:
+    """Whether free runs hold, and windows bear all effects out beyond chance."""
     sure = all(g.errors_away > settings.held_out_beyond_chance for g in gains.values())
-    far = by_it.mismatch(True) <= settings.left_if_far_better * than
-    return sure and far and by_it.holds and not by_it.unstable
+    return sure and by_it.holds and not by_it.unstable
 
 
 def judged_anew(

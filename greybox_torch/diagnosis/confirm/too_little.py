@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from greybox_torch.diagnosis.confirm.far_better import Standing
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.select.state import SearchState
@@ -14,7 +13,7 @@ from greybox_torch.estimate.comparison import mean_fit
 
 def without_too_little(
     state: SearchState, gains: Mapping[str, Gain], judged: Judgement, settings: DiagnosisSettings
-) -> tuple[Standing, tuple[str, ...]]:
+) -> tuple[tuple[SearchState, Mapping[str, Gain], Judgement], tuple[str, ...]]:
     """The state without its effects, and why, where free runs of the validation experiments leave nearly all of the mismatch with them and
     much more than the noise; else as it is. A free curve, which draws a part of anything, has to remove most of it, or to be seen
     in the fit.
@@ -22,20 +21,25 @@ def without_too_little(
     Seen: the clock of a logger that skips, told as a sensor's lag or gain (0.54), which left 91 % of a pendulum's mismatch; a pendulum with
     all known friction, told as unknown at its pivot (0.97), validation 94.2 to 94.7 %.
     """
-    as_it_is: Standing = state, gains, judged
-    if not state.effects or judged.by_windows_alone:
-        return as_it_is, ()
+    if not removes_too_little(state, judged, settings):
+        return (state, gains, judged), ()
     share, times, _ = judged.left(True)
-    hardly_seen = all(e.mechanism.free for e in state.effects) and _points(judged) < settings.least_points_of_curve
-    least = settings.least_removed_by_curve if hardly_seen else settings.least_removed
-    if not (share > 1.0 - least and times > settings.far_above_noise):
-        return as_it_is, ()
     removed = max(100.0 * (1.0 - share), 0.0)
     why = (
         f"Taken back: free runs of the validation experiments leave all but {removed:.0f} % of the mismatch with what windows bear out, "
         f"{times:.0f} times the noise: it is not what makes the mismatch."
     )
     return (state.at(state.plain), {}, judged.without_effects()), (why,)
+
+
+def removes_too_little(state: SearchState, judged: Judgement, settings: DiagnosisSettings) -> bool:
+    """Whether free runs of the validation experiments leave nearly all of the mismatch with effects, and much more than the noise."""
+    if not state.effects or judged.by_windows_alone:
+        return False
+    share, times, _ = judged.left(True)
+    hardly_seen = all(e.mechanism.free for e in state.effects) and _points(judged) < settings.least_points_of_curve
+    least = settings.least_removed_by_curve if hardly_seen else settings.least_removed
+    return share > 1.0 - least and times > settings.far_above_noise
 
 
 def _points(judged: Judgement) -> float:

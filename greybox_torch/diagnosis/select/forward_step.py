@@ -12,7 +12,7 @@ from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.refit.likelihood import cost_of, likelier
 from greybox_torch.diagnosis.refit.rank import rank
-from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, sound
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
 from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist, with_card, with_motion
 from greybox_torch.diagnosis.select.bent_model import unbent_first
@@ -20,6 +20,7 @@ from greybox_torch.diagnosis.select.choice import as_unsure_as_a_name, chosen, l
 from greybox_torch.diagnosis.select.compare import Comparison, compare
 from greybox_torch.diagnosis.select.finer_curve import with_finer_curve, with_tied_curves_finer
 from greybox_torch.diagnosis.select.found_before import with_found_before
+from greybox_torch.diagnosis.select.its_best_values import tellable
 from greybox_torch.diagnosis.select.offered import Screened, from_card, from_motion, screen_scores
 from greybox_torch.diagnosis.select.posterior import believed
 from greybox_torch.diagnosis.select.remaining import completes, left_to_complete, remaining_share
@@ -92,7 +93,7 @@ def _take(study: Study, state: SearchState, screened: Screened, compared: Compar
     settings = study.settings
     state = with_better_fit(state, compared.parent)
     ranked = with_tied_curves_finer(study, compared.parent, compared.ranked)
-    in_turn = rank_by_likelihood([r for r in ranked if sound(study, r)], settings, study.budget)
+    in_turn = rank_by_likelihood(tellable(study, ranked), settings, study.budget)
     cost_before = cache(partial(cost_of, compared.parent))
     paying = [r for r in in_turn if r.gain > least_gain(r.fitted, settings) and _sure(cost_before, r, settings)]
     paying = [r for r in paying if not _may_be_noise(study, state, r)]

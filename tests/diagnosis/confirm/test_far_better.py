@@ -17,6 +17,7 @@ SURE = Gain(0.9, 0.01, size=0.9)
 def study(stub, monkeypatch):
     monkeypatch.setattr(module, "held_out_gains", lambda state, others: {"friction": SURE})
     monkeypatch.setattr(module, "finish", lambda hypothesis, *rest: hypothesis)
+    monkeypatch.setattr(module, "removes_too_little", lambda *args: False)
     return stub(settings=DiagnosisSettings(), budget=None, recorded=None)
 
 
@@ -94,3 +95,19 @@ def test_without_held_out_experiments_nothing_stands_in_the_place_of_what_was_fo
     assert far_better(study, stub(effects=("friction", "ripple"), has_curve=False), None, {}, judged) is None
     again = judged_anew(study, stub(current="friction"), None, stub(having=lambda final: (final, "judged")))
     assert again == ({}, ("friction", "judged"))
+
+
+@pytest.mark.parametrize(("left", "without", "taken"), [(0.98, 0.55, True), (0.98, 0.9, False), (0.8, 0.55, False)])
+def test_where_all_effects_remove_too_little_it_is_enough_that_fewer_remove_more(
+    monkeypatch, stub, study, left: float, without: float, taken: bool
+) -> None:
+    """Seen: the lag of a fan, beside which waves of the pivot undid all that it brings; both were taken back, and nothing was told."""
+    monkeypatch.setattr(
+        module, "removes_too_little", lambda state, judged, settings: judged.left(True)[0] > 1 - settings.least_removed
+    )
+    state = stub(effects=("lag", "waves"), compared_without=True, current="both", has_curve=False)
+    fewer = stub(effects=("lag",), compared_without=True, current="lag", has_curve=False)
+    alone = judgement(stub, without)
+    monkeypatch.setattr(module, "take_back_weakest", lambda *args: fewer)
+    found = far_better(study, state, stub(places=lambda hypothesis: {}), {}, judgement(stub, left, alone))
+    assert found == ((fewer, {"friction": SURE}, alone) if taken else None)

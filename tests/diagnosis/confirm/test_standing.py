@@ -129,13 +129,13 @@ def test_of_two_laws_of_friction_at_one_body_or_of_one_spring_the_small_one_is_p
 
     And bristles that fall with speed, told as Stribeck friction, 75 times the noise left, and a ripple of 5 % of the mismatch.
     """
-    study = dead_zone_search.study
+    study, plain = dead_zone_search.study, dead_zone_search.plain
 
     def told(*attached: tuple[str, Mechanism], small: float, left: float = 1.0) -> list[str]:
         effects = tuple(Attachment(port, law) for port, law in attached)
         prefixes = [e.prefix for e in effects]
-        state = stub(effects=effects, prefixes=set(prefixes), current=dead_zone_search.plain)
-        others = stub(times_noise=lambda hypothesis: np.array([left]))
+        state = stub(effects=effects, prefixes=set(prefixes), plain=plain, current=plain)
+        others = stub(times_noise=lambda hypothesis: np.array([left]), fits=lambda hypothesis: ())
         some = refinements(study, state, others, {}, dict(zip(prefixes, [0.7, small], strict=True)))
         return [p for p in prefixes if p not in some]
 
@@ -192,7 +192,7 @@ def test_what_removes_nearly_all_that_the_others_leave_elsewhere_is_no_part_of_w
     large, small = (e.prefix for e in effects)
     plain = dead_zone_search.plain
     state = stub(effects=effects, prefixes={large, small}, plain=plain, current=plain)
-    others = stub(times_noise=lambda hypothesis: np.array([21.0]))
+    others = stub(times_noise=lambda hypothesis: np.array([21.0]), fits=lambda hypothesis: ())
     gains = {large: Gain(0.99, 1e-3, size=0.9), small: Gain(of_the_rest, 0.01, size=size_of_it)}
     some = refinements(dead_zone_search.study, state, others, gains, {large: 0.9, small: size_of_it})
     assert some == (set() if told else {small})

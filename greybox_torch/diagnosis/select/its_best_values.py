@@ -1,0 +1,29 @@
+"""A law stands with its best values, not with the best of those that say something of the machine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from greybox_torch.diagnosis.hypothesis.significance import window_significance
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, sound
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.diagnosis.study import Study
+
+
+def tellable(study: Study, ranked: Sequence[RankedCandidate]) -> list[RankedCandidate]:
+    """Those of ``ranked`` whose values say something of the machine, and whose law goes no farther with values that say nothing.
+
+    Seen: a notch of a pivot, told as a ripple of six waves that repeats 2.1 times in the travel (0.95); six that repeat 1.3 times, and so
+    draw any curve, left noise alone where that left 1.3 times as much.
+    """
+    meaningful = [r for r in ranked if sound(study, r)]
+    rest = [r for r in ranked if all(r is not one for one in meaningful)]
+    return [r for r in meaningful if r.unknown or not any(_refuted(r, other, study.settings) for other in rest)]
+
+
+def _refuted(law: RankedCandidate, other: RankedCandidate, settings: DiagnosisSettings) -> bool:
+    """Whether ``other`` is the same law with values that go farther than a tie, beyond chance."""
+    same = law.candidate.attachment.named == other.candidate.attachment.named
+    if not same or other.size > law.size or other.fitted.score > law.fitted.score - settings.score_tie:
+        return False
+    return window_significance(law.fitted, other.fitted, settings) > settings.least_significance

@@ -1,0 +1,72 @@
+"""A law stands with its best values, not with the best of those that say something of the machine."""
+
+from __future__ import annotations
+
+import pytest
+
+from greybox_torch.diagnosis.select import its_best_values as module
+from greybox_torch.diagnosis.select.its_best_values import tellable
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+
+SETTINGS = DiagnosisSettings()
+TIE = SETTINGS.score_tie
+
+
+@pytest.fixture
+def refit(stub):
+    """A refit of a law at a port; ``says``: whether its values say something of the machine."""
+
+    def make(score: float, says: bool, law: str = "torque_ripple", size: int = 7, unknown: bool = False):
+        named = ("pivot", law)
+        return stub(
+            candidate=stub(attachment=stub(named=named)),
+            fitted=stub(score=score),
+            says=says,
+            size=size,
+            unknown=unknown,
+        )
+
+    return make
+
+
+@pytest.fixture
+def asked(monkeypatch, stub):
+    """What is left of refits, where a difference is so many standard errors away from chance."""
+
+    def make(*refits, errors: float = 9.0):
+        monkeypatch.setattr(module, "sound", lambda study, ranked: ranked.says)
+        monkeypatch.setattr(module, "window_significance", lambda before, after, settings: errors)
+        return tellable(stub(settings=SETTINGS), refits)
+
+    return make
+
+
+def test_a_law_that_goes_farther_with_values_that_say_nothing_is_refuted(asked, refit) -> None:
+    """Seen: a notch, told as a ripple of six waves that repeats 2.1 times; six that repeat 1.3 times left noise alone."""
+    ripple, drag = refit(0.06, True), refit(0.5, True, law="quadratic_drag")
+    assert asked(refit(-0.03, False), ripple, drag) == [drag]
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"score": 0.06 - 0.5 * TIE},
+        {"score": 0.2},
+        {"score": -0.03, "law": "unknown"},
+        {"score": -0.03, "size": 13},
+    ],
+    ids=["a tie", "no farther", "another law", "more parameters"],
+)
+def test_else_it_stands(asked, refit, other) -> None:
+    ripple = refit(0.06, True)
+    assert asked(refit(says=False, **other), ripple) == [ripple]
+
+
+def test_chance_refutes_nothing(asked, refit) -> None:
+    ripple = refit(0.06, True)
+    assert asked(refit(-0.03, False), ripple, errors=0.5 * SETTINGS.least_significance) == [ripple]
+
+
+def test_a_free_curve_says_nothing_of_its_values_and_stands(asked, refit) -> None:
+    curve = refit(0.06, True, unknown=True)
+    assert asked(refit(-0.03, False), curve) == [curve]
