@@ -136,6 +136,8 @@ class Verdict:
     left: Left | None = None
     unstable: frozenset[str] = frozenset()
     """Validation experiments that the recommended model simulates worse than the re-estimated one, as no free run of it follows them."""
+    no_longer_validation: tuple[str, ...] = ()
+    """A sentence for each validation experiment that was taken to choose with, and so is not in the validation fit."""
     settings: DiagnosisSettings = DiagnosisSettings()
     """By what it was decided, and with ``budget`` how much was computed for it."""
     budget: SearchBudget = SearchBudget()

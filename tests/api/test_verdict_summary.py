@@ -45,6 +45,14 @@ def test_parameters_that_are_not_determined_are_told() -> None:
     assert replace(BACKLASH, parameters={"F_0": {"value": 1.0, "std": None, **entry}}).undetermined == ""
 
 
+def test_an_experiment_that_no_longer_judges_is_told_first() -> None:
+    """Seen: a validation experiment among those estimated from in the table, and not a word of it but in the evidence."""
+    told = "Run 3 no longer counts as validation: it was taken to choose with as well (the evidence says why)."
+    found = replace(verdict(BACKLASH), no_longer_validation=(told,))
+    assert notes(found)[:2] == [told, SIZE]
+    assert told not in notes(replace(verdict(), no_longer_validation=(told,)))  # the evidence stands there
+
+
 def test_the_size_of_an_effect_is_told_and_its_equation() -> None:
     """Seen: friction without which all of the mismatch is back "explains 14 %", a ripple of size 0.29 "explains 86 %"."""
     effect = replace(BACKLASH, size=0.28778, explained=0.8587, equation="port.gear_spring += -F_c")
