@@ -62,7 +62,7 @@ def verdict_scores(verdict: Verdict) -> dict[str, tuple[Score, ...]]:
 def _rows(effect: Effect) -> Iterator[list[str | float]]:
     """A line for every parameter of a law or a response; one for a curve, whose heights mean little one by one."""
     size = float(f"{100.0 * effect.size:.3g}") if math.isfinite(effect.size) else ""
-    first: list[str | float] = [effect.port, effect.mechanism, effect.probability, size]
+    first: list[str | float] = [effect.port, effect.mechanism, round(effect.probability, 2), size]
     if not effect.shown_parameters:
         yield [*first, f"curve over {', times '.join(effect.signals)}", "", "", ""]
         return

@@ -121,7 +121,7 @@ def _force(port: object, of_signal: dict[tuple[str, str], Dimension | None]) -> 
         speed = None if deflection is None else deflection.times(SECOND, -1)
     else:
         return None
-    return WATT.times(speed, -1) if speed in _SPEEDS else None
+    return WATT.times(speed, -1) if speed is not None and speed in _SPEEDS else None
 
 
 def _per_unit_of(traced: Traced, node: int, known: Known, names: Names) -> str | None:

@@ -30,6 +30,9 @@ class Left:
     sentence: str
 
 
+NOISE_SHOWN = "that the recordings' highest frequencies show"
+"""What is meant by the noise: not all that disturbs, but the sensors' own, which is little where an encoder has fine steps."""
+
 STOPPED = "The search was stopped before it was done (time limit or interruption): the best verdict so far."
 
 MOST_NAMED = 12
@@ -166,9 +169,8 @@ class Verdict:
             )
             output = mostly_in(self.counted("refit"))
             its = f"its error, mostly in {output}," if output else "its error"
-            return (
-                f"Something is missing from {self.model}: {its} is {digits(self.unexplained, 3)} times the noise. {why}"
-            )
+            times = f"{digits(self.unexplained, 3)} times the noise {NOISE_SHOWN}"
+            return f"Something is missing from {self.model}: {its} is {times}. {why}"
         if not self.effects and not self.looked:
             return f"Nothing was looked for in {self.model}: the beliefs exclude every hypothesis."
         if not self.effects and not self.complete:
