@@ -28,8 +28,8 @@ def test_size_and_kind_of_error_are_each_told_of_their_experiments(stub, past, c
     left = what_is_left(judged, found, True, 1.3)
     assert (left.share, left.times_noise) == (0.634, 105.3)
     assert left.sentence == (
-        "63 % of the mismatch remains: in Validation 1 the free run's error is 110 times the noise that the recordings' highest frequencies "
-        "show. "
+        "63 % of the mismatch remains: in Validation 1 the free run's error is 110 times the noise that the recordings' highest "
+        "frequencies show. "
         f"On the experiments that it was estimated from, {words}"
     )
 
