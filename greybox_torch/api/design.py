@@ -12,7 +12,7 @@ from greybox_torch.api.arguments import check_seconds, check_seed
 from greybox_torch.api.design_loops import entries_of, loops_for
 from greybox_torch.api.design_result import DesignResult
 from greybox_torch.api.diagnosis_result import DiagnosisResult
-from greybox_torch.api.expected import NOTHING, Expected, decided
+from greybox_torch.api.expected import NOTHING, WANTED, Expected, decided
 from greybox_torch.api.hypotheses import Hypotheses, Kept, hypotheses_of, left_out_told, read_hypotheses, to_tell_apart
 from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
 from greybox_torch.estimate.problem import with_card
@@ -119,10 +119,23 @@ def _aim(held: Hypotheses, precision: str | None, loops: Sequence[Loop]) -> Aim:
     if decided([kept.probability for kept in group]):
         best = max(group, key=lambda kept: kept.probability)
         raise UserError(
-            f"already decided, there is nothing to record: {best.name} has a probability of {best.probability:.2f}, each rival less than "
-            f"{NOTHING:g}; expected a finding that is open, {_OR_A_PARAMETER}{told}"
+            f"already decided, there is nothing to record: {_decided(best, held.complete)}; expected a finding that is open, "
+            f"{_OR_A_PARAMETER}{told}"
         )
     return Aim(tuple(_contender(kept, held, loops) for kept in group))
+
+
+def _decided(best: Kept, complete: bool) -> str:
+    """How sure the hypothesis is that has no rival, and why the verdict is less sure of it where that is so."""
+    alone = f"each rival less than {NOTHING:g}"
+    if best.in_verdict is None or best.in_verdict >= WANTED:
+        return f"{best.name} has a probability of {best.probability:.2f}, {alone}"
+    why = (
+        "it is no surer as more than noise is left beside it, which no recording that tells rivals apart changes"
+        if complete
+        else "it is no surer as the search was stopped before all was tried: diagnose once more without a time limit"
+    )
+    return f"{best.name} has a probability of {best.in_verdict:.2f}, {alone}; {why}"
 
 
 def _contender(kept: Kept, held: Hypotheses, loops: Sequence[Loop] = ()) -> Contender:

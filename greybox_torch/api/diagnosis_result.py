@@ -43,8 +43,9 @@ VERDICT, REPORT, PRINTED = "verdict.json", "report.html", "report.pdf"
 
 @dataclass(frozen=True)
 class FoundParameter:
-    """A parameter of the model that a diagnosis recommends, in ``unit``. ``std`` is None where the search did not compute it: for
-    parameters that are no effect's.
+    """A parameter of the model that a diagnosis recommends, in ``unit``. ``std`` is None where the search did not compute it, for
+    parameters that are no effect's and where it was stopped before whole records were fitted; infinite where the recordings do not
+    determine the parameter.
     """
 
     value: float

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import replace
 
@@ -9,7 +10,7 @@ import torch
 
 from greybox_torch.api.arguments import named_model
 from greybox_torch.api.diagnose import diagnose
-from greybox_torch.api.diagnosis_result import DiagnosisResult
+from greybox_torch.api.diagnosis_result import DiagnosisResult, FoundParameter
 from greybox_torch.data import load_dataset
 from greybox_torch.diagnosis.settings import settings_from_mapping
 from greybox_torch.fleets.isolation import own_registrations
@@ -49,6 +50,10 @@ def diagnosed(job: Job, row: Row, began: float) -> Row:
 
 
 def _estimated(found: DiagnosisResult) -> dict[str, dict[str, float | str | None]]:
-    return {
-        name: {"value": p.value, "std": p.std, "unit": p.unit} for name, p in found.parameters.items() if not p.fixed
-    }
+    return {name: _entry(p) for name, p in found.parameters.items() if not p.fixed}
+
+
+def _entry(found: FoundParameter) -> dict[str, float | str | None]:
+    """With no standard deviation where that is infinite: charts and tables have no place for it."""
+    known = found.std is not None and math.isfinite(found.std)
+    return {"value": found.value, "std": found.std if known else None, "unit": found.unit}

@@ -25,6 +25,7 @@ from greybox_torch.systems import load_model, model_reference
 
 if TYPE_CHECKING:
     from greybox_torch.api.diagnosis_result import DiagnosisResult
+    from greybox_torch.diagnosis.describe.rivals import Rival
 
 SCHEMA = "greybox-hypotheses/1"
 FILE, FOLDER, MODEL = "hypotheses.json", "hypotheses", "model"
@@ -34,22 +35,28 @@ Starts = Mapping[str, Mapping[str, float]]
 
 @dataclass(frozen=True)
 class Kept:
-    """A hypothesis: its ``name``, its ``probability``, a ``model`` that holds its values, and start states by recording and state."""
+    """A hypothesis: its ``name``, its ``probability`` among its rivals, a ``model`` that holds its values, start states by recording and
+    state, and what the verdict gives it: less where much is left beside it, or where the search was stopped; None for a rival.
+    """
 
     name: str
     probability: float
     model: GreyBoxModel
     starts: Starts
+    in_verdict: float | None = None
 
 
 @dataclass(frozen=True)
 class Hypotheses:
-    """The ``recommended`` model, and for each finding the hypotheses of which it is one, the finding first."""
+    """The ``recommended`` model, for each finding the hypotheses of which it is one, the finding first, and whether the search that they
+    are of ran to its end.
+    """
 
     data: DataSet
     reference: str
     recommended: Kept
     findings: tuple[tuple[Kept, ...], ...]
+    complete: bool = True
 
 
 def hypotheses_of(result: DiagnosisResult) -> Hypotheses:
@@ -57,11 +64,16 @@ def hypotheses_of(result: DiagnosisResult) -> Hypotheses:
     found: dict[str, list[Kept]] = {}
     for r in result.found.rivals:
         held = copy_holding(r.model, r.values, starts_free=True)
-        found.setdefault(r.finding, []).append(Kept(spoken_at(r.mechanism, r.port), r.probability, held, r.initial))
+        one = Kept(spoken_at(r.mechanism, r.port), r.probability, held, r.initial, _in_verdict(result, r))
+        found.setdefault(r.finding, []).append(one)
     recommended = Kept("the recommended model", 1.0, result.model, result.initial)
-    return Hypotheses(
-        result.data, model_reference(result.given), recommended, tuple(tuple(group) for group in found.values())
-    )
+    groups = tuple(tuple(group) for group in found.values())
+    return Hypotheses(result.data, model_reference(result.given), recommended, groups, result.verdict.complete)
+
+
+def _in_verdict(result: DiagnosisResult, rival: Rival) -> float | None:
+    own = f"{rival.port}.{rival.mechanism}" == rival.finding
+    return next((e.probability for e in result.effects if own and e.prefix == rival.finding), None)
 
 
 def hypothesis_files(folder: Path, result: DiagnosisResult, checkpoint: Checkpoint) -> dict[Path, str | bytes]:
@@ -81,7 +93,7 @@ def hypothesis_files(folder: Path, result: DiagnosisResult, checkpoint: Checkpoi
         )
         files |= checkpoint_files(folder / FOLDER / name, own)
         entry = {"checkpoint": f"{FOLDER}/{name}", "port": rival.port, "mechanism": rival.mechanism}
-        entry |= {"probability": rival.probability, "initial": rival.initial}
+        entry |= {"probability": rival.probability, "initial": rival.initial, "in_verdict": _in_verdict(result, rival)}
         findings.setdefault(rival.finding, []).append(entry)
     path = result.data.path
     content = {
@@ -90,6 +102,7 @@ def hypothesis_files(folder: Path, result: DiagnosisResult, checkpoint: Checkpoi
         "model": checkpoint.model,
         "initial": result.initial,
         "findings": list(findings.values()),
+        "complete": result.verdict.complete,
     }
     return {**files, folder / FILE: json_text(content)}
 
@@ -132,7 +145,7 @@ def read_hypotheses(folder: Path, model: str | None = None) -> Hypotheses:
         ) from None
     recommended, data = load_beside(folder / MODEL, own, data)
     found = Kept("the recommended model", 1.0, recommended, starts)
-    return Hypotheses(data, name, found, tuple(tuple(group) for group in groups))
+    return Hypotheses(data, name, found, tuple(tuple(group) for group in groups), bool(content.get("complete", True)))
 
 
 def _content(path: Path) -> dict[str, Any]:
@@ -148,9 +161,8 @@ def _content(path: Path) -> dict[str, Any]:
 
 def _kept(folder: Path, entry: Mapping[str, Any], own: GreyBoxModel, data: DataSet) -> Kept:
     model, _ = load_beside(folder / str(entry["checkpoint"]), own, data)
-    return Kept(
-        spoken_at(str(entry["mechanism"]), str(entry["port"])), float(entry["probability"]), model, entry["initial"]
-    )
+    name, in_verdict = spoken_at(str(entry["mechanism"]), str(entry["port"])), entry.get("in_verdict")
+    return Kept(name, float(entry["probability"]), model, entry["initial"], in_verdict)
 
 
 def to_tell_apart(held: Hypotheses) -> tuple[Sequence[Kept], Sequence[Kept]]:

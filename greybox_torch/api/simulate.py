@@ -28,6 +28,9 @@ from greybox_torch.report import notebook
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+HELD = "held values"
+"""What scores call a model that holds values: whether they were estimated it does not tell."""
+
 OPPOSITE = -0.8
 """Correlation of simulated with measured below which an output is told to move the other way: noise and wrong parameters leave less."""
 
@@ -161,7 +164,8 @@ def simulate(
         model: used with the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else the
             declared ones. The result of a fit or a diagnosis stands for its model.
         name: what the model is called in the result; by default "refit" for the result of a fit, "augmented" for those of ``diagnose`` and
-            ``train`` and for a model with effects, else "start".
+            ``train`` and for a model with effects, "held values" for one that holds some (``fit.model``, or after ``set_values()``), else
+            "start".
         device: "cpu", "cuda" or "cuda:N".
         precision: "double" or "single".
 
@@ -182,7 +186,7 @@ def simulate(
 def called(model: GreyBoxModel | Any) -> str:
     """What scores call a model, or the result that stands for it, where nobody gives it a name."""
     if isinstance(model, GreyBoxModel):
-        return AUGMENTED if model.effects_told() else START
+        return AUGMENTED if model.effects_told() else HELD if model.held_values() else START
     return getattr(model, "stage", START)
 
 

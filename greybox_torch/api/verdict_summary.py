@@ -41,15 +41,16 @@ def effect_table(verdict: Verdict) -> tuple[list[str], list[list[str | float]]]:
 
 
 def notes(verdict: Verdict) -> list[str]:
-    """Where each effect acts, what else it could be, and what remains; where there is none, the evidence for that. Both with what was not
-    tried, where the search was stopped.
+    """Which experiments judge it no longer, where each effect acts, what else it could be, and what remains; where there is none, the
+    evidence for that. Both with what was not tried, where the search was stopped.
     """
     if not verdict.effects:
         return [*verdict.evidence, *verdict.not_tried.sentences()]
     stopped = [] if verdict.complete else [STOPPED, *verdict.not_tried.sentences()]
     left = [] if verdict.left is None else [verdict.left.sentence]
     small = [f"Refinement: {refinement.sentence}." for refinement in verdict.refinements]
-    return [SIZE, *(line for effect in verdict.effects for line in _notes(effect)), *left, *small, *stopped]
+    by_effect = (line for effect in verdict.effects for line in _notes(effect))
+    return [*verdict.no_longer_validation, SIZE, *by_effect, *left, *small, *stopped]
 
 
 def verdict_scores(verdict: Verdict) -> dict[str, tuple[Score, ...]]:
@@ -61,7 +62,7 @@ def verdict_scores(verdict: Verdict) -> dict[str, tuple[Score, ...]]:
 def _rows(effect: Effect) -> Iterator[list[str | float]]:
     """A line for every parameter of a law or a response; one for a curve, whose heights mean little one by one."""
     size = float(f"{100.0 * effect.size:.3g}") if math.isfinite(effect.size) else ""
-    first: list[str | float] = [effect.port, effect.mechanism, effect.probability, size]
+    first: list[str | float] = [effect.port, effect.mechanism, round(effect.probability, 2), size]
     if not effect.shown_parameters:
         yield [*first, f"curve over {', times '.join(effect.signals)}", "", "", ""]
         return

@@ -14,6 +14,9 @@ from greybox_torch.model import Body, Coupling, GreyBoxModel
 
 REMEDY = "what makes units fit: a number in the equation that has a unit is a parameter with that unit and fixed=True"
 
+_SPEEDS = {dimension_of(unit) for unit in ("rad/s", "m/s", "m^3/s", "A")}
+"""Of bodies that turn or slide, of a flow and a current: with a torque, a force, a pressure and a voltage these make power."""
+
 
 def unreadable_units(model: GreyBoxModel, source: Source) -> Iterator[Finding]:
     """Findings for declared units that are none."""
@@ -107,14 +110,18 @@ def _dimension(unit: str) -> Dimension | None:
 
 
 def _force(port: object, of_signal: dict[tuple[str, str], Dimension | None]) -> Dimension | None:
-    """A body's force times its speed is power; a coupling's force times its deflection is work; of a balance nothing is known."""
+    """A body's force times its speed is power; a coupling's force times its deflection is work; of a balance nothing is known.
+
+    Nor is it where the speed is what a sensor shows of it (a tachometer's volts), or has been normalised: its product with a force is none.
+    """
     if isinstance(port, Body):
         speed = of_signal[port.name, "speed"]
-        return None if speed is None else WATT.times(speed, -1)
-    if isinstance(port, Coupling):
+    elif isinstance(port, Coupling):
         deflection = of_signal[port.name, "deflection"]
-        return None if deflection is None else WATT.times(SECOND).times(deflection, -1)
-    return None
+        speed = None if deflection is None else deflection.times(SECOND, -1)
+    else:
+        return None
+    return WATT.times(speed, -1) if speed is not None and speed in _SPEEDS else None
 
 
 def _per_unit_of(traced: Traced, node: int, known: Known, names: Names) -> str | None:

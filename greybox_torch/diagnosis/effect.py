@@ -139,10 +139,15 @@ class Effect:
 
     @property
     def undetermined(self) -> str:
-        """Which parameters of a law have a standard deviation above their value, in a sentence; "" where none has."""
+        """Which parameters of a law have a standard deviation above their value, or why none has one, in a sentence; "" elsewhere."""
         known = {
             n: (v.get("value"), v.get("std")) for n, v in self.shown_parameters.items() if self.mechanism != "unknown"
         }
+        if known and all(std is None for _, std in known.values()):
+            return (
+                "no standard deviations are known: whole records were not fitted, as the search was stopped before or no simulation of a "
+                "whole record keeps to it"
+            )
         names = [n for n, (value, std) in known.items() if value is not None and std is not None and std > abs(value)]
         if not names:
             return ""

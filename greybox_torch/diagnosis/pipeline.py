@@ -199,6 +199,7 @@ def _as_found(
         ranking=ranking(state),
         traces=traces,
         inputs=report_data.inputs(judged),
+        no_longer_validation=report_data.no_longer_validation(dataset, found.dataset),
         parameters=report_data.parameters(judged, bool(effects)),
         complete=found.complete,
         unexplained=unexplained,

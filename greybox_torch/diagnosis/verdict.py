@@ -30,6 +30,9 @@ class Left:
     sentence: str
 
 
+NOISE_SHOWN = "that the recordings' highest frequencies show"
+"""What is meant by the noise: not all that disturbs, but the sensors' own, which is little where an encoder has fine steps."""
+
 STOPPED = "The search was stopped before it was done (time limit or interruption): the best verdict so far."
 
 MOST_NAMED = 12
@@ -136,6 +139,8 @@ class Verdict:
     left: Left | None = None
     unstable: frozenset[str] = frozenset()
     """Validation experiments that the recommended model simulates worse than the re-estimated one, as no free run of it follows them."""
+    no_longer_validation: tuple[str, ...] = ()
+    """A sentence for each validation experiment that was taken to choose with, and so is not in the validation fit."""
     settings: DiagnosisSettings = DiagnosisSettings()
     """By what it was decided, and with ``budget`` how much was computed for it."""
     budget: SearchBudget = SearchBudget()
@@ -164,9 +169,8 @@ class Verdict:
             )
             output = mostly_in(self.counted("refit"))
             its = f"its error, mostly in {output}," if output else "its error"
-            return (
-                f"Something is missing from {self.model}: {its} is {digits(self.unexplained, 3)} times the noise. {why}"
-            )
+            times = f"{digits(self.unexplained, 3)} times the noise {NOISE_SHOWN}"
+            return f"Something is missing from {self.model}: {its} is {times}. {why}"
         if not self.effects and not self.looked:
             return f"Nothing was looked for in {self.model}: the beliefs exclude every hypothesis."
         if not self.effects and not self.complete:

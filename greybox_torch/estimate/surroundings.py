@@ -34,7 +34,7 @@ from greybox_torch.model.signals_elsewhere import (
     turning_elsewhere,
 )
 from greybox_torch.model.states_of import states_of
-from greybox_torch.model.unit_of_rate import unit_of_rate
+from greybox_torch.model.unit_of_rate import unit_of_integral, unit_of_rate
 from greybox_torch.model.within_turn import TURN, WHOLE
 from greybox_torch.simulation.simulator import Simulator
 
@@ -206,7 +206,7 @@ def _complete(port: Port, units: dict[str, str]) -> None:
         if "deflection" in units and "rate" not in units:
             units["rate"] = f"{units['deflection']}/s"
         if "rate" in units and "deflection" not in units:
-            units["deflection"] = units["rate"].removesuffix("/s")
+            units["deflection"] = unit_of_integral(units["rate"])
 
 
 def _of_sums(model: GreyBoxModel, port: Port, x: Signals, u: Signals, p: Signals) -> dict[str, str]:

@@ -12,6 +12,7 @@ from greybox_torch.mechanisms.delayed_input import channels
 from greybox_torch.mechanisms.local_signals import LocalSignals
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
 from greybox_torch.model import Body, GreyBoxModel, Input, Parameter, State
+from greybox_torch.model.unit_of_rate import unit_of_integral
 
 
 def added_states(local: LocalSignals) -> list[State]:
@@ -57,8 +58,8 @@ def started_at(parameter: Parameter, start: Mapping[str, float]) -> Parameter:
 
 
 def position_unit(model: GreyBoxModel, body: Body) -> str:
-    """The unit of a body's position: that of its position state, else its speed's without the per-second."""
+    """The unit of a body's position: that of its position state, else that of its speed's integral over time."""
     units = {s.name: s.unit for s in model.states}
     if isinstance(body.position, str):
         return units.get(body.position, "")
-    return units.get(body.speed, "").replace("/s", "") if isinstance(body.speed, str) else ""
+    return unit_of_integral(units.get(body.speed, "")) if isinstance(body.speed, str) else ""

@@ -1,6 +1,9 @@
-"""The unit of how fast something changes."""
+"""The unit of how fast something changes, and of what that comes to over time."""
 
 from __future__ import annotations
+
+_NONE = {"-", "–", "1"}
+"""How a number without a unit is declared."""
 
 
 def unit_of_rate(unit: str) -> str:
@@ -8,3 +11,12 @@ def unit_of_rate(unit: str) -> str:
     if not unit:
         return ""
     return f"{unit.removesuffix('/s')}/s^2" if unit.endswith("/s") else f"{unit}/s"
+
+
+def unit_of_integral(unit: str) -> str:
+    """The unit of the integral over time of a signal of this unit; empty where that is not known."""
+    if not unit or unit in _NONE:
+        return "s" if unit else ""
+    if unit.endswith("/s^2"):
+        return unit.removesuffix("^2")
+    return unit.removesuffix("/s") if unit.endswith("/s") else f"{unit} s"

@@ -111,7 +111,9 @@ def test_residuals_and_inspect(folder: Path, data: gt.DataSet) -> None:
     assert numbers(seen.to_dict()) == numbers(told(folder, "inspect"))
     assert left.scores[0]["whiteness"] > left.scores[0]["bound"]
     assert repr(left).endswith("residuals of Motor, start>")
-    assert repr(gt.residuals(gt.fit(Motor(), data), data)).endswith("residuals of Motor, refit>")
+    fitted = gt.fit(Motor(), data)
+    assert repr(gt.residuals(fitted, data)).endswith("residuals of Motor, refit>")
+    assert repr(gt.residuals(fitted.model, data)).endswith("residuals of Motor, held values>")  # seen: "start"
     assert "Sweep (validation): 5.99 s<" in seen._repr_html_()
     assert [row["channel"] for row in seen.rows[:2]] == ["voltage", "speed"]
     check_shown(left, folder / "left", {"residuals.png"})

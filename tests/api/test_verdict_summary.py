@@ -42,14 +42,27 @@ def test_parameters_that_are_not_determined_are_told() -> None:
     both = replace(BACKLASH, parameters={"F_0": vague, "d_0": infinite})
     assert both.undetermined.startswith("F_0, d_0: ") and "they may be zero" in both.undetermined
     assert replace(BACKLASH, parameters={"F_0": {"value": 1.0, "std": 0.9, **entry}}).undetermined == ""
-    assert replace(BACKLASH, parameters={"F_0": {"value": 1.0, "std": None, **entry}}).undetermined == ""
+    fixed = {"F_0": {"value": 1.0, "std": None, **entry}}
+    assert replace(BACKLASH, parameters={"half_gap": {"value": 0.03, "std": 0.001, **entry}} | fixed).undetermined == ""
+    # seen: a warm-up and gravity of searches that were stopped, without deviations in the table and without a word
+    assert replace(BACKLASH, parameters=fixed).undetermined.startswith(
+        "no standard deviations are known: whole records were not fitted"
+    )
+
+
+def test_an_experiment_that_no_longer_judges_is_told_first() -> None:
+    """Seen: a validation experiment among those estimated from in the table, and not a word of it but in the evidence."""
+    told = "Run 3 no longer counts as validation: it was taken to choose with as well (the evidence says why)."
+    found = replace(verdict(BACKLASH), no_longer_validation=(told,))
+    assert notes(found)[:2] == [told, SIZE]
+    assert told not in notes(replace(verdict(), no_longer_validation=(told,)))  # the evidence stands there
 
 
 def test_the_size_of_an_effect_is_told_and_its_equation() -> None:
     """Seen: friction without which all of the mismatch is back "explains 14 %", a ripple of size 0.29 "explains 86 %"."""
-    effect = replace(BACKLASH, size=0.28778, explained=0.8587, equation="port.gear_spring += -F_c")
+    effect = replace(BACKLASH, probability=0.9676, size=0.28778, explained=0.8587, equation="port.gear_spring += -F_c")
     heads, rows = effect_table(verdict(effect))
-    assert heads[3] == "size [%]" and rows[0][3] == 28.8
+    assert heads[3] == "size [%]" and rows[0][2:4] == [0.97, 28.8]
     assert effect_table(verdict(replace(effect, size=float("nan"))))[1][0][3] == ""
     told = notes(verdict(effect))
     assert told[0] == SIZE and told[1] == "backlash at gear_spring: port.gear_spring += -F_c"

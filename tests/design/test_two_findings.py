@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,13 +13,14 @@ import greybox_torch as gt
 from greybox_torch.api.design_result import DesignResult
 from greybox_torch.api.diagnosis_result import DiagnosisResult
 from greybox_torch.api.expected import Expected, decided
-from greybox_torch.api.hypotheses import hypotheses_of, left_out_told, to_tell_apart
+from greybox_torch.api.hypotheses import hypotheses_of, hypothesis_files, left_out_told, to_tell_apart
 from greybox_torch.diagnosis.describe.rivals import Rival
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombFriction, QuadraticDrag
+from tests.diagnosis.test_verdict import BACKLASH
 
 FIRST, SECOND = "rotor.coulomb_friction", "rotor.quadratic_drag"
 
@@ -59,11 +61,26 @@ def test_design_begins_as_the_final_model(two_found: DiagnosisResult) -> None:
     assert found.left_out[0] in found.notes
 
 
-def test_what_is_decided_is_not_recorded(two_found: DiagnosisResult) -> None:
+@pytest.mark.parametrize(
+    ("in_verdict", "complete", "words"),
+    [
+        (0.97, True, r"0\.97, each rival less than 0\.005; expected"),
+        (0.85, True, r"0\.85, each rival less than 0\.005; it is no surer as more than noise is left beside it"),
+        (0.85, False, r"0\.85, .*the search was stopped"),
+    ],
+)
+def test_what_is_decided_is_not_recorded(two_found, tmp_path, in_verdict: float, complete: bool, words: str) -> None:
+    """Seen: "a probability of 0.97", where the verdict says 0.85."""
     *_, final, other = two_found.found.rivals
-    sure = replace(two_found.found, rivals=(replace(final, probability=0.97), replace(other, probability=1e-5)))
-    with pytest.raises(UserError, match=r"already decided.*quadratic drag at rotor.*0\.97.*--precision PARAMETER"):
-        gt.design(replace(two_found, found=sure))
+    effects = (replace(BACKLASH, port=final.port, mechanism=final.mechanism, probability=in_verdict),)
+    verdict = replace(two_found.verdict, effects=effects, complete=complete)
+    rivals = (replace(final, probability=0.97), replace(other, probability=1e-5))
+    sure = replace(two_found, found=replace(two_found.found, verdict=verdict, rivals=rivals))
+    with pytest.raises(UserError, match=rf"already decided.*quadratic drag at rotor.*{words}.*--precision PARAMETER"):
+        gt.design(sure)
+    files = hypothesis_files(tmp_path, sure, sure._checkpoint())
+    kept = json.loads(files[tmp_path / "hypotheses.json"])
+    assert [one["in_verdict"] for one in kept["findings"][0]] == [in_verdict, None] and kept["complete"] is complete
 
 
 @pytest.mark.parametrize(

@@ -186,4 +186,7 @@ def test_where_the_error_without_a_name_is(second: float, words: str) -> None:
     """Seen: a fan whose speed fits to 72 % and whose temperature to 97 %: the sentence named neither."""
     both = tuple(Score("Run 2", "validation", name, fit, 0.3) for name, fit in (("speed", 72.0), ("heat", second)))
     told = replace(verdict(), unexplained=12.0, scores={"start": both, "refit": both, "augmented": both}).sentence
-    assert f"Something is missing from Motor: {words} 12 times the noise" in told
+    assert (
+        f"Something is missing from Motor: {words} 12 times the noise that the recordings' highest frequencies show."
+        in told
+    )

@@ -19,7 +19,7 @@ from greybox_torch.mechanisms.friction import ViscousFriction
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Balance, Body, GreyBoxModel, Input, Output, Parameter, Signals, State
-from greybox_torch.model.unit_of_rate import unit_of_rate
+from greybox_torch.model.unit_of_rate import unit_of_integral, unit_of_rate
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.native import NativeStepper
 from greybox_torch.simulation.passes import Pass
@@ -192,6 +192,12 @@ def test_which_are_offered_and_how_they_are_called() -> None:
     assert signal_name(machine, machine.ports[0], "turn") == "angle within a turn"
     assert signal_name(machine, machine.ports[0], "rate@shaft") == "d omega/dt"
     assert (unit_of_rate("rad/s"), unit_of_rate("K"), unit_of_rate("")) == ("rad/s^2", "K/s", "")
+
+
+def test_the_unit_of_a_position_is_that_of_the_integrated_speed() -> None:
+    """Seen: the position of a body whose speed is in a tachometer's volts, in V."""
+    units = {"rad/s": "rad", "m/s": "m", "V": "V s", "rpm": "rpm s", "rad/s^2": "rad/s", "1/s": "1", "-": "s", "": ""}
+    assert {unit: unit_of_integral(unit) for unit in units} == units
 
 
 @pytest.mark.parametrize("signal", ["turn", "position", "position@arm"])

@@ -110,6 +110,12 @@ def test_a_search_that_was_stopped(verdict: Verdict, about: About) -> None:
     assert ("Confidence" in text) == verdict.mismatch
 
 
+def test_an_experiment_that_no_longer_judges_is_told_at_the_top(verdict: Verdict, about: About) -> None:
+    told = "Steps no longer counts as validation: it was taken to choose with as well (the evidence says why)."
+    text = Page(render_page(replace(verdict, no_longer_validation=(told,)), about)).text
+    assert text.index(verdict.sentence) < text.index(told) < text.index("Validation fit")
+
+
 def test_an_error_that_nothing_explains(of_kind: Callable[[str], Verdict], about: About) -> None:
     """Something is missing, and there is no model with effects to compare with."""
     unexplained = replace(of_kind("nothing"), unexplained=12.0)

@@ -207,13 +207,9 @@ def _parameters(model: AugmentedModel, attachment: Attachment, final: Final) -> 
     result = {}
     for name in units:
         if name.startswith(start):
-            deviation = deviations.get(name)
-            known = deviation is not None and np.isfinite(deviation)
-            result[name.removeprefix(start)] = {
-                "value": values[name],
-                "std": deviation if known else None,
-                "unit": units[name],
-            }
+            # infinite where the recordings do not determine it; None where it was not estimated, or whole records were not fitted
+            own = {"value": values[name], "std": deviations.get(name), "unit": units[name]}
+            result[name.removeprefix(start)] = own
     return result
 
 

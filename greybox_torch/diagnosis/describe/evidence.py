@@ -137,7 +137,7 @@ def ceiling_sentence(effect: Effect) -> str:
 
 
 def detection_sentences(detected: Sequence[Detection], effects: bool) -> list[str]:
-    """What the errors of the free runs show, where that is clearest, and which recordings were made under feedback."""
+    """What the errors of the free runs show, where that is clearest, and which recordings look as if made under feedback."""
     lines = []
     if detected:
         lines.append(
@@ -152,9 +152,10 @@ def detection_sentences(detected: Sequence[Detection], effects: bool) -> list[st
     if answering:
         clearest, band = max(answering, key=lambda d: d.later.ratio), max(d.band for d in answering)
         lines.append(
-            f"Recorded under feedback: {', '.join(dict.fromkeys(d.experiment for d in answering))} (what is new in the input is correlated "
-            f"with errors before it: {_size(clearest.later, 'correlation')}). Coherence above {band:.3g} Hz, where the input is hardly "
-            "excited, is not counted as evidence."
+            "Recorded under feedback, or the input is recorded later than it acts (steps between samples): "
+            f"{', '.join(dict.fromkeys(d.experiment for d in answering))} (what is new in the input is correlated with errors before it: "
+            f"{_size(clearest.later, 'correlation')}). Coherence above {band:.3g} Hz, where the input is hardly excited, is not counted as "
+            "evidence."
         )
     return lines
 

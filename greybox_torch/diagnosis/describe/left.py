@@ -9,7 +9,7 @@ import numpy as np
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.describe.residual_tests import Detection
 from greybox_torch.diagnosis.digits import digits
-from greybox_torch.diagnosis.verdict import Left
+from greybox_torch.diagnosis.verdict import NOISE_SHOWN, Left
 
 
 def what_is_left(
@@ -29,12 +29,13 @@ def what_is_left(
         if times < noise and (beyond or coloured)
         else "the error is correlated with past inputs, so that part of it is repeatable"
         if beyond
-        else "the error is not white, but it is not linearly related to past inputs"
+        else "the error is not white, and past inputs do not explain it linearly: look at it over time (greybox residuals) for what is not "
+        "recorded, such as a load, or for a state that it follows"
         if coloured
         else "the error is white, as noise is"
     )
     size = (
-        f"in {worst} the free run's error is {'as large as' if digits(times) == '1' else f'{digits(times)} times'} the noise"
+        f"in {worst} the free run's error is {'as large as' if digits(times) == '1' else f'{digits(times)} times'} the noise {NOISE_SHOWN}"
         if np.isfinite(times)
         else "how much of its error is noise does not show"
     )

@@ -1,9 +1,12 @@
-"""What a report shows of the models: every output and input over time, and the parameters, as the card has them and estimated."""
+"""What a report shows of the models: every output and input over time, and the parameters, as the card has them and estimated; and which
+recordings judge them no longer.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
+from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.verdict import Estimate, InputTrace, Trace
 
@@ -20,6 +23,20 @@ def traces(judged: Judgement, effects: bool) -> tuple[Trace, ...]:
                 Trace(recording.name, recording.role, output.name, output.unit, time_axis, measured, *simulated)
             )
     return tuple(result)
+
+
+def no_longer_validation(given: DataSet, used: DataSet) -> tuple[str, ...]:
+    """A sentence for each validation experiment of ``given`` that is chosen with in ``used``, or the beginning of which is."""
+    held_out = {r.name for r in given.validation()}
+    rests = {name: r.name for r in used.validation() for name in held_out if r.name.startswith(f"{name} from ")}
+    why = "was taken to choose with as well (the evidence says why)"
+    return tuple(
+        f"Of {r.name} only {rests[r.name]} counts as validation: its beginning {why}."
+        if r.name in rests
+        else f"{r.name} no longer counts as validation: it {why}."
+        for r in used.estimation()
+        if r.name in held_out
+    )
 
 
 def inputs(judged: Judgement) -> tuple[InputTrace, ...]:

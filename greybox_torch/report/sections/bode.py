@@ -13,8 +13,8 @@ from greybox_torch.report.chart.panel import Chart, Key, Panel
 from greybox_torch.report.chart.scale import Scale, degrees, linear, logarithmic
 
 FEEDBACK = (
-    " The experiments were recorded under feedback: the region has room for the most that noise can bend the "
-    "estimate, and nothing is drawn beyond the band that is excited from outside."
+    " The experiments were recorded under feedback, or their inputs later than they act: the region has room for the most that noise can "
+    "bend the estimate, and nothing is drawn beyond the band that is excited from outside."
 )
 
 LEGEND = (

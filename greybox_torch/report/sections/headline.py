@@ -32,6 +32,7 @@ class Headline:
     figures: tuple[Figure, ...]
     complete: bool
     not_tried: tuple[str, ...] = ()
+    no_longer_validation: tuple[str, ...] = ()
     template: str = "headline.html.j2"
 
     @classmethod
@@ -42,7 +43,7 @@ class Headline:
         if verdict.mismatch or (verdict.complete and verdict.looked):
             figures.append(_confidence(verdict))
         told = (verdict.dataset, verdict.model, verdict.sentence, answer, tuple(figures))
-        return cls(*told, verdict.complete, verdict.not_tried.sentences())
+        return cls(*told, verdict.complete, verdict.not_tried.sentences(), verdict.no_longer_validation)
 
 
 def held_out(verdict: Verdict, model: str, output: str | None = None) -> list[Score]:

@@ -121,8 +121,8 @@ def _caption(effect: Effect, curve: Curve) -> str:
         spread = "" if curve.spread is None else ", with two standard deviations on either side"
         return f"The effect's own curve{spread}: {over}.{_where_seen(effect, curve)}"
     data = (
-        "Dots are partial residuals: the law plus the constant force that best explains the errors of one window of the estimation "
-        "experiments, all other parameters as fitted."
+        f"Dots are partial residuals: the law plus the constant at {effect.port} that best explains the errors of one window of the "
+        "estimation experiments, all other parameters as fitted."
     )
     if effect.mechanism == "unknown":
         return f"The effect's own curve: {over}. Dashed it is extrapolated: there are hardly any data. {data}{_where_seen(effect, curve)}"

@@ -27,6 +27,8 @@ def test_what_only_the_last_experiment_shows_is_found_in_a_part_of_it(drag_at_sp
     taken = data.recordings[1].name
     assert rest.startswith(f"{taken} from ") and roles[taken] == "estimation"
     assert any(line.startswith(f"The beginning of {taken} was taken") and rest in line for line in verdict.evidence)
+    (told,) = verdict.no_longer_validation
+    assert told.startswith(f"Of {taken} only {rest} counts as validation: its beginning was taken to choose with")
 
 
 def test_both_parts_have_a_fifth_of_it_and_each_sample_once(drag_at_speed, motor, begun) -> None:

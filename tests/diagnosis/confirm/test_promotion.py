@@ -36,6 +36,9 @@ def test_what_only_other_experiments_show_is_found_with_one_of_them(drag_at_spee
     assert sorted(roles.values()) == ["estimation", "estimation", "validation"]
     taken = next(r.name for r in data.recordings if r.role != roles[r.name])
     assert any(line.startswith(f"{taken} was taken to choose with") for line in verdict.evidence)
+    assert verdict.no_longer_validation == (
+        f"{taken} no longer counts as validation: it was taken to choose with as well (the evidence says why).",
+    )
     assert [r.role for r in data.recordings] == ["estimation", "validation", "validation"]
 
 

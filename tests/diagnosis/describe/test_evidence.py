@@ -41,7 +41,8 @@ def test_the_clearest_of_several_and_feedback() -> None:
     assert "are correlated with past inputs up to 60 Hz (largest correlation 0.31" in past
     assert "not white" in colour
     assert past.endswith(", in speed of Sweep).") and colour.endswith(", in speed of Sweep).")
-    assert feedback.startswith("Recorded under feedback: Sweep, Hold (") and "0.36, 99 % bound 0.03" in feedback
+    both = "Recorded under feedback, or the input is recorded later than it acts (steps between samples): Sweep, Hold ("
+    assert feedback.startswith(both) and "0.36, 99 % bound 0.03" in feedback
     assert "Coherence above 60 Hz, where the input is hardly excited, is not counted as evidence." in feedback
 
 

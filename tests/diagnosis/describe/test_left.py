@@ -12,7 +12,12 @@ from greybox_torch.diagnosis.describe.left import what_is_left
     ("past", "colour", "words"),
     [
         (True, True, "the error is correlated with past inputs, so that part of it is repeatable."),
-        (False, True, "the error is not white, but it is not linearly related to past inputs."),
+        (
+            False,
+            True,
+            "the error is not white, and past inputs do not explain it linearly: look at it over time (greybox residuals) for what is not "
+            "recorded, such as a load, or for a state that it follows.",
+        ),
         (False, False, "the error is white, as noise is."),
     ],
 )
@@ -23,7 +28,8 @@ def test_size_and_kind_of_error_are_each_told_of_their_experiments(stub, past, c
     left = what_is_left(judged, found, True, 1.3)
     assert (left.share, left.times_noise) == (0.634, 105.3)
     assert left.sentence == (
-        "63 % of the mismatch remains: in Validation 1 the free run's error is 110 times the noise. "
+        "63 % of the mismatch remains: in Validation 1 the free run's error is 110 times the noise that the recordings' highest "
+        "frequencies show. "
         f"On the experiments that it was estimated from, {words}"
     )
 
@@ -31,7 +37,10 @@ def test_size_and_kind_of_error_are_each_told_of_their_experiments(stub, past, c
 def test_an_error_of_the_size_of_the_noise(stub) -> None:
     """Seen: "is 1 times the noise"."""
     left = what_is_left(stub(left=lambda effects: (0.01, 1.02, "Run 2")), [], True, 1.3)
-    assert "in Run 2 the free run's error is as large as the noise." in left.sentence
+    assert (
+        "in Run 2 the free run's error is as large as the noise that the recordings' highest frequencies show."
+        in left.sentence
+    )
 
 
 @pytest.mark.parametrize(

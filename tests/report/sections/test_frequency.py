@@ -83,7 +83,8 @@ def test_no_response_shows_what_is_not_linear() -> None:
 
 def test_under_feedback_the_region_is_wider() -> None:
     free, closed = (shown(lagged(feedback=f)).charts[0] for f in (False, True))
-    assert "recorded under feedback" in closed.caption and "recorded under feedback" not in free.caption
+    told = "recorded under feedback, or their inputs later than they act"
+    assert told in closed.caption and "recorded under feedback" not in free.caption
     assert _percent(closed.caption, "region is ") > 1.3 * _percent(free.caption, "region is ")
 
 

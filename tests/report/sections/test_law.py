@@ -40,6 +40,7 @@ def test_a_law_over_the_data() -> None:
         ("points", "data"),
     ]
     assert "a free curve estimated in its place" in chart.caption and "partial residuals" in chart.caption
+    assert "the constant at gear_spring that" in chart.caption  # seen: a "constant force" at a valve, in l/min
     assert [key.series for key in chart.legend] == ["law", "free", "data"]
     assert chart.legend[2].label == "estimates from single windows of 62 samples"
 

@@ -1,0 +1,39 @@
+"""What is said of the force at a port whose speed is not that of a body that turns or slides."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from greybox_torch.checking.examine import examine
+from greybox_torch.systems import model_class
+
+HOOP = """
+from greybox_torch import Body, GreyBoxModel, Input, Output, Parameter, State
+
+
+class Hoop(GreyBoxModel):
+    states = [State("speed", "V")]
+    inputs = [Input("u", "-")]
+    outputs = [Output("speed", "V")]
+    parameters = [Parameter("k", 8.3, unit="V/s"), Parameter("b", 0.82, unit="1/s")]
+    ports = [Body("hoop", speed="speed")]
+
+    def derivative(self, x, u, p, port):
+        return {"speed": p.k * u.u - p.b * x.speed + port.hoop}
+
+    def output(self, x, u, p):
+        return {"speed": x.speed}
+"""
+
+
+@pytest.mark.parametrize(("unit", "force"), [("V", ""), ("-", ""), ("rad/s", "N m"), ("m/s", "N"), ("A", "V")])
+def test_the_force_at_a_body_has_a_unit_where_its_product_with_the_speed_is_power(
+    tmp_path: Path, unit: str, force: str
+) -> None:
+    """Seen: a torque "in A" beside a speed in a tachometer's volts, and a parameter in "A^2 s^4/(m^2 kg)" asked for."""
+    rate = {"-": "1/s", "rad/s": "rad/s^2", "m/s": "m/s^2"}.get(unit, f"{unit}/s")
+    (tmp_path / "hoop.py").write_text(HOOP.replace('"V/s"', f'"{rate}"').replace('"V"', f'"{unit}"'))
+    found = examine(model_class(f"{tmp_path / 'hoop.py'}:Hoop")).findings
+    assert [f"`port.hoop`, in {force}" in finding.found for finding in found] == ([True] if force else [])
