@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from greybox_torch.checking.code import untraceable
 from greybox_torch.checking.declarations import declared_twice, missing_methods, no_ports, port_signals, unusable_names
 from greybox_torch.checking.effects import without_effect
-from greybox_torch.checking.equations import compiled, fails
+from greybox_torch.checking.equations import compiled, fails, told
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.checking.influence import Influence, influence
 from greybox_torch.checking.names import declared_names, exchanged_arguments, left_out, unknown_names
@@ -18,7 +18,7 @@ from greybox_torch.checking.source import Source, source_of
 from greybox_torch.checking.units import misfits, unreadable_units
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.model.check import explain
+from greybox_torch.model.check import raised
 
 
 @dataclass(frozen=True)
@@ -86,9 +86,7 @@ def _run(
     try:
         moved = influence(model, points)
     except Exception as error:  # equations that run, and whose derivative does not
-        found.append(
-            Finding("warning", "code", explain(model, error), "functions that torch can differentiate", source.file)
-        )
+        found.append(told(raised(model, error), source, "functions that torch can differentiate", "warning"))
         return Examination(made, model, in_order(found), None, graph is not None)
     found += [*without_effect(model, moved, graph, source), *not_finite(model, moved, points, source)]
     found += not_finite_at_start(model, source)
