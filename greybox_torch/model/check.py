@@ -31,7 +31,8 @@ ALONE = "expected equations of x, u, p and port alone: no random numbers, no mem
 class EquationsError(UserError):
     """What is wrong with a model's equations: ``found`` without its place, and the ``file`` and ``line`` of that place, if it is known."""
 
-    def __init__(self, found: str, file: str | None = None, line: int | None = None) -> None:
+    def __init__(self, found: str, place: tuple[str, int | None] | None = None) -> None:
+        file, line = place or (None, None)
         super().__init__(f"{Path(file).name}, line {line}: {found}" if file else found)
         self.found, self.file, self.line = found, file, line
 
@@ -135,14 +136,14 @@ def _random(model: GreyBoxModel, function: Callable[..., torch.Tensor], *given: 
         if name
         else f"the equations of {model.title} draw random numbers; {ALONE}"
     )
-    return EquationsError(found, *((frame.f_code.co_filename, frame.f_lineno) if frame else ()))
+    return EquationsError(found, (frame.f_code.co_filename, frame.f_lineno) if frame else None)
 
 
 def raised(model: GreyBoxModel, error: Exception) -> EquationsError:
     """In words, what went wrong in the equations of ``model`` and in which line of which file."""
     frame = _frame(model, error)
     return EquationsError(
-        _what_happened(model, error, frame is None), *((frame.filename, frame.lineno) if frame else ())
+        _what_happened(model, error, frame is None), (frame.filename, frame.lineno) if frame else None
     )
 
 
