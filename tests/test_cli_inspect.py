@@ -157,7 +157,12 @@ BAD_INPUT = {
         ['steps.csv: no column "Yy" (did you mean "y"?)', "found t, u, y"],
     ),
     "text in a column": ("steps.csv", "\n0.19,4,", "\n0.19,four,", ['steps.csv, line 21, column "u": found "four"']),
-    "infinite value": ("steps.csv", "\n0.19,4,", "\n0.19,inf,", ['steps.csv, line 21, column "u"', "found inf"]),
+    "infinite value": (
+        "steps.csv",
+        "\n0.19,4,",
+        "\n0.19,inf,",
+        ['dataset.toml, [[experiment]] "Steps", channel "voltage": ', 'steps.csv, line 21, column "u"', "found inf"],
+    ),
     "zero sample time": ("dataset.toml", "= 0.01", "= 0.0", ["sample_time: 0 is not a sample time"]),
     "negative sample time": ("dataset.toml", "= 0.01", "= -1", ["sample_time: -1 is not a sample time"]),
     "time going backwards": ("dataset.toml", "sample_time = 0.01", 'time = "u"', ["line 7", "found 0 s after 4 s"]),

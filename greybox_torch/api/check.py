@@ -7,6 +7,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from greybox_torch.api.check_result import CheckResult
 from greybox_torch.api.data_warnings import all_warnings
 from greybox_torch.checking.examine import examine
@@ -18,7 +20,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.beliefs import beliefs_from_mapping
 from greybox_torch.diagnosis.settings import settings_from_mapping
 from greybox_torch.errors import ArgumentError, Kind, UserError
-from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.experiment_design.limits import limits_of
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.systems import model_class
@@ -52,7 +54,7 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
     """
     name, given = _given(model)
     with users_code(_file(given), f"model {name}", "checking it"):
-        examined = examine(given)
+        examined = examine(given, alone=data is None)
     findings, values = list(examined.findings), dict[str, float]()
     if data is not None:
         usable = None if any(f.level == "error" for f in findings) else examined.model
@@ -87,8 +89,18 @@ def _with_data(data: DataSet, model: GreyBoxModel) -> tuple[list[Finding], dict[
         return [_of_the_card(error, data)], {}
     values = problem.values_by_name
     source = source_of(type(model))
-    of_values = [*not_finite_at_start(model, source, values), *negative_masses(model, source, values)]
+    of_values = [
+        *not_finite_at_start(model, source, values, _begun(problem)),
+        *negative_masses(model, source, values),
+    ]
     return [*of_values, *_tables(data, model)], values
+
+
+def _begun(problem: Problem) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """The states and inputs that every experiment begins with; not of one whose first samples are missing."""
+    records = problem.records
+    starts = zip(records.names, problem.initial, records.u[:, records.first].T, strict=True)
+    return {name: (x, u) for name, x, u in starts if np.isfinite([*x, *u]).all()}
 
 
 def _tables(data: DataSet, model: GreyBoxModel) -> list[Finding]:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
+from pathlib import Path
 
-from greybox_torch.checking.finding import Finding
+from greybox_torch.checking.finding import Finding, Level
 from greybox_torch.checking.source import Source
 from greybox_torch.checking.tracing import Traced, traced
 from greybox_torch.codegen.arrays import UnsupportedOperation
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.model.check import check_equations, explain, line_of
+from greybox_torch.model.check import EquationsError, check_equations, line_of, raised
 
 _INSTEAD = {
     "linalg_inv_ex": "torch.linalg.solve(matrix, right_hand_side)",
@@ -21,6 +22,9 @@ _INSTEAD = {
     "index_put": "torch.stack([…]) instead of writing into a matrix",
     "einsum": "matrix @ vector, or the sums written out",
 }
+_RAISES_NOTHING = (
+    "equations that raise nothing, whatever values the states and inputs have, each a tensor with one number a sample"
+)
 _COMPILED = "+ - * / **, torch.where, sin, cos, tanh, exp, sqrt, abs, sign, minimum, maximum, clamp, stack, @, torch.linalg.solve"
 
 
@@ -28,10 +32,23 @@ def fails(model: GreyBoxModel, source: Source) -> Iterator[Finding]:
     """A finding where the equations raise, or do not return what is declared, or not twice the same."""
     try:
         check_equations(model)
+    except EquationsError as error:
+        yield told(error, source, _RAISES_NOTHING)
     except UserError as error:
         found, _, write = str(error).partition("; expected ")
         line = _line_of_return(str(error), source) or source.line
         yield Finding("error", "code", found, write or "equations that give one number a sample", source.file, line)
+
+
+def told(error: EquationsError, source: Source, write: str, level: Level = "error") -> Finding:
+    """The finding at the line where the equations went wrong, which may be in another file than the class is.
+
+    Args:
+        write: what to write instead, unless the error says it.
+    """
+    found, _, expected = error.found.partition("; expected ")
+    file = source.file if error.file is None else Path(error.file)
+    return Finding(level, "code", found, expected or write, file, error.line or source.line)
 
 
 def _line_of_return(message: str, source: Source) -> int | None:
@@ -60,4 +77,4 @@ def compiled(model: GreyBoxModel, source: Source) -> tuple[Traced | None, list[F
     except UserError as error:
         return None, [Finding("error", "code", str(error), f"functions of torch: {_COMPILED}", source.file)]
     except Exception as error:  # whatever the user's equations raise when they are handed symbols
-        return None, [Finding("error", "code", explain(model, error), f"functions of torch: {_COMPILED}", source.file)]
+        return None, [told(raised(model, error), source, f"functions of torch: {_COMPILED}")]

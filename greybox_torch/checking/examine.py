@@ -7,18 +7,18 @@ from dataclasses import dataclass
 from greybox_torch.checking.code import untraceable
 from greybox_torch.checking.declarations import declared_twice, missing_methods, no_ports, port_signals, unusable_names
 from greybox_torch.checking.effects import without_effect
-from greybox_torch.checking.equations import compiled, fails
+from greybox_torch.checking.equations import compiled, fails, told
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.checking.influence import Influence, influence
 from greybox_torch.checking.names import declared_names, exchanged_arguments, left_out, unknown_names
 from greybox_torch.checking.negative_masses import negative_masses
-from greybox_torch.checking.not_finite import not_finite, not_finite_at_start
-from greybox_torch.checking.points import points_of
+from greybox_torch.checking.not_finite import never_finite, not_finite, not_finite_at_start
+from greybox_torch.checking.points import points_of, wide_points
 from greybox_torch.checking.source import Source, source_of
 from greybox_torch.checking.units import misfits, unreadable_units
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.model.check import explain
+from greybox_torch.model.check import raised
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,12 @@ class Examination:
     compiled: bool = False
 
 
-def examine(given: GreyBoxModel | type[GreyBoxModel]) -> Examination:
-    """Examine a class, or the class and the values of an object; its equations are run on made-up values."""
+def examine(given: GreyBoxModel | type[GreyBoxModel], *, alone: bool = True) -> Examination:
+    """Examine a class, or the class and the values of an object; its equations are run on made-up values.
+
+    Args:
+        alone: there are no data, which say better than the model where a simulation begins.
+    """
     made = given if isinstance(given, type) else type(given)
     source = source_of(made)
     found = [*missing_methods(made, source), *unusable_names(made, source), *port_signals(made, source)]
@@ -54,7 +58,7 @@ def examine(given: GreyBoxModel | type[GreyBoxModel]) -> Examination:
     found += [*unreadable_units(model, source), *no_ports(made, source), *negative_masses(model, source)]
     if any(f.level == "error" for f in found):  # running the equations would repeat it, one at a time
         return Examination(made, model, in_order([*found, *code]))
-    return _run(made, model, source, found, code)
+    return _run(made, model, source, found, code, alone)
 
 
 def _read(made: type[GreyBoxModel], source: Source) -> tuple[list[Finding], list[Finding]]:
@@ -73,7 +77,12 @@ def _read(made: type[GreyBoxModel], source: Source) -> tuple[list[Finding], list
 
 
 def _run(
-    made: type[GreyBoxModel], model: GreyBoxModel, source: Source, found: list[Finding], code: list[Finding]
+    made: type[GreyBoxModel],
+    model: GreyBoxModel,
+    source: Source,
+    found: list[Finding],
+    code: list[Finding],
+    alone: bool,
 ) -> Examination:
     wrong = list(fails(model, source))
     graph, uncompiled = (None, []) if wrong else compiled(model, source)
@@ -84,12 +93,15 @@ def _run(
         found += misfits(model, graph, source)
     points = points_of(model)
     try:
-        moved = influence(model, points)
+        moved = acting = influence(model, points)
+        if not moved.finite.any():
+            acting = influence(model, wide_points(model))
     except Exception as error:  # equations that run, and whose derivative does not
-        found.append(
-            Finding("warning", "code", explain(model, error), "functions that torch can differentiate", source.file)
-        )
+        found.append(told(raised(model, error), source, "functions that torch can differentiate", "warning"))
         return Examination(made, model, in_order(found), None, graph is not None)
-    found += [*without_effect(model, moved, graph, source), *not_finite(model, moved, points, source)]
-    found += not_finite_at_start(model, source)
-    return Examination(made, model, in_order(found), moved, graph is not None)
+    if not acting.finite.any():  # what moves an output cannot be seen either
+        found.append(never_finite(model, points, source))
+        return Examination(made, model, in_order(found), None, graph is not None)
+    found += [*without_effect(model, acting, graph, source), *not_finite(model, moved, points, source)]
+    found += not_finite_at_start(model, source) if alone else ()
+    return Examination(made, model, in_order(found), acting, graph is not None)

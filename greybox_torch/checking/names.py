@@ -56,15 +56,27 @@ def unknown_names(method: Method, declared: Mapping[str, Sequence[str]]) -> Iter
 
 
 def exchanged_arguments(method: Method, unknown: bool) -> Finding | None:
-    """A finding where the usual arguments stand at unusual places, so that names in the equations look ``unknown``, or one is missing."""
+    """A finding where the usual arguments stand at unusual places, so that names in the equations look ``unknown``, or one is missing or
+    one too many.
+    """
     usual = USUAL[: len(USUAL) if method.name == "derivative" else -1]
     own = list(method.arguments)
     moved = any(name in usual and usual.index(name) != place for place, name in enumerate(own))
-    if not moved or not (unknown or len(own) < len(usual)):
+    if _can_be_called(method.tree, len(usual)) and not (moved and (unknown or len(own) < len(usual))):
         return None
     expected = f"{method.name}(self, {', '.join(usual)})"
     found = f"{method.name}({ast.unparse(method.tree.args)}): expected {expected}, in this order"
     return Finding("error", "declaration", found, f"def {expected}:", method.file, method.tree.lineno)
+
+
+def _can_be_called(method: ast.FunctionDef, usual: int) -> bool:
+    """Whether a method takes ``usual`` arguments beside itself; ``output`` may take the ports' forces as well."""
+    arguments = method.args
+    named = len(arguments.posonlyargs) + len(arguments.args) - 1
+    handed = max(usual, min(named, len(USUAL)))
+    enough = named >= handed or arguments.vararg is not None
+    asked_for = named - len(arguments.defaults) <= handed and None not in arguments.kw_defaults
+    return bool(method.decorator_list) or (enough and asked_for)  # what a decorator makes of it is not read here
 
 
 def left_out(method: Method, names: Sequence[str], unit_of: Mapping[str, str]) -> Iterator[Finding]:

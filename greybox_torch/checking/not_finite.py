@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -39,17 +40,33 @@ def not_finite(model: GreyBoxModel, influence: Influence, points: Points, source
     )
 
 
+def never_finite(model: GreyBoxModel, points: Points, source: Source) -> Finding:
+    """The finding where none of the points gives numbers, however far apart they are."""
+    one = Points(*(of.detach()[:, :1] for of in (points.x, points.u, points.p, points.f)))
+    found = (
+        "the equations are no numbers (nan or inf) at any of the values that were tried, from thousandths to millions"
+    )
+    return replace(_finding(found, source, _origin(model, one, source.file)[1]), level="error")
+
+
 def not_finite_at_start(
-    model: GreyBoxModel, source: Source, values: Mapping[str, float] | None = None
+    model: GreyBoxModel,
+    source: Source,
+    values: Mapping[str, float] | None = None,
+    begun: Mapping[str, tuple[np.ndarray, np.ndarray]] | None = None,
 ) -> Iterator[Finding]:
-    """A finding where the equations give no number where a simulation begins.
+    """A finding where the equations give no number where a simulation begins, once.
 
     Args:
         values: of parameters, where a card has others than the model declares.
+        begun: by experiment the states (n_x,) and inputs (n_u,) that its recording begins with.
     """
-    start = start_of(model, values or {})
-    lost, line = _origin(model, start, source.file)
-    if not lost:
+    starts = {
+        name: start_of(model, values or {}, start) for name, start in ({"": None} if begun is None else begun).items()
+    }
+    found = ((name, start, *_origin(model, start, source.file)) for name, start in starts.items())
+    name, start, _, line = next((one for one in found if one[2]), ("", None, False, None))
+    if start is None:
         return
     declared = (*model.states, *model.inputs, *model.declared_parameters)
     zero = [
@@ -58,8 +75,9 @@ def not_finite_at_start(
     text = _text(source, line)
     standing = [name for name in zero if re.search(rf"\b{re.escape(name)}\b", text)]
     divisors = [name for name in standing if re.search(rf"/\s*\(?\s*\w+\.{re.escape(name)}\b", text)]
+    of = f' of "{name}"' if name else " (states at their start values, measured ones and inputs at zero)"
     yield _finding(
-        "the equations are no numbers at the start (states at their start values, measured ones and inputs at zero)"
+        f"the equations are no numbers at the start{of}"
         + (f", where {' and '.join(f'{name} = 0' for name in divisors or standing)}" if standing else ""),
         source,
         line,

@@ -16,6 +16,9 @@ SIZES = (1e-5, 0.01, 1.0, 30.0)
 EACH = 32
 """Points of each size."""
 
+DECADES, WIDE = (-3.0, 6.0), 512
+"""Powers of ten that the wider points are drawn between, and how many of each order there are."""
+
 SPREAD = 0.3
 """Standard deviation of the logarithm of a parameter around its declared value."""
 
@@ -50,24 +53,51 @@ def points_of(model: GreyBoxModel) -> Points:
     draw = np.random.default_rng(0)
     sizes = np.repeat(SIZES, EACH)
     x, u, f = (draw.normal(size=(len(of), len(sizes))) * sizes for of in (model.states, model.inputs, model.ports))
-    rows = [
-        _around(q.value, *q.bounds, draw.normal(size=len(sizes)), draw.uniform(size=len(sizes)))
-        for q in model.declared_parameters
-    ]
-    p = np.array(rows) if rows else np.zeros((0, len(sizes)))
-    return Points(*(torch.tensor(a, dtype=torch.float64, requires_grad=True) for a in (x, u, p, f)))
+    return Points(*_leaves(x, u, _parameters(model, draw, len(sizes)), f))
 
 
-def start_of(model: GreyBoxModel, values: Mapping[str, float]) -> Points:
+def wide_points(model: GreyBoxModel) -> Points:
+    """Points for equations that are no numbers at any of :func:`points_of`: values above zero over many decades, as absolute temperatures
+    and pressures have, in the order drawn, rising and falling from state to state, as levels and pressures along a line may have to.
+    """
+    draw = np.random.default_rng(0)
+    drawn = 10.0 ** draw.uniform(*DECADES, size=(len(model.states), WIDE)) * draw.uniform(0.5, 2.0, size=WIDE)
+    x = np.hstack([drawn, np.sort(drawn, axis=0), np.sort(drawn, axis=0)[::-1]])
+    count = x.shape[1]
+    u = 10.0 ** draw.uniform(*DECADES, size=(len(model.inputs), count))
+    f = draw.normal(size=(len(model.ports), count))
+    return Points(*_leaves(x, u, _parameters(model, draw, count), f))
+
+
+def start_of(
+    model: GreyBoxModel, values: Mapping[str, float], begun: tuple[np.ndarray, np.ndarray] | None = None
+) -> Points:
     """One point: states where they are declared to start, inputs, forces and measured starts zero, and parameters as declared.
 
     Args:
         values: of parameters that have others; those without any value are one.
+        begun: states (n_x,) and inputs (n_u,) where a recording begins.
     """
-    x = [0.0 if s.initial == "measured" else float(s.initial) for s in model.states]
+    x, u = begun or (
+        [0.0 if s.initial == "measured" else float(s.initial) for s in model.states],
+        [0.0] * len(model.inputs),
+    )
     p = [values.get(q.name, q.value) for q in model.declared_parameters]
-    rows = (x, [0.0] * len(model.inputs), [v if v == v else 1.0 for v in p], [0.0] * len(model.ports))
-    return Points(*(torch.tensor(row, dtype=torch.float64).reshape(-1, 1) for row in rows))
+    rows = (x, u, [v if v == v else 1.0 for v in p], [0.0] * len(model.ports))
+    return Points(*(torch.as_tensor(row, dtype=torch.float64).reshape(-1, 1) for row in rows))
+
+
+def _parameters(model: GreyBoxModel, draw: np.random.Generator, count: int) -> np.ndarray:
+    """``count`` values of each declared parameter around its own, (n_p, count)."""
+    rows = [
+        _around(q.value, *q.bounds, draw.normal(size=count), draw.uniform(size=count))
+        for q in model.declared_parameters
+    ]
+    return np.array(rows) if rows else np.zeros((0, count))
+
+
+def _leaves(*values: np.ndarray) -> list[torch.Tensor]:
+    return [torch.tensor(a, dtype=torch.float64, requires_grad=True) for a in values]
 
 
 def _around(value: float, low: float, high: float, normal: np.ndarray, uniform: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.source import Source
 from greybox_torch.checking.tracing import Traced
 from greybox_torch.checking.unit_walk import Known, dimensions
+from greybox_torch.data.units import factor_in
 from greybox_torch.model import Body, Coupling, GreyBoxModel
 
 REMEDY = "what makes units fit: a number in the equation that has a unit is a parameter with that unit and fixed=True"
@@ -28,10 +29,18 @@ def unreadable_units(model: GreyBoxModel, source: Source) -> Iterator[Finding]:
                 "warning",
                 "units",
                 f"{item.name}: {error}",
-                'a unit such as "rad/s", "N m s/rad", "kg m^2", "" where it is not to be checked',
+                _unit_instead(item.unit),
                 source.file,
                 source.line_of(f'"{item.name}"'),
             )
+
+
+def _unit_instead(unit: str) -> str:
+    factor = factor_in(unit)
+    if factor is None:
+        return 'a unit such as "rad/s", "N m s/rad", "kg m^2", "" where it is not to be checked'
+    number, alone = factor
+    return f'"{alone}", with the factor {number} in the values instead; or a unit with a prefix, such as "kN" or "MW"'
 
 
 def misfits(model: GreyBoxModel, traced: Traced, source: Source) -> Iterator[Finding]:

@@ -13,7 +13,7 @@ from greybox_torch.codegen.expression import Graph
 from greybox_torch.codegen.trace import nodes_of, separate_symbols, symbols
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel, Signals
-from greybox_torch.model.check import explain
+from greybox_torch.model.check import raised
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def lower(model: GreyBoxModel, sensitive: Sequence[str], at_zero: Sequence[str] 
     except (UserError, UnsupportedOperation):
         raise
     except Exception as error:  # whatever the user's equations raise, torch's complaints about other libraries among it
-        raise UserError(explain(model, error)) from error
+        raise raised(model, error) from error
     leaves_x = [graph.leaf("x", i) for i in range(len(model.states))]
     leaves_p = [graph.leaf("p", names.index(name)) for name in sensitive]
     pieces = [jacobian(graph, roots, leaves) for roots in (rates, outputs) for leaves in (leaves_x, leaves_p)]

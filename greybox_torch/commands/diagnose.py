@@ -29,6 +29,7 @@ def run(
             time_limit=time_limit,
             settings=own[0],
             budget=own[1],
-            on_progress=hear,
+            on_progress=task.replacing.before(hear),
         )
+    task.replacing.warn()
     options.finish(found, task.folder, found.save(task.folder, pdf=pdf))

@@ -42,6 +42,7 @@ def run(
             profiles=profiled,
             device=task.device,
             precision=task.precision,
-            progress=news(lambda line: log.print(Text(line), soft_wrap=True)),
+            progress=task.replacing.before(news(lambda line: log.print(Text(line), soft_wrap=True))),
         )
+    task.replacing.warn()
     options.finish(found, task.folder)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+
+from rich.console import Console
+from rich.text import Text
 
 from greybox_torch.errors import UserError
 
@@ -23,6 +26,33 @@ def others_model(folder: Path, command: str) -> str:
         f"{folder}: holds results of {named}, whose model (model.json, model.safetensors) this command replaces; expected another folder, "
         "--out DIR"
     )
+
+
+class Replacing:
+    """Warns once that another command's model is going to be replaced: when the work begins, as arguments that are refused replace nothing.
+
+    Args:
+        told: the warning, "" for none.
+    """
+
+    def __init__(self, told: str = "") -> None:
+        self._left = [told] if told else []  # several threads may tell of progress, and one takes it
+
+    def warn(self) -> None:
+        """Say it, unless it is said."""
+        with suppress(IndexError):
+            Console(stderr=True, highlight=False).print(
+                Text(f"warning: {self._left.pop()}", style="yellow"), soft_wrap=True
+            )
+
+    def before(self, hear: Callable[..., None]) -> Callable[..., None]:
+        """``hear``, which is told of progress, with the warning before the first of it."""
+
+        def heard(*now: object) -> None:
+            self.warn()
+            hear(*now)
+
+        return heard
 
 
 def check_folder(folder: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import torch
@@ -14,7 +14,7 @@ from greybox_torch.api.data_warnings import data_warnings
 from greybox_torch.api.simulate import START
 from greybox_torch.checkpoint import checkpoint_name
 from greybox_torch.commands.options import Options
-from greybox_torch.commands.results_folder import check_folder, others_model
+from greybox_torch.commands.results_folder import Replacing, check_folder, others_model
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel
@@ -23,20 +23,21 @@ from greybox_torch.restored import load_beside
 
 @dataclass(frozen=True)
 class Task:
-    """``folder`` is where results go."""
+    """``folder`` is where results go, ``replacing`` warns of the model there that they replace."""
 
     data: DataSet
     model: GreyBoxModel
     device: str
     folder: Path
     precision: str = "double"
+    replacing: Replacing = field(default_factory=Replacing)
 
 
 def load_task(dataset: Path, options: Options, *, writes_model: str = "") -> Task:
     """Reads and checks all that the user has given, before anything is computed.
 
     Args:
-        writes_model: the name of a command that writes a model; it is told whose model it replaces.
+        writes_model: the name of a command that writes a model; its task warns of a model that it replaces.
 
     Raises:
         UserError: the data set, the model, the device, the precision or the folder for results is not usable, or data set and model do
@@ -52,9 +53,8 @@ def load_task(dataset: Path, options: Options, *, writes_model: str = "") -> Tas
     log = Console(stderr=True, highlight=False)
     for found in data_warnings(data, model):
         log.print(Text(f"warning: {dataset}: {found}", style="yellow"), soft_wrap=True)
-    if writes_model and (replaced := others_model(folder, writes_model)):
-        log.print(Text(f"warning: {replaced}", style="yellow"), soft_wrap=True)
-    return Task(data, model, device, folder, precision)
+    replaced = others_model(folder, writes_model) if writes_model else ""
+    return Task(data, model, device, folder, precision, Replacing(replaced))
 
 
 def simulated_by(task: Task, checkpoint: Path | None) -> tuple[GreyBoxModel, DataSet, str]:

@@ -68,8 +68,9 @@ def run(dataset: Path, options: Options, choices: Choices) -> None:
             device=task.device,
             snapshot=task.folder / SNAPSHOT,
             resume=choices.resume,
-            progress=progress,
+            progress=task.replacing.before(progress),
         )
+    task.replacing.warn()
     kept = [task.folder / SNAPSHOT] if (task.folder / SNAPSHOT).is_file() else []
     options.finish(found, task.folder, [*found.save(task.folder), *kept])
 

@@ -170,6 +170,8 @@ def _what_else(path: Path) -> str:
         return f"is a folder; expected the card in it, {path / USUAL}"
     if path.suffix.lower() in READERS and path.is_file():
         return f"is a recording; expected a data card, {USUAL} (`greybox card {shlex.quote(str(path))}` writes one)"
+    if path.suffix.lower() == ".py" and path.is_file():
+        return f'is a model; expected a data card, {USUAL}, which names it: [model] name = "{path.name}:<its class>"'
     if not (path.exists() or path.is_symlink()) and path.parent.is_dir():
         hint = did_you_mean(str(path), map(str, path.parent.glob("*.toml")))
         return f"no such file{hint}; expected a data card, {USUAL}" if hint else ""

@@ -133,7 +133,7 @@ def _signal(
     """A channel's samples in its unit."""
     columns = {column: source.columns[column][start:stop] for column in formula.columns}
     for column, values in columns.items():
-        check_finite(values, lambda sample, column=column: source.place(column, start + sample))
+        check_finite(values, lambda sample, column=column: f"{place}: {source.place(column, start + sample)}")
     values = formula.of(columns)
     lost = np.isnan(values) & ~np.any([np.isnan(column) for column in columns.values()], axis=0)
     if lost.any():

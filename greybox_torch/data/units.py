@@ -11,6 +11,7 @@ from greybox_torch.errors import UserError, did_you_mean
 
 _PLAIN = re.compile(r"[A-Za-zµμΩ°%/·*^().²³0-9 \-]{1,40}")
 _LONG_NUMBER = re.compile(r"\d{3,}|\*\*|\^\s*-?\s*\d{2,}")
+_FACTOR = re.compile(r"\s*(\d[\d.]*\s*(?:[eE]\s*[-+]?\d+|\^\s*-?\d+|[*·x]\s*10\s*\^\s*-?\d+)?)\s*[*·]?\s*(.*?)\s*")
 _TURNS = re.compile(r"(1|U|r|tr|rev)\s*/\s*min|min\s*\^?\s*(-1|⁻¹)")
 """Turns per minute, as data loggers write them; beside angles and turns, for a rate of anything else may be 1/min."""
 _NAMED_TURNS = re.compile(r"^\W*(?:U|r|tr|rev)\s*/\s*(min|s)\b\W*(?=$|/)")
@@ -132,7 +133,14 @@ def dimensionality(unit: str) -> dict[str, float]:
     try:
         return {str(name): float(power) for name, power in _registry().Unit(_written(unit)).dimensionality.items()}
     except Exception as error:  # pint's parser raises what its tokenizer does
-        raise ValueError(f'"{unit:.40}" is not a unit') from error
+        why = ": it begins with a number" if factor_in(unit) else ""
+        raise ValueError(f'"{unit:.40}" is not a unit{why}') from error
+
+
+def factor_in(unit: str) -> tuple[str, str] | None:
+    """The number that a unit begins with and the unit behind it, where that is more than the 1 of "1/s": "1e6" and "kg m^2"."""
+    found = _FACTOR.fullmatch(unit)
+    return (found[1].strip(), found[2]) if found and found[1].strip() != "1" else None
 
 
 def per_minute(unit: str) -> bool:
@@ -154,6 +162,8 @@ def _dimension(unit: str) -> dict[str, float] | None:
 
 
 def _written(unit: str) -> str:
+    if factor_in(unit):  # of 1e-3 the registry makes a power of the elementary charge
+        raise ValueError("a unit does not begin with a number")
     if not _PLAIN.fullmatch(unit) or _LONG_NUMBER.search(unit):
         raise ValueError("not a unit")
     return _spelt(unit)

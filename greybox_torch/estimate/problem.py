@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -10,7 +9,7 @@ import numpy as np
 import torch
 
 from greybox_torch.data import DataSet, Recording
-from greybox_torch.errors import UserError
+from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.estimate.measured_states import measured_at
 from greybox_torch.model import GreyBoxModel, Parameter, Signals, State
 from greybox_torch.simulation.records import Records, make_records
@@ -215,11 +214,9 @@ def _check_names(
 ) -> None:
     for name in given:
         if name not in known:
-            close = difflib.get_close_matches(name, known, n=1)
-            hint = f"; did you mean '{close[0]}'?" if close else ""
             raise UserError(
-                f"{dataset.place(f'[model.{table}]')} {name}: model {model.title} has no such name; "
-                f"expected one of {', '.join(known)}{hint}"
+                f"{dataset.place(f'[model.{table}]')} {name}: model {model.title} has no such name{did_you_mean(name, known)}; "
+                f"expected one of {', '.join(known)}"
             )
 
 

@@ -12,6 +12,7 @@ import torch
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.ports import Port
+from greybox_torch.model.random_numbers import drawn_at
 from greybox_torch.model.signals import Signals
 from greybox_torch.model.stacked import odd_one
 
@@ -24,9 +25,20 @@ NEEDS_A_VALUE = (
 BATCHES = ((3,), (2, 4))
 """Samples side by side; windows and directions are two dimensions of a batch."""
 
+ALONE = "expected equations of x, u, p and port alone: no random numbers, no memory in self"
+
+
+class EquationsError(UserError):
+    """What is wrong with a model's equations: ``found`` without its place, and the ``file`` and ``line`` of that place, if it is known."""
+
+    def __init__(self, found: str, place: tuple[str, int | None] | None = None) -> None:
+        file, line = place or (None, None)
+        super().__init__(f"{Path(file).name}, line {line}: {found}" if file else found)
+        self.found, self.file, self.line = found, file, line
+
 
 def check_equations(model: GreyBoxModel) -> None:
-    """Evaluates the model's rates and outputs on small batches: zeros, and ones in another shape.
+    """Evaluates the model's rates and outputs on small batches: zeros, and in another shape values that differ from signal to signal.
 
     Raises:
         UserError: a port's signal is no state; ``derivative()`` or ``output()`` raises, branches on a signal, does not return what the
@@ -36,10 +48,13 @@ def check_equations(model: GreyBoxModel) -> None:
     with torch.no_grad():
         values = model.physical()
         for batch, level in zip(BATCHES, (0.0, 1.0), strict=True):
-            x, u = (torch.full((len(of), *batch), level, dtype=torch.float64) for of in (model.states, model.inputs))
+            x, u = _signals(model, batch, level)
             p = Signals("parameter", {name: value.expand(batch) for name, value in values.items()})
             for function in (model.rates, model.measured):
+                drawn = torch.get_rng_state()
                 first, second = (_evaluated(model, function, x, u, p) for _ in range(2))
+                if not torch.equal(drawn, torch.get_rng_state()):
+                    raise _random(model, function, x, u, p)
                 if first.shape[1:] != batch:
                     raise UserError(
                         _of_odd_shape(model, function, x, u, p)
@@ -48,9 +63,16 @@ def check_equations(model: GreyBoxModel) -> None:
                     )
                 if not torch.equal(torch.nan_to_num(first), torch.nan_to_num(second)):
                     raise UserError(
-                        f"the equations of {model.title} give other values when they are called again with the same; "
-                        "expected equations of x, u, p and port alone: no random numbers, no memory in self"
+                        f"the equations of {model.title} give other values when they are called again with the same; {ALONE}"
                     )
+
+
+def _signals(model: GreyBoxModel, batch: tuple[int, ...], level: float) -> tuple[torch.Tensor, torch.Tensor]:
+    """States and inputs around ``level``, no two the same unless it is zero: in a difference of equal ones mistakes cancel."""
+    count = len(model.states) + len(model.inputs)
+    values = level * (1.0 + 0.1 * torch.arange(count, dtype=torch.float64))
+    rows = values.reshape(-1, *[1] * len(batch)) * torch.ones(batch, dtype=torch.float64)
+    return rows[: len(model.states)].clone(), rows[len(model.states) :].clone()
 
 
 def _check_ports(model: GreyBoxModel) -> None:
@@ -77,7 +99,8 @@ def _evaluated(model: GreyBoxModel, function: Callable[..., torch.Tensor], *give
     except UserError:
         raise
     except Exception as error:
-        raise UserError(_of_odd_shape(model, function, x, u, p) or explain(model, error)) from None
+        odd = _of_odd_shape(model, function, x, u, p)
+        raise (UserError(odd) if odd else raised(model, error)) from None
     if [tensor._version for tensor in (x, u, *p.values())] != before:
         raise UserError(
             f"the equations of {model.title} change the signals that they are given (an operation in place, such as `+=` or `.add_()`); "
@@ -106,13 +129,33 @@ def _of_odd_shape(model: GreyBoxModel, function: Callable[..., Any], x: torch.Te
     )
 
 
-def explain(model: GreyBoxModel, error: Exception) -> str:
+def _random(model: GreyBoxModel, function: Callable[..., torch.Tensor], *given: Any) -> EquationsError:
+    name, frame = drawn_at(lambda: function(*given), _files(model))
+    found = (
+        f"`{name}` draws random numbers; {ALONE}"
+        if name
+        else f"the equations of {model.title} draw random numbers; {ALONE}"
+    )
+    return EquationsError(found, (frame.f_code.co_filename, frame.f_lineno) if frame else None)
+
+
+def raised(model: GreyBoxModel, error: Exception) -> EquationsError:
     """In words, what went wrong in the equations of ``model`` and in which line of which file."""
-    place = _place(model, error)
+    frame = _frame(model, error)
+    return EquationsError(
+        _what_happened(model, error, frame is None), (frame.filename, frame.lineno) if frame else None
+    )
+
+
+def _what_happened(model: GreyBoxModel, error: Exception, outside: bool) -> str:
+    """What the equations raised; ``outside`` of them where they could not even be called."""
     if any(words in str(error) for words in ("Boolean value of Tensor", "to Scalar", "to Python scalar")):
-        return f"{place}{NEEDS_A_VALUE}"
+        return NEEDS_A_VALUE
     hint = "; use functions of torch instead" if "numpy" in str(error) else ""
-    return f"{place}the equations of {model.title} raised {type(error).__name__}: {error}{hint}"
+    if outside and isinstance(error, TypeError) and "positional argument" in str(error):
+        name, arguments = ("output", "x, u, p") if ".output()" in str(error) else ("derivative", "x, u, p, port")
+        hint = f"; expected def {name}(self, {arguments})"
+    return f"the equations of {model.title} raised {type(error).__name__}: {error}{hint}"
 
 
 def line_of(model: GreyBoxModel, error: BaseException) -> int | None:
@@ -121,15 +164,12 @@ def line_of(model: GreyBoxModel, error: BaseException) -> int | None:
     return None if frame is None else frame.lineno
 
 
-def _place(model: GreyBoxModel, error: BaseException) -> str:
-    frame = _frame(model, error)
-    return f"{Path(frame.filename).name}, line {frame.lineno}: " if frame else ""
-
-
 def _frame(model: GreyBoxModel, error: BaseException) -> traceback.FrameSummary | None:
-    files = {
-        code.co_filename
-        for m in ("derivative", "output")
-        if (code := getattr(getattr(type(model), m), "__code__", None))
-    }
+    files = _files(model)
     return next((f for f in reversed(traceback.extract_tb(error.__traceback__)) if f.filename in files), None)
+
+
+def _files(model: GreyBoxModel) -> set[str]:
+    """The files of the model's equations."""
+    methods = (getattr(type(model), name) for name in ("derivative", "output"))
+    return {code.co_filename for method in methods if (code := getattr(method, "__code__", None))}

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import torch
 
-from greybox_torch.errors import UserError
+from greybox_torch.errors import UserError, did_you_mean
 
 
 class Signals(Mapping[str, Any]):
@@ -46,10 +45,8 @@ class Signals(Mapping[str, Any]):
 
     def _unknown(self, name: str) -> UserError:
         known = ", ".join(self._values) or "none"
-        close = difflib.get_close_matches(name, self._values, n=1)
-        hint = f"; did you mean '{close[0]}'?" if close else ""
         return UserError(
-            f"the model asks for the {self._kind} '{name}', which it does not declare (declared: {known}){hint}"
+            f"the model asks for the {self._kind} '{name}', which it does not declare (declared: {known}){did_you_mean(name, self._values)}"
         )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.fit import Estimation, fit_records
 from greybox_torch.estimate.problem import Problem, problem_for
+from greybox_torch.estimate.simulators import fine_enough
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.simulation.simulator import Simulator
@@ -24,7 +25,7 @@ class NamedTerm:
 
     ``match`` is the share of the learned force that the law alone draws (None for a law that is not a force); ``held_out`` the mean squared
     error of the free run on the stretches that the network was judged on, without which it was fitted; ``lost`` by which share that is
-    more than the network's. ``problem`` is at the estimate without those stretches.
+    more than the network's. ``problem`` is at the estimate without those stretches, ``simulator`` as fine as both were judged with.
     """
 
     attachment: Attachment
@@ -65,10 +66,30 @@ def refitted_term(
     if not fitted or simulator is None:
         return None
     best = min(fitted, key=lambda result: result.mse).problem
-    complete = problem_for(physics, model, {})
-    held_out = held_out_error(complete, best, simulator, course)
-    lost = held_out / found.polished.chosen.held_out - 1.0
+    simulator = _as_fine_for_both(found, fine_enough(simulator, best))
+    held_out = held_out_error(problem_for(physics, model, {}), best, simulator, course)
+    lost = held_out / _networks_error(found, simulator.substeps) - 1.0
     return NamedTerm(attachment, match, held_out, lost, best, simulator)
+
+
+def _as_fine_for_both(found: Trained, simulator: Simulator) -> Simulator:
+    """A law's simulator with as many sub-steps as it, the network and the training need: a steep law may need more than a network that
+    was trained with few, and what too few get wrong is not the law's.
+    """
+    hybrid, judged = found.course.simulator, found.polished.judged
+    networks = hybrid if judged is None else fine_enough(hybrid, judged)
+    return simulator.with_substeps(max(simulator.substeps, hybrid.substeps, networks.substeps))
+
+
+def _networks_error(found: Trained, substeps: int) -> float:
+    """The network's error on the held-out stretches with so many sub-steps, or with those of its training where that is less: it has
+    learned to make up for what too few get wrong.
+    """
+    course, judged, trained = found.course, found.polished.judged, found.polished.chosen.held_out
+    if judged is None or substeps == course.simulator.substeps:
+        return trained
+    complete = course.unknowns.hybrid.problem
+    return min(trained, held_out_error(complete, judged, course.simulator.with_substeps(substeps), course))
 
 
 def on_all_samples(term: NamedTerm, found: Trained) -> Estimation:

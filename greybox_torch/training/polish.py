@@ -49,13 +49,15 @@ class Choice:
 class Polished:
     """The hybrid's problem at its optimum on whole records, which choice that is, and all that there were.
 
-    ``optimum`` is None where physics alone was chosen, or where no free run of the hybrid simulates.
+    ``optimum`` is None where physics alone was chosen, or where no free run of the hybrid simulates. ``judged`` is the hybrid of the
+    choice, estimated without the held-out stretches; None where physics alone was chosen.
     """
 
     problem: Problem
     chosen: Choice
     choices: tuple[Choice, ...]
     optimum: Optimum[None] | None
+    judged: Problem | None = None
 
 
 @dataclass(frozen=True)
@@ -124,7 +126,7 @@ def polish(course: Curriculum, z: np.ndarray, physics: Problem, plain: Simulator
     best = next(problem for choice, problem in trials if choice is chosen)
     run = FreeRun(replace(best, records=hybrid.records), course.simulator)
     optimum = PenalisedRun(run, course.unknowns, chosen.weight * course.mean_square).minimum(LAST_SETTINGS)
-    return Polished(run.problem if optimum is None else run.at(optimum.point), chosen, choices, optimum)
+    return Polished(run.problem if optimum is None else run.at(optimum.point), chosen, choices, optimum, best)
 
 
 def plainest(choices: Sequence[Choice]) -> Choice:

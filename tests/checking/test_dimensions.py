@@ -23,6 +23,18 @@ def test_what_is_no_unit() -> None:
         dimension_of("furlonk")
 
 
+@pytest.mark.parametrize("unit", ["1e6 kg m^2", "1e-3 m", "10^6 N", "1000 kg", "0.1 N", "1e3"])
+def test_a_number_in_front_is_no_part_of_a_unit(unit: str) -> None:
+    """Seen: "is not a unit" without a hint, and 1e-3 m in cubes of coulombs."""
+    with pytest.raises(ValueError, match="is not a unit: it begins with a number"):
+        dimension_of(unit)
+
+
+def test_one_in_front_is_usual() -> None:
+    assert dimension_of("1/s") == dimension_of("1 / s") == dimension_of("Hz")
+    assert dimension_of("1 kg") == dimension_of("kg")
+
+
 def test_shown() -> None:
     speed = dimension_of("deg/s")
     assert speed is not None

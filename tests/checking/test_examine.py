@@ -117,6 +117,9 @@ FAULTS = {
         "`port.rotor` divided by the parameter in kg m^2", "return {",
     ),
     "unit that is none": ((B, B.replace("N m s/rad", "Nmsrad")), "warning", '"Nmsrad" is not a unit', "rad/s", '"b"'),
+    "number in a unit": (
+        (B, B.replace("N m s", "1e6 N m s")), "warning", "it begins with a number", '"N m s/rad", with the factor 1e6', '"b"',
+    ),
     "parameter without effect": (
         (B, B + ' Parameter("F_c", 0.1, unit="N m"),'), "warning", "parameter 'F_c' moves no output", "p.F_c", '"F_c"',
     ),

@@ -19,9 +19,14 @@ DERIVATIVE, OUTPUT = "derivative(self, x, u, p, port)", "output(self, x, u, p)"
         (DERIVATIVE, "derivative(self, t, x, u, p)"),
         (OUTPUT, "output(x, u, p)"),
         (OUTPUT, "output(self, u, x, p)"),
+        (DERIVATIVE, "derivative(self, x, u, p)"),
+        (DERIVATIVE, "derivative(self, x, u, p, port, t)"),
+        (OUTPUT, "output(self, x, u)"),
     ],
 )
-def test_arguments_in_another_order_are_one_finding(machines: Path, tmp_path: Path, usual: str, written: str) -> None:
+def test_arguments_in_another_order_or_number_are_one_finding(
+    machines: Path, tmp_path: Path, usual: str, written: str
+) -> None:
     """Seen: eight errors on undeclared names, and none on the missing `self`."""
     text = (machines / "motor.py").read_text()
     assert text.count(usual) == 1
@@ -29,6 +34,24 @@ def test_arguments_in_another_order_are_one_finding(machines: Path, tmp_path: Pa
     (finding,) = examine(model_class(f"{tmp_path / 'motor.py'}:Motor")).findings
     assert (finding.level, finding.found) == ("error", f"{written}: expected {usual}, in this order")
     assert finding.line is not None and written in (tmp_path / "motor.py").read_text().splitlines()[finding.line - 1]
+
+
+@pytest.mark.parametrize(
+    "written",
+    [
+        "derivative(self, x, u, p, port, gain=1.0)",
+        "derivative(self, x, u, *rest)",
+        "output(self, x, u, p, *, gain=1.0)",
+    ],
+)
+def test_arguments_that_are_not_handed_are_fine(machines: Path, tmp_path: Path, written: str) -> None:
+    usual = DERIVATIVE if written.startswith("derivative") else OUTPUT
+    text = (machines / "motor.py").read_text().replace(usual, written)
+    text = (
+        text.replace("        return {", "        p, port = rest\n        return {", 1) if "*rest" in written else text
+    )
+    (tmp_path / "motor.py").write_text(text)
+    assert examine(model_class(f"{tmp_path / 'motor.py'}:Motor")).findings == ()
 
 
 def test_other_names_of_arguments_are_fine(machines: Path, tmp_path: Path) -> None:

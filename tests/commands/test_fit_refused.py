@@ -30,7 +30,7 @@ REFUSED = {
     "unknown initial state": (
         [("[model.parameters]", "[model.initial]\nspede = { value = 1.0 }\n[model.parameters]")],
         [],
-        ["[model.initial] spede", "did you mean 'speed'"],
+        ["[model.initial] spede", 'did you mean "speed"'],
     ),
     "wrong unit": ([('unit = "rad/s"', 'unit = "rpm"')], [], ["[channels] speed", "'rpm'", "'rad/s'"]),
     "misspelt channel": ([("speed = {", "sped = {")], [], ["[channels] has no 'speed'", "sped"]),

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner, Result
 
 from greybox_torch.api.hypotheses import kept_hypotheses
+from greybox_torch.cli import app
 from greybox_torch.files import remove_all, write_all
 from tests.commands.diagnosing import FILES, Make, diagnose, written
 from tests.commands.fitting import fit
 
 EARLIER = {"hypotheses/7-rotor-gravity.json", "hypotheses/7-rotor-gravity.safetensors", "report.pdf"}
+
+
+def train(folder: Path, *options: str) -> Result:
+    return CliRunner().invoke(app, ["train", str(folder / "dataset.toml"), "--out", str(folder / "out"), *options])
 
 
 def laid(folder: Path, *names: str) -> None:
@@ -56,6 +63,29 @@ def test_whose_model_is_replaced_is_told(motor_folder: Make, before: list[str], 
     assert result.exit_code == 0, result.stderr
     assert ("warning" in result.stderr) == bool(told) and told in result.stderr
     assert {"fit.json", *before} <= set(written(folder))
+
+
+@pytest.mark.parametrize(
+    ("run", "table", "options"),
+    [
+        (diagnose, '[beliefs]\n"rotr/*" = 0.1\n', ()),
+        (diagnose, "[diagnosis]\nmost_effect = 1\n", ()),
+        (diagnose, "", ("--time-limit", "0")),
+        (fit, "", ("--profile", "bb")),
+        (train, "", ("--port", "rotr")),
+    ],
+)
+def test_what_is_refused_replaces_nothing(
+    motor_folder: Make, run: Callable[..., Result], table: str, options: tuple[str, ...]
+) -> None:
+    """Seen: "whose model this command replaces" before an error about a typo."""
+    folder = motor_folder()
+    laid(folder / "out", "verdict.json", "fit.json", "model.json")
+    card = folder / "dataset.toml"
+    card.write_text(f"{card.read_text()}\n{table}")
+    result = run(folder, *options)
+    assert result.exit_code == 2 and "error: " in result.stderr
+    assert "warning" not in result.stderr
 
 
 def test_figures_of_other_profiles_go(motor_folder: Make) -> None:

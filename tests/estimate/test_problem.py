@@ -54,7 +54,8 @@ def test_outputs_in_different_units_count_alike(motor_speed: Any, data_set: Any)
             r"\[model.parameters\] Parameter 'J': value -1 lies outside its bounds",
         ),
         ({"parameters": {"J": {"upper": 0.001}}}, r"'J': value 0.01 lies outside its bounds \[0, 0.001\]"),
-        ({"initial": {"sped": {"value": 1.0}}}, r"\[model.initial\] sped: .* did you mean 'speed'"),
+        ({"initial": {"SPEED": {"value": 1.0}}}, r'SPEED: .*did you mean "speed"'),
+        ({"initial": {"sped": {"value": 1.0}}}, r'\[model.initial\] sped: .*did you mean "speed"'),
     ],
 )
 def test_cards_that_do_not_fit_the_model(

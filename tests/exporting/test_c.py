@@ -52,6 +52,35 @@ def test_agrees_with_simulate(tmp_path: Path, machine: Machine) -> None:
 
 
 @pytest.mark.skipif(not COMPILERS, reason="no C compiler")
+def test_names_in_the_first_line_and_what_is_no_number(tmp_path: Path, machines: Path) -> None:
+    """Seen: no output, no message, and the exit code 0 of a table with names over its columns."""
+    gt.export(gt.load_model(f"{machines / 'motor.py'}:Motor"), to="c", name="motor").save(tmp_path)
+    command = [COMPILERS[0], *FLAGS, "motor.c", "example.c", "-lm", "-o", "example"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+
+    def run(text: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([tmp_path / "example"], input=text, capture_output=True, text=True, check=False)
+
+    rows = "0,1.0\n0.01,2.0\n0.02,0.0\n"
+    plain = run(rows)
+    assert plain.returncode == 0 and len(plain.stdout.splitlines()) == 3
+    for same in ("t,voltage [V]\n" + rows, "\ufeff" + rows, rows.replace("\n", " \r\n\r\n"), rows.replace(",", " , ")):
+        assert (run(same).stdout, run(same).stderr) == (plain.stdout, "")
+    for wrong, line in (
+        (rows + "0.03,-\n", 4),
+        ("t,u\ns,V\n" + rows, 2),
+        ("0,1.0,3.0\n", 1),
+        ("0\n0.01\n", 1),
+        ("0;1.0\n", 1),
+    ):
+        done = run(wrong)
+        assert done.returncode == 1
+        assert (
+            done.stderr == f"line {line}: expected 2 numbers: a time in seconds and the inputs, separated by commas\n"
+        )
+
+
+@pytest.mark.skipif(not COMPILERS, reason="no C compiler")
 def test_every_operation(tmp_path: Path, machines: Path) -> None:
     """Values of all operations that are compiled, at a few points."""
     import ctypes

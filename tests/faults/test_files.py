@@ -108,7 +108,10 @@ COMMANDS = [
         ["diagnose", "a.csv"],
         "a.csv: is a recording; expected a data card, dataset.toml (`greybox card a.csv` writes one)",
     ),
-    (["diagnose", "my_motor.py"], "my_motor.py: not valid TOML"),
+    (
+        ["diagnose", "my_motor.py"],
+        'my_motor.py: is a model; expected a data card, dataset.toml, which names it: [model] name = "my_motor.py:<its class>"',
+    ),
     (
         ["fit", "dataset.toml", "--model", "my_motor.py"],
         "is a file; expected the class in it as well, such as my_motor.py:Motor",

@@ -120,13 +120,19 @@ def test_set_values() -> None:
         tank.set_values({"area": 0.05})
 
 
+def test_a_name_in_other_capitals_is_meant_first() -> None:
+    """Seen: T suggested for TJ, beside Tj."""
+    with pytest.raises(UserError, match=r'did you mean "Tj"'):
+        Signals("state", {"T": 1.0, "Tj": 2.0})["TJ"]
+
+
 def test_names_that_are_not_declared() -> None:
     values = Signals("state", {"level": 1.0})
     assert values.level == values["level"] == 1.0
     assert (list(values), len(values)) == (["level"], 1)
     assert values.replaced(level=2.0).level == 2.0
     with pytest.raises(
-        UserError, match=r"the state 'levl', which it does not declare \(declared: level\); did you mean 'level'"
+        UserError, match=r"the state 'levl', which it does not declare \(declared: level\) \(did you mean \"level\""
     ):
         values.levl  # noqa: B018
 

@@ -1,0 +1,78 @@
+"""Equations that raise or draw random numbers are told once, at the line that does it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from greybox_torch.checking.examine import examine
+from greybox_torch.errors import UserError
+from greybox_torch.systems import load_model, model_class
+
+RATE = "p.b * x.speed"
+RETURN = 'return {"speed": (p.k'
+
+# What is put in front of the first return, what in the place of the friction, what is found, what is to be written, a part of the line.
+FAULTS = {
+    "raises": (
+        'raise ValueError("stuck")',
+        RATE,
+        "the equations of Motor raised ValueError: stuck",
+        "raise nothing",
+        "raise",
+    ),
+    "torch": ("", "p.b * torch.rand(()) * x.speed", "`rand` draws random numbers", "no random numbers", "torch.rand"),
+    "one sample": (
+        "",
+        "p.b * torch.rand(1) * x.speed",
+        "`rand` draws random numbers",
+        "no random numbers",
+        "torch.rand",
+    ),
+    "like a signal": ("", "p.b * torch.randn_like(x.speed)", "`randn_like` draws", "no random numbers", "torch.rand"),
+    "without effect here": ("", "0.0 * torch.rand(()) * x.speed", "`rand` draws", "no random numbers", "torch.rand"),
+    "of a difference": (
+        "",
+        "p.b * random.random() * (x.speed - u.voltage)",
+        "give other values",
+        "no random numbers",
+        "class",
+    ),
+}
+
+
+def motor(folder: Path, machines: Path, before: str, rate: str) -> str:
+    text = "import random\n\nimport torch\n" + (machines / "motor.py").read_text()
+    assert text.count(RATE) == text.count(RETURN) == 1
+    text = text.replace(RETURN, f"{before}\n        {RETURN}".lstrip()).replace(RATE, rate)
+    (folder / "motor.py").write_text(text)
+    return text
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_is_told_at_its_line(tmp_path: Path, machines: Path, fault: str) -> None:
+    """Seen: "m.py, line 5: m.py, line 21: ...", and random numbers that cancelled, as every state had the same value."""
+    before, rate, found, write, line = FAULTS[fault]
+    text = motor(tmp_path, machines, before, rate)
+    (finding,) = examine(model_class(f"{tmp_path / 'motor.py'}:Motor")).findings
+    assert finding.level == "error"
+    assert finding.found.startswith(found) or (found == "give other values" and found in finding.found)
+    assert write in finding.write
+    assert finding.line == next(k for k, one in enumerate(text.splitlines(), 1) if line in one)
+
+
+def test_random_numbers_are_refused_where_the_model_is_loaded(tmp_path: Path, machines: Path) -> None:
+    motor(tmp_path, machines, "", "p.b * torch.rand(1) * x.speed")
+    with pytest.raises(
+        UserError,
+        match=r"motor.py, line \d+: `rand` draws random numbers; expected equations of x, u, p and port alone",
+    ):
+        load_model(f"{tmp_path / 'motor.py'}:Motor")
+
+
+def test_a_missing_argument_is_told_with_the_signature(tmp_path: Path, machines: Path) -> None:
+    text = (machines / "motor.py").read_text().replace("derivative(self, x, u, p, port)", "derivative(self, x, u, p)")
+    (tmp_path / "motor.py").write_text(text)
+    with pytest.raises(UserError, match=r"but 5 were given; expected def derivative\(self, x, u, p, port\)"):
+        load_model(f"{tmp_path / 'motor.py'}:Motor")

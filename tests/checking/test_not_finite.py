@@ -1,0 +1,78 @@
+"""Equations that are no numbers: at every value an error and nothing else, at the start of what was recorded where there are recordings."""
+
+from __future__ import annotations
+
+import torch
+
+import greybox_torch as gt
+from greybox_torch.checking.examine import examine
+
+
+class Gap(gt.GreyBoxModel):
+    """A plate below a magnet: its force goes with the inverse square of the gap, which is never zero."""
+
+    states = [gt.State("gap", "m", initial="measured"), gt.State("v", "m/s")]
+    inputs = [gt.Input("force", "N")]
+    outputs = [gt.Output("gap", "m")]
+    parameters = [gt.Parameter("C", 1.0, unit="N m^2", lower=0.0), gt.Parameter("m", 1.0, unit="kg", fixed=True)]
+    ports = [gt.Body("plate", speed="v", position="gap")]
+
+    def derivative(self, x, u, p, port):
+        return {"gap": x.v, "v": (u.force + port.plate - p.C / x.gap**2) / p.m}
+
+    def output(self, x, u, p):
+        return {"gap": x.gap}
+
+
+def at_the_start(model: gt.GreyBoxModel, data: gt.DataSet | None = None) -> list[str]:
+    return [f.found for f in gt.check(model, data).findings if "at the start" in f.found]
+
+
+def test_the_start_is_the_one_of_the_recordings(data_set) -> None:
+    """Seen: "where gap = 0" of a card whose recordings begin at 4 mm."""
+    names, never_zero, zero = {"force": "N", "gap": "m"}, [0.01] * 20, [0.0] * 20
+    assert at_the_start(Gap()) == [
+        "the equations are no numbers at the start (states at their start values, measured ones and inputs at zero), where gap = 0"
+    ]
+    recorded = [{"force": [1.0] * 20, "gap": gap} for gap in (never_zero, zero)]
+    assert at_the_start(Gap(), data_set(names, recorded[:1])) == []
+    assert at_the_start(Gap(), data_set(names, recorded)) == [
+        'the equations are no numbers at the start of "run 2", where gap = 0'
+    ]
+
+
+def test_no_number_anywhere_is_one_error() -> None:
+    """Seen: "can be used: 5 warnings", three of them that parameters move nothing."""
+
+    class Lost(Gap):
+        def derivative(self, x, u, p, port):
+            return {"gap": x.v, "v": (u.force + port.plate - float("nan") * p.C * x.gap) / p.m}
+
+    (found,) = examine(Lost).findings
+    assert (found.level, found.topic) == ("error", "numbers")
+    assert "no numbers (nan or inf) at any of the values" in found.found
+    assert not gt.check(Lost()).usable
+
+
+def test_numbers_far_from_zero_alone_are_enough() -> None:
+    """Degrees above 300 K, a pressure that falls along a line: no random point around zero has them."""
+
+    class Hot(gt.GreyBoxModel):
+        states = [gt.State(f"T{i}", "K", initial=500.0 - i) for i in range(6)]
+        outputs = [gt.Output("T5", "K")]
+        parameters = [gt.Parameter("k", 1.0, lower=0.0)]
+        ports = [gt.Balance("last", level="T5")]
+
+        def derivative(self, x, u, p, port):
+            steps = [torch.sqrt(x[f"T{i}"] - x[f"T{i + 1}"]) for i in range(5)]
+            flows = [*steps, torch.sqrt(x.T5 - 300.0)]
+            rates = [(flows[i - 1] if i else 0.0) - flows[i] for i in range(6)]
+            return {f"T{i}": p.k * rates[i] + (port.last if i == 5 else 0.0) for i in range(6)}
+
+        def output(self, x, u, p):
+            return {"T5": x.T5}
+
+    found = examine(Hot).findings
+    assert {f.level for f in found} == {"warning"}
+    assert [f for f in found if "at 128 of 128 random points" in f.found]
+    assert not [f for f in found if "moves no output" in f.found]
