@@ -135,6 +135,11 @@ def dimensionality(unit: str) -> dict[str, float]:
         raise ValueError(f'"{unit:.40}" is not a unit') from error
 
 
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit that is known."""
+    return _dimension(text) is not None
+
+
 def per_minute(unit: str) -> bool:
     """Whether a unit may be turns per minute, as data loggers write it."""
     return bool(_TURNS.fullmatch(unit.strip("[]() ")))
