@@ -9,10 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from greybox_torch.checking.joined_files import JoinedFiles, joined_files
 from greybox_torch.data import DataSet, Recording
-from greybox_torch.data.card import read_card
+from greybox_torch.data.card import TIME, read_card
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.readers import read_table
+from greybox_torch.data.readers.table import Table
 from greybox_torch.data.source import source_of
 from greybox_torch.errors import UserError
 
@@ -58,14 +60,19 @@ class LoneSample(InASentence):
 
 def lone_samples(data: DataSet) -> Iterator[LoneSample]:
     """Of every channel of every experiment the farthest such sample, if there is one."""
+    joined = joined_files(data)
     for recording in data.recordings:
-        for name, values in recording.signals.items():
+        for name, signal in recording.signals.items():
+            # where a file was joined in time, its samples: in between, straight lines spread an error value over several
+            files = joined.get(recording.name)
+            own = None if files is None else _of_joined(files, name)
+            values = signal if own is None else own.values
             known = np.flatnonzero(~np.isnan(values))
             lone, distance = _lone(values[known])
             if lone.size:
                 k = int(lone[np.argmax(distance)])
                 here, before, after = (int(known[i]) for i in (k, k - 1, k + 1))
-                place, column = _read_again(data, recording, name, here)
+                place, column = (own.place(here), None) if own else _read_again(data, recording, name, here)
                 shown = values if column is None else column
                 yield LoneSample(
                     recording.name,
@@ -76,6 +83,31 @@ def lone_samples(data: DataSet) -> Iterator[LoneSample]:
                     float(shown[after]),
                     len(lone),
                 )
+
+
+@dataclass(frozen=True, eq=False)
+class _OfJoined:
+    """A column of a joined file, as far as the recording reaches: its samples from ``first`` on."""
+
+    table: Table
+    column: str
+    first: int
+    count: int
+
+    @property
+    def values(self) -> NDArray[np.float64]:
+        return self.table.columns[self.column][self.first : self.first + self.count]
+
+    def place(self, sample: int) -> str:
+        return self.table.place(self.column, self.first + sample)
+
+
+def _of_joined(files: JoinedFiles, channel: str) -> _OfJoined | None:
+    found = files.of(channel)
+    if found is None:
+        return None
+    first, stamps = files.stamps(found[0])
+    return _OfJoined(*found, first, len(stamps))
 
 
 def _lone(values: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
@@ -106,12 +138,14 @@ def _in_its_file(data: DataSet, recording: Recording, name: str, sample: int) ->
         return None
     card = read_card(data.path)
     said = {f"{entry.name}{end}": entry for entry in card.experiment for end in ("", " (held out)")}.get(recording.name)
-    if said is None or card.decimate or card.resample or card.channels[name].derivative or len(said.file) > 1:
+    if said is None or card.decimate or card.resample or card.channels[name].derivative:
         return None
     columns = card.channels[name].expression(said.columns.get(name)).columns
     if len(columns) != 1:
         return None
-    source = source_of([data.path.parent / said.file[0]], None, columns, None, read_table)
+    clock = said.columns.get(TIME, card.time.column) if card.time else None
+    needed = [*columns, clock] if clock and said.join == "time" and clock not in columns else columns
+    source = source_of([data.path.parent / file for file in said.file], said.join, needed, clock, read_table)
     start, stop = recording.rows
     values = source.columns[columns[0]][start:stop]
     return (source.place(columns[0], start + sample), values) if len(values) == len(recording.time) else None

@@ -44,7 +44,7 @@ def check_time(time: NDArray[np.float64], place: Place) -> None:
     if backward.size:
         later = int(backward[0]) + 1
         raise UserError(
-            f"{place(later)}: found {time[later]:.9g} s after {time[later - 1]:.9g} s; "
+            f"{place(later)}: found {time[later]:.14g} s after {time[later - 1]:.14g} s; "
             f"expected time stamps that increase from sample to sample{_past_midnight(time, later)}"
         )
 

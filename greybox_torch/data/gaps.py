@@ -17,7 +17,8 @@ _FEW = 0.01
 @dataclass(frozen=True)
 class Gap:
     """The longest gap of a recording: ``seconds`` without a sample after sample ``after``, which was at ``begin`` and is followed by one
-    at ``end`` (s). ``count`` gaps in all; ``step`` is the usual time between samples.
+    at ``end`` (s). ``count`` gaps in all; ``step`` is the usual time between samples. ``start`` is when the experiment began: stamps
+    may be dates, of which seconds since 1970 tell nobody a place.
     """
 
     after: int
@@ -25,6 +26,7 @@ class Gap:
     end: float
     step: float
     count: int
+    start: float = 0.0
 
     @property
     def seconds(self) -> float:
@@ -32,24 +34,41 @@ class Gap:
 
     def __str__(self) -> str:
         others = f", the longest of {self.count} gaps" if self.count > 1 else ""
+        begin, end = self.begin - self.start, self.end - self.start
         return (
-            f"gap in the time stamps: no sample for {self.seconds:.4g} s, from {self.begin:.6g} to {self.end:.6g} s (after sample "
+            f"gap in the time stamps: no sample for {self.seconds:.4g} s, from {begin:.6g} to {end:.6g} s after the start (after sample "
             f"{self.after}, the first is 0; usual step {self.step:.4g} s){others}"
         )
 
 
 def longest_gap(time: NDArray[np.float64]) -> Gap | None:
     """The longest gap of increasing time stamps (N,), in s; None where there is none, or where long steps are the rule."""
-    steps = np.diff(time)
-    step = float(np.median(steps))
-    long = steps > (SAMPLES_LOST + 1.5) * step
-    if not long.any() or long.sum() > max(1.0, _FEW * len(steps)):
+    gaps = _gaps(time)
+    if not gaps.any():
         return None
+    steps = np.diff(time)
     k = int(np.argmax(steps))
-    return Gap(k, float(time[k]), float(time[k + 1]), step, int(long.sum()))
+    return Gap(k, float(time[k]), float(time[k + 1]), float(np.median(steps)), int(gaps.sum()), float(time[0]))
 
 
 def without_gaps(time: NDArray[np.float64]) -> NDArray[np.float64]:
     """The steps (K,) of time stamps that are not gaps."""
+    return np.diff(time)[~_gaps(time)]
+
+
+def in_gaps(times: NDArray[np.float64], stamps: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which of other times (N,) lie in gaps of increasing stamps (K,); a time that is a stamp lies in none."""
+    gaps = _gaps(stamps)
+    if not gaps.any():
+        return np.zeros(len(times), dtype=bool)
+    before = np.searchsorted(stamps, times, side="right") - 1
+    inside = (before >= 0) & (before < len(gaps))
+    k = np.where(inside, before, 0)
+    return inside & gaps[k] & (stamps[k] != times)
+
+
+def _gaps(time: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which steps (N - 1,) of increasing time stamps are gaps: none where long steps are the rule."""
     steps = np.diff(time)
-    return steps[steps <= (SAMPLES_LOST + 1.5) * np.median(steps)] if longest_gap(time) is not None else steps
+    long = steps > (SAMPLES_LOST + 1.5) * np.median(steps) if len(steps) else np.zeros(0, dtype=bool)
+    return long & (long.sum() <= max(1.0, _FEW * len(steps)))

@@ -117,12 +117,13 @@ def _time(
 
 def _check_unit_of_time(path: Path, time: TimeEntry, source: Source, clock: str) -> None:
     """Raises UserError where the file says another unit of its time stamps than the card."""
-    found = source.unit(clock).strip("[]() ").replace("μ", "µ")
-    if found in get_args(TimeEntry.model_fields["unit"].annotation) and found.replace("µ", "u") != time.unit.replace(
-        "µ", "u"
-    ):
+    known = get_args(TimeEntry.model_fields["unit"].annotation)
+    for table in (*source.tables, *source.joined):
+        found = table.units.get(clock, "").strip("[]() ").replace("μ", "µ")
+        if found not in known or found.replace("µ", "u") == time.unit.replace("µ", "u"):
+            continue
         raise UserError(
-            f'{path}, time: {source.tables[0].path} has column "{clock}" in "{found}", the card says "{time.unit}"; '
+            f'{path}, time: {table.path} has column "{clock}" in "{found}", the card says "{time.unit}"; '
             f'expected time = {{ column = "{clock}", unit = "{found}" }}'
         )
 
@@ -157,7 +158,7 @@ def _in_unit(
         if factor is not None:
             conversion(found, entry.unit, place)  # says so where nobody can tell the factor
             raise UserError(
-                f'{place}: {source.tables[0].path} has column "{formula.text}" in "{found}", the card says "{entry.unit}"; '
+                f'{place}: {source.table(formula.text).path} has column "{formula.text}" in "{found}", the card says "{entry.unit}"; '
                 f'expected file_unit = "{found}" to convert it ({factor:.6g}), or the scale'
             )
     return values * entry.scale

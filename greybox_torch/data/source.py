@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.checks import check_finite, check_time
+from greybox_torch.data.gaps import in_gaps
 from greybox_torch.data.processing import at_times
 from greybox_torch.data.readers.table import NoSuchColumn, Table
 from greybox_torch.errors import UserError
@@ -19,11 +20,15 @@ Read = Callable[..., Table]
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """Columns (N,) as they stand in the tables, which follow each other; `notes` say what was done to join them."""
+    """Columns (N,) as they stand in the tables, which follow each other; `notes` say what was done to join them.
+
+    `joined` are the tables, with time stamps of their own, whose columns were brought to the times of the first.
+    """
 
     tables: tuple[Table, ...]
     columns: dict[str, NDArray[np.float64]]
     notes: tuple[str, ...] = ()
+    joined: tuple[Table, ...] = ()
 
     def place(self, column: str, sample: int) -> str:
         """Where a sample stands, to begin a message with."""
@@ -34,9 +39,13 @@ class Source:
             sample -= length
         return self.tables[-1].place(column, sample)
 
+    def table(self, column: str) -> Table:
+        """The first one that has a column."""
+        return next((table for table in (*self.tables, *self.joined) if column in table.columns), self.tables[0])
+
     def unit(self, column: str) -> str:
         """The unit that a file says for a column; empty where none does."""
-        return next((table.units[column] for table in self.tables if column in table.units), "")
+        return next((t.units[column] for t in (*self.tables, *self.joined) if column in t.units), "")
 
 
 def source_of(files: Sequence[Path], join: str | None, columns: Sequence[str], time: str | None, read: Read) -> Source:
@@ -65,7 +74,7 @@ def source_of(files: Sequence[Path], join: str | None, columns: Sequence[str], t
 
 
 def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, read: Read) -> Source:
-    """Every column from the first file that has it, at the time stamps of the first file."""
+    """Every column from the first file that has it, at the time stamps of the first file; missing where its own file has a gap."""
     lacking, tables, held, notes = [c for c in columns if c != time], [], {}, []
     for file in files:
         table = _what_there_is(file, lacking, time, read)
@@ -75,19 +84,21 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
         if not tables:
             held = own
         else:
+            unknown = in_gaps(held[time], own[time])
+            across = ", and missing across its gaps" if unknown.any() else ""
             for column in own:
                 if column != time:
                     check_finite(own[column], lambda sample, table=table, column=column: table.place(column, sample))
-                    held[column] = at_times(held[time], own[time], own[column])
+                    held[column] = np.where(unknown, np.nan, at_times(held[time], own[time], own[column]))
                     notes.append(
-                        f'column "{column}" is from {file.name}, joined in time on straight lines between its samples'
+                        f'column "{column}" is from {file.name}, joined in time on straight lines between its samples{across}'
                     )
         tables.append(table)
         lacking = [column for column in lacking if column not in own]
     if lacking:
         names = ", ".join(file.name for file in files)
         raise NoSuchColumn(f'{files[0]}: no column "{lacking[0]}"; it is in none of {names}', lacking[0])
-    return Source((tables[0],), held, tuple(notes))
+    return Source((tables[0],), held, tuple(notes), tuple(tables[1:]))
 
 
 def _what_there_is(file: Path, columns: Sequence[str], time: str, read: Read) -> Table:
@@ -96,7 +107,10 @@ def _what_there_is(file: Path, columns: Sequence[str], time: str, read: Read) ->
         try:
             return read(file, tuple(wanted))
         except NoSuchColumn as error:
-            if error.column == time or error.column not in wanted:
+            if error.column == time:
+                said = f"{error}; files that are joined in time have their time stamps in a column of one name"
+                raise NoSuchColumn(said, time) from None
+            if error.column not in wanted:
                 raise
             wanted.remove(error.column)
 

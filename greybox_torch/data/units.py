@@ -143,6 +143,11 @@ def factor_in(unit: str) -> tuple[str, str] | None:
     return (found[1].strip(), found[2]) if found and found[1].strip() != "1" else None
 
 
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit that is known."""
+    return _dimension(text) is not None
+
+
 def per_minute(unit: str) -> bool:
     """Whether a unit may be turns per minute, as data loggers write it."""
     return bool(_TURNS.fullmatch(unit.strip("[]() ")))

@@ -87,13 +87,14 @@ class Trace:
 
 @dataclass(frozen=True)
 class InputTrace:
-    """One input of one experiment as recorded: time (N,) s, values (N,) in ``unit``."""
+    """One input of one experiment as recorded: time (N,) s, values (N,) in ``unit``; ``held`` between samples, else on straight lines."""
 
     experiment: str
     input: str
     unit: str
     time: np.ndarray
     values: np.ndarray
+    held: bool = False
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import numpy as np
 
 from greybox_torch.data.units import slip
 from greybox_torch.drafting.clock import Clock
-from greybox_torch.drafting.column_units import unit_in, without_unit
+from greybox_torch.drafting.column_units import unit_in, without_ending, without_unit
 from greybox_torch.drafting.magnitudes import slips
 from greybox_torch.drafting.matching import Wanted, matched, words
 from greybox_torch.drafting.recorded import Recorded
@@ -50,11 +50,17 @@ def drafted(file: Recorded, clock: Clock, model: GreyBoxModel | None) -> Drafted
     if model is None:
         return Drafted(tuple(Draft(_channel_name(name), units.get(name, ""), name) for name in columns))
     wanted = wanted_of(model)
-    bare = {without_unit(name): name for name in columns}
+    bare = _bare(columns)
     found = {channel: bare[name] for channel, name in matched(wanted, list(bare), _by(bare, units)).items()}
     suspected = _suspected(file, clock, model, wanted, found)
     channels = tuple(_draft(channel, found, units, suspected, columns) for channel in wanted)
     return Drafted(channels, tuple(name for name in columns if name not in found.values()))
+
+
+def _bare(columns: Sequence[str]) -> dict[str, str]:
+    """Columns by their names without units, as far as two do not become one by that."""
+    short = [without_ending(name) for name in columns]
+    return {one if short.count(one) == 1 else name: name for one, name in zip(short, columns, strict=True)}
 
 
 def _by(bare: dict[str, str], units: dict[str, str]) -> dict[str, str]:
@@ -67,15 +73,18 @@ def _draft(
     column = found.get(channel.name)
     if column is None:
         free = [name for name in columns if name not in found.values()]
-        return Draft(channel.name, channel.unit, None, remark=f"not found among {', '.join(free) or 'the columns'}")
+        left = f"; left over: {', '.join(free)}" if free else ""
+        return Draft(channel.name, channel.unit, None, remark=f"no column fits{left}")
     unit = units.get(column, "")
+    certain = any(words(name) == words(channel.name) for name in (column, without_ending(column)))
+    doubt = "" if certain or column.lower() == channel.name.lower() else "please check: guessed from the name"
     if unit and channel.unit and slip(unit, channel.unit) is not None:
-        return Draft(channel.name, channel.unit, column, unit, "converted from the unit that the file says")
+        told = "converted from the unit that the file says"
+        return Draft(channel.name, channel.unit, column, unit, f"{told}; {doubt}" if doubt else told)
     if channel.name in suspected and not unit:
         guess = suspected[channel.name]
         return Draft(channel.name, channel.unit, column, remark=f'its size suggests {guess}: add file_unit = "{guess}"')
-    certain = words(column) == words(channel.name) or column.lower() == channel.name.lower()
-    return Draft(channel.name, channel.unit, column, remark="" if certain else "please check: guessed from the name")
+    return Draft(channel.name, channel.unit, column, remark=doubt)
 
 
 def _suspected(

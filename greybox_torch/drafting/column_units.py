@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 
-from greybox_torch.data.units import dimensionality
+from greybox_torch.data.units import is_unit
 
 _BRACKETS = re.compile(r"[\[(]\s*([^\[\]()]{1,20})\s*[\])]\s*$")
 _ENDINGS = {
     "rpm": "rpm", "deg": "deg", "degs": "deg/s", "dps": "deg/s", "rad": "rad", "rads": "rad/s", "radps": "rad/s", "nm": "N m",
-    "mnm": "mN m", "mm": "mm", "ma": "mA", "mv": "mV", "bar": "bar", "degc": "degC", "kw": "kW",
+    "mnm": "mN m", "mm": "mm", "ma": "mA", "mv": "mV", "bar": "bar", "degc": "degC", "°c": "degC", "degf": "degF", "°f": "degF", "kw": "kW",
     "kn": "kN", "knm": "kN m", "mrad": "mrad", "cm": "cm", "km": "km", "um": "um", "µm": "um", "kg": "kg", "ms": "ms", "us": "us",
     "kv": "kV", "kj": "kJ", "hz": "Hz", "khz": "kHz", "hpa": "hPa", "kpa": "kPa", "mpa": "MPa", "mbar": "mbar",
     "kmh": "km/h", "kph": "km/h",
@@ -21,7 +21,7 @@ _AS_WRITTEN = ("mN", "MN", "mW", "MW", "mJ", "MJ", "Pa")
 def unit_in(column: str) -> str:
     """The unit; empty where none can be read."""
     bracketed = _BRACKETS.search(column)
-    if bracketed and _is_unit(bracketed[1]) and not bracketed[1].isdigit():
+    if bracketed and is_unit(bracketed[1]) and not bracketed[1].isdigit():
         return bracketed[1]
     _, underscore, last = column.rpartition("_")
     if not underscore:
@@ -35,9 +35,7 @@ def without_unit(column: str) -> str:
     return column[: bracketed.start()].strip() if bracketed and unit_in(column) else column
 
 
-def _is_unit(text: str) -> bool:
-    try:
-        dimensionality(text)
-    except ValueError:
-        return False
-    return True
+def without_ending(column: str) -> str:
+    """The name without its unit, in brackets or behind the last underscore."""
+    bare = without_unit(column)
+    return column.rpartition("_")[0] if bare == column and unit_in(column) and "_" in column[1:] else bare

@@ -15,10 +15,12 @@ from greybox_torch.drafting.column_units import unit_in
 from greybox_torch.errors import UserError
 
 _KNOWN = re.compile(
-    "s|ms|us|µs|ns|h|m|mm|cm|km|um|µm|kg|N|kN|mN|Nm|kNm|mNm|rad|mrad|deg|degrees|degC|V|mV|kV|A|mA|W|kW|MW|mW|J|kJ|Pa|hPa|kPa|MPa|bar|mbar|psi|"
+    "s|ms|us|µs|ns|h|m|mm|cm|km|um|µm|kg|N|kN|mN|Nm|kNm|mNm|rad|mrad|deg|degrees|degC|degF|K|V|mV|kV|A|mA|W|kW|MW|mW|J|kJ|Pa|hPa|kPa|MPa|bar|mbar|psi|"
     "Hz|kHz|rpm|rev|Ohm|l|ml"
 )
 """What is a unit in a name, and nothing else: [t], (k), (in), (est) are units as well, and hardly ever meant as such."""
+_DEGREES = re.compile(r"(?:°|deg)?\s*([CF])")
+"""Degrees of a temperature in brackets; a letter alone is another unit, and means them where the card says a temperature."""
 
 _TIMES = {
     **dict.fromkeys(("s", "sec", "secs", "seconds"), "s"),
@@ -28,7 +30,7 @@ _TIMES = {
     **dict.fromkeys(("min", "minutes"), "min"),
     **dict.fromkeys(("h", "hours"), "h"),
 }
-_SURE = frozenset(("rpm", "deg/s", "rad/s", "mN m", "mm", "degC"))
+_SURE = frozenset(("rpm", "deg/s", "rad/s", "mN m", "mm", "degC", "degF"))
 """Endings that are units whatever the card says. Of others, such as x_bar and heat_rad, only another scale is told."""
 _AS_WRITTEN = {"Nm": "N m", "mA": "mA", "mV": "mV", "kW": "kW"}
 """Sure only if written so: speed_ma is a moving average, u_mv a manipulated variable."""
@@ -37,6 +39,7 @@ _OF_QUANTITY = {
     "V": re.compile(r"(u|v|u[dq]|volts?|voltages?|spannung)([\W_\d]|$)", re.IGNORECASE),
 }
 """What a name begins with where a letter at its end is a unit, and no phase."""
+_TEMPERATURE = {"[temperature]": 1.0}
 
 
 @dataclass(frozen=True)
@@ -83,7 +86,7 @@ def _of_channel(place: str, column: str, entry: ChannelEntry, columns: set[str])
         return
     said = entry.file_unit or entry.unit
     rate = "" if entry.derivative is None or entry.file_unit else "/s"
-    told, sure = _unit_of(column, columns)
+    told, sure = _unit_of(column, columns, _dimension(said) == _TEMPERATURE)
     if not (told and said and _differ(told + rate, said)):
         return
     if sure or _dimension(told + rate) == _dimension(said):
@@ -93,12 +96,15 @@ def _of_channel(place: str, column: str, entry: ChannelEntry, columns: set[str])
         yield Contradiction(place, column, told, said, f"{write}; or, if the name is wrong, scale = 1.0")
 
 
-def _unit_of(column: str, columns: set[str]) -> tuple[str, bool]:
+def _unit_of(column: str, columns: set[str], of_temperature: bool) -> tuple[str, bool]:
     """The unit that a name tells, and whether it can mean nothing else."""
     told, bracketed = unit_in(column), column.rstrip().endswith(("]", ")"))
     if bracketed:
+        degrees = _DEGREES.fullmatch(told)
+        if degrees and (len(told) > 1 or of_temperature):
+            told = f"deg{degrees[1]}"
         known = all(_KNOWN.fullmatch(word) for word in re.findall(r"[^\W\d_]+", told.replace("min", "")))
-        alone = told in ("deg", "°", "min", "degrees")  # of a temperature, or the least
+        alone = told in ("deg", "°", "min", "degrees", "K")  # of a temperature, or the least, or a gain
         return (told, not alone) if known else ("", False)
     stem, _, last = column.rpartition("_")
     if last in _OF_QUANTITY and _OF_QUANTITY[last].match(stem):

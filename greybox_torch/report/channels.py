@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from greybox_torch.data import Channel, DataSet, Recording
-from greybox_torch.report.style import MOST_PANELS, STYLE, dots_within, shown_of, with_unit
+from greybox_torch.report.style import MOST_PANELS, STYLE, dots_within, shown_of, since_start, with_unit
 
 _MOST_COLUMNS = 3
 _MOST_CHANNELS = 24
@@ -19,7 +19,7 @@ _MOST_CHANNELS = 24
 def plot_channels(data: DataSet, along: str = "time [s]") -> Figure:
     """An experiment a column, a channel a row; after three experiments the columns go on in another band of rows.
 
-    The channels of an experiment share the time axis, in seconds. A channel has the same vertical axis, in its unit,
+    The channels of an experiment share the time axis, in seconds since its start. A channel has the same vertical axis, in its unit,
     in all experiments. Of very many channels or experiments the figure shows the first, and says so. Missing samples leave a gap in
     the curve and a red mark at the foot of it.
 
@@ -60,10 +60,10 @@ def plot_channels(data: DataSet, along: str = "time [s]") -> Figure:
 
 
 def _plot(axes: Axes, recording: Recording, channel: Channel) -> None:
-    values = recording.signals[channel.name]
-    axes.plot(recording.time, values, linewidth=0.7)
+    values, time = recording.signals[channel.name], since_start(recording)
+    axes.plot(time, values, linewidth=0.7)
     axes.margins(x=0)
-    missing = recording.time[np.isnan(values)]
+    missing = time[np.isnan(values)]
     if missing.size:
         foot = axes.get_xaxis_transform()
         axes.plot(missing, np.zeros_like(missing), "|", color="tab:red", markersize=8, transform=foot)

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
 from greybox_torch.data import Channel, Recording
-from greybox_torch.report.style import MOST_PANELS, STYLE, dots_within, with_unit
+from greybox_torch.report.style import MOST_PANELS, STYLE, dots_within, since_start, with_unit
 
 Panel = tuple[Recording, Mapping[str, np.ndarray], Mapping[str, str]]
 """A recording, the outputs (N, n_y) by the model's name, and what to say of each model."""
@@ -49,6 +49,7 @@ def plot_comparisons(panels: Sequence[Panel], outputs: list[Channel]) -> Figure:
 
 def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> None:
     recording, simulated, legend = panel
+    time = since_start(recording)
     figure.suptitle(f"{recording.name} ({recording.role})", fontweight="bold")
     grid = figure.add_gridspec(2 * len(outputs), 2, width_ratios=(1.6, 1), height_ratios=(1.4, 1) * len(outputs))
     for k, output in enumerate(outputs):
@@ -60,8 +61,8 @@ def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> Non
             above = figure.add_subplot(grid[2 * k, column])
             below = figure.add_subplot(grid[2 * k + 1, column], sharex=above)
             pieces = {label: values[part] for label, values in runs.items()}
-            _plot_signals(above, recording.time[part], measured[part], pieces)
-            _plot_errors(below, recording.time[part], measured[part], pieces)
+            _plot_signals(above, time[part], measured[part], pieces)
+            _plot_errors(below, time[part], measured[part], pieces)
             if lost:
                 _keep_to(measured, above, below)
             if column == 0:

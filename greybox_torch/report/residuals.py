@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from greybox_torch.estimate.residuals import Correlation, Residuals
-from greybox_torch.report.style import MOST_PANELS, STYLE, dots_within, shown_of, with_unit
+from greybox_torch.report.style import MOST_PANELS, STYLE, dots_within, shown_of, since_start, with_unit
 
 
 def plot_residuals(rows: Sequence[Residuals], title: str) -> Figure:
@@ -36,7 +36,7 @@ def plot_residuals(rows: Sequence[Residuals], title: str) -> Figure:
 
 
 def _plot_errors(axes: Axes, row: Residuals) -> None:
-    axes.plot(row.recording.time, row.errors, linewidth=0.6)
+    axes.plot(since_start(row.recording), row.errors, linewidth=0.6)
     axes.margins(x=0)
     axes.set_title(f"{row.recording.name} ({row.recording.role})")
     axes.set_xlabel("time [s]")

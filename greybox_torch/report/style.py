@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
+from greybox_torch.data import Recording
+
 STYLE: dict[Any, Any] = {
     "text.parse_math": False,  # a name may hold dollar signs
     "agg.path.chunksize": 20000,  # long records overflow the renderer otherwise
@@ -17,6 +21,11 @@ STYLE: dict[Any, Any] = {
 def dots_within(height: float) -> float:
     """Dots per inch of a figure of this height in inches: a picture ends at 65536 dots, reached by hundreds of experiments."""
     return min(120.0, 50000.0 / height)
+
+
+def since_start(recording: Recording) -> np.ndarray:
+    """Seconds since a recording's first sample (N,), for an axis: stamps may be dates, of which seconds since 1970 nobody can read."""
+    return recording.time - recording.time[0]
 
 
 def with_unit(name: str, unit: str) -> str:

@@ -29,7 +29,8 @@ def test_the_longest_gap_is_told_with_place_and_length() -> None:
     gap = longest_gap(time)
     assert gap is not None and (gap.after, gap.count) == (189, 2)
     assert str(gap) == (
-        "gap in the time stamps: no sample for 0.41 s, from 1.99 to 2.4 s (after sample 189, the first is 0; usual step 0.01 s), "
+        "gap in the time stamps: no sample for 0.41 s, from 1.99 to 2.4 s after the start (after sample 189, the first is 0; "
+        "usual step 0.01 s), "
         "the longest of 2 gaps"
     )
     np.testing.assert_allclose(without_gaps(time), 0.01)
@@ -90,3 +91,8 @@ def test_check_inspect_and_simulate_warn(motor_folder: Callable[..., Path]) -> N
     told = CliRunner().invoke(app, ["simulate", str(path), "--out", str(folder / "out")])
     assert told.exit_code == 0, told.output
     assert "warning: " in told.stderr and "gap in the time stamps: no sample for 0.41 s" in told.stderr
+
+
+def test_a_gap_between_dates_is_told_in_seconds_from_the_start() -> None:
+    (odd,) = odd_time_stamps(DataSet([recorded("Steps", 1.7726e9 + np.delete(10.0 * EVEN, range(100, 140)))]))
+    assert "no sample for 4.1 s, from 9.9 to 14 s after the start" in odd.found

@@ -65,6 +65,18 @@ def test_simulate_of_data_with_gaps(motor_folder: Make) -> None:
     assert np.isfinite(columns["speed_simulated"]).all()
 
 
+def test_stamps_since_1970_keep_their_fractions(motor_folder: Make, edit: Edit) -> None:
+    """Ten digits are as many as such stamps have before the point: hundred samples of a second had one time."""
+    folder = motor_folder()
+    for file in folder.glob("*.csv"):
+        names, *rows = file.read_text().splitlines()
+        stamped = [f"2026-03-01T12:00:{0.01 * k:05.2f},{row}" for k, row in enumerate(rows)]
+        file.write_text("\n".join([f"t,{names}", *stamped[:6000]]) + "\n")
+    edit(folder / "dataset.toml", "sample_time = 0.01", 'time = "t"')
+    columns = np.genfromtxt(of("simulate", folder)["tables"][0], delimiter=",", names=True)
+    np.testing.assert_allclose(np.diff(columns["time"]), 0.01, atol=1e-5)
+
+
 def test_simulate_for_people(motor_folder: Make) -> None:
     result = greybox("simulate", motor_folder())
     assert (result.exit_code, result.stderr) == (0, "")

@@ -106,6 +106,33 @@ def test_files_joined_in_time(load: Load) -> None:
     assert a.notes == ('column "y" is from b.csv, joined in time on straight lines between its samples',)
 
 
+def test_a_gap_of_a_joined_file_is_not_filled(load: Load) -> None:
+    t, other = np.arange(N) * 0.01, np.delete(np.arange(0.0, 0.3, 0.005), range(20, 40))
+    files = {"a": {"t": t, "u": U}, "b": {"t": other, "y": 3 * other}}
+    (a,) = load('time = "t"', TWO, 'file = ["a.csv", "b.csv"]\njoin = "time"', **files).recordings
+    np.testing.assert_array_equal(np.flatnonzero(np.isnan(a.signals["y"][:30])), np.arange(10, 20))
+    assert a.notes[0].endswith("between its samples, and missing across its gaps")
+
+
+@pytest.mark.parametrize(
+    ("names", "units", "message"),
+    [
+        ("t,y", "s,V", r'b\.csv has column "y" in "V", the card says "mV"'),
+        ("t,y", "ms,", r'b\.csv has column "t" in "ms", the card says "s"'),
+        ("Zeit,y", ",", r'b\.csv: no column "t".*have their time stamps in a column of one name'),
+    ],
+)
+def test_names_and_units_of_a_joined_file(load: Load, names: str, units: str, message: str) -> None:
+    with pytest.raises(UserError, match=message):
+        load(
+            'time = "t"',
+            'u = { column = "u", unit = "V" }\ny = { column = "y", unit = "mV" }',
+            'file = ["a.csv", "b.csv"]\njoin = "time"',
+            a={"t": np.arange(N) * 0.01, "u": U},
+            b="\n".join([names, units, *(f"{0.01 * k:.2f},1.5" for k in range(N))]) + "\n",
+        )
+
+
 def test_uneven_time_stamps_are_told_and_resampled_where_asked(load: Load) -> None:
     t = np.arange(N) * 0.01 + 0.002 * (np.arange(N) % 2)
     files = {"a": {"t": t, "u": 2 * t, "y": Y}}
@@ -123,7 +150,8 @@ def test_a_gap_is_told_where_it_would_be_filled(load: Load) -> None:
     files = {"a": {"t": t, "u": 2 * t, "y": Y}}
     (filled,) = load('time = "t"\nresample = 0.01', TWO, **files).recordings
     assert filled.notes[0] == (
-        "gap in the time stamps: no sample for 0.21 s, from 0.14 to 0.35 s (after sample 14, the first is 0; usual step 0.01 s), "
+        "gap in the time stamps: no sample for 0.21 s, from 0.14 to 0.35 s after the start (after sample 14, the first is 0; "
+        "usual step 0.01 s), "
         "filled with straight lines by resample"
     )
     (as_it_is,) = load('time = "t"', TWO, **files).recordings

@@ -209,3 +209,9 @@ def test_examples_in_the_documentation_run() -> None:
         names = {"Recording": Recording, "DataSet": DataSet}
         failed, tried = doctest.testmod(module, extraglobs=names)
         assert (failed, tried > 0) == (0, True)
+
+
+def test_backward_stamps_since_1970_are_told_apart() -> None:
+    time = 1.7726148e9 + np.array([*range(11), 4.5])
+    with pytest.raises(UserError, match=r"found 1772614804\.5 s after 1772614810 s"):
+        Recording.from_arrays("run", {"u": np.ones(12)}, time=time)

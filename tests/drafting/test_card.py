@@ -69,6 +69,25 @@ def test_a_card_loads_at_once(folder: Path, form: str) -> None:
     assert "fit the model" in inspected.stdout
 
 
+def test_a_unit_at_the_end_of_a_name_is_no_part_of_the_name(folder: Path) -> None:
+    csv(folder / "a.csv", "t,speed_coil_rpm,speed_rpm,speed_deg,U_bus_mV", T, W, W, W, 1e3 * V)
+    card = gt.card(folder / "a.csv", f"{folder / 'my_motor.py'}:Motor")
+    assert (
+        'speed = { column = "speed_rpm", unit = "rad/s", file_unit = "rpm" }    # converted from the unit that the file says\n'
+        in card.text
+    )
+    assert (
+        'column = "U_bus_mV", unit = "V", file_unit = "mV" }    # converted from the unit that the file says; please check'
+        in card.text
+    )
+
+
+def test_a_column_that_is_not_found_is_told_with_those_left_over(folder: Path) -> None:
+    csv(folder / "a.csv", "t,speed,wind_degF", T, W, W)
+    card = gt.card(folder / "a.csv", f"{folder / 'my_motor.py'}:Motor")
+    assert "[channels] voltage: no column fits; left over: wind_degF" in card.open
+
+
 def test_units_of_the_file_are_converted(folder: Path) -> None:
     csv(folder / "a.csv", "t [ms],voltage [mV],speed [rpm]", 1e3 * T, 1e3 * V, W * 30 / np.pi)
     gt.card(folder / "a.csv", f"{folder / 'my_motor.py'}:Motor").save()

@@ -43,8 +43,22 @@ TOLD = {
     'a = { column = "drive_power_MW", unit = "kW" }': ("MW", "kW"),
     'a = { column = "x_um", unit = "m/s", derivative = 5.0 }': ("um", "m/s"),
     'a = { column = "T [degC]", unit = "K" }': ("degC", "K"),
+    'a = { column = "T [degF]", unit = "degC" }': ("degF", "degC"),
+    'a = { column = "T [°F]", unit = "°C" }': ("degF", "°C"),
+    'a = { column = "T (deg F)", unit = "degC" }': ("degF", "degC"),
+    'a = { column = "T (F)", unit = "degC" }': ("degF", "degC"),
+    'a = { column = "T [°C]", unit = "K" }': ("degC", "K"),
+    'a = { column = "T (C)", unit = "K" }': ("degC", "K"),
+    'a = { column = "T_degF", unit = "degC" }': ("degF", "degC"),
+    'a = { column = "T_°F", unit = "degC" }': ("degF", "degC"),
+    'a = { column = "T [K]", unit = "degC" }': ("K", "degC"),
 }
 SILENT = [
+    'a = { column = "T [°C]", unit = "degC" }',
+    'a = { column = "T (C)", unit = "°C" }',
+    'a = { column = "T_K", unit = "degC" }',  # a letter alone
+    'a = { column = "amplification (K)", unit = "V" }',
+    'a = { column = "phase (C)", unit = "V" }',
     'time = { column = "t_ms", unit = "ms" }',
     'time = { column = "time_us", unit = "µs" }',
     'time = { column = "s", unit = "ms" }',  # a name of one letter is no unit

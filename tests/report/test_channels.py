@@ -1,12 +1,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from greybox_torch.data import DataSet, Recording, load_dataset
+from greybox_torch.estimate.residuals import Residuals
 from greybox_torch.report.channels import plot_channels
+from greybox_torch.report.comparison import plot_comparison
+from greybox_torch.report.residuals import _plot_errors
 
 
 def test_every_channel_of_every_experiment(bench: Path) -> None:
@@ -22,6 +29,24 @@ def test_every_channel_of_every_experiment(bench: Path) -> None:
     assert np.isnan(speed[7])
     assert [text.get_text() for text in axes[1].texts] == ["1 missing"]
     assert axes[1].lines[1].get_xdata() == [0.07]
+
+
+def test_time_axes_begin_at_0(bench: Path) -> None:
+    """Stamps may be dates, of which seconds since 1970 nobody can read from an axis."""
+    data = load_dataset(bench / "dataset.toml")
+    late = DataSet(
+        [replace(one, time=one.time + 1.7726e9) for one in data.recordings],
+        channels=data.channels,
+        held_out_by_default=False,
+    )
+    run = late.recordings[0]
+    simulated = {"start": np.zeros((len(run), 1))}
+    tested = SimpleNamespace(recording=run, output=data.channels["speed"], errors=np.zeros(len(run)))
+    axes = Figure().add_subplot()
+    _plot_errors(axes, cast(Residuals, tested))
+    figures = [plot_channels(late), plot_comparison(run, [data.channels["speed"]], simulated, {"start": "start"})]
+    for first in (figures[0].axes[0], figures[1].axes[0], axes):
+        np.testing.assert_allclose(np.asarray(first.lines[0].get_xdata())[[0, -1]], [0.0, 0.39], atol=1e-6)
 
 
 def test_more_experiments_than_columns(bench: Path, edit: Callable[[Path, str, str], None]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import islice
 from pathlib import Path
 
@@ -9,7 +10,13 @@ from greybox_torch.data.columns.listing import MOST_COLUMNS, Listing
 from greybox_torch.data.readers.text_layout import HEAD, encoding_of
 from greybox_torch.data.readers.text_rows import DELIMITERS, cells_of, is_number, uncommented
 from greybox_torch.data.readers.time_stamps import is_time_stamp
+from greybox_torch.data.units import is_unit
 from greybox_torch.errors import UserError
+
+_MARKED = re.compile(r"[-–%]|\[.*\]|\(.*\)")
+"""What stands for a unit, or for none, whatever is in it."""
+_LETTERS = frozenset("smhgVAWNJKlL")
+"""Letters that stand for a unit alone; others, such as t for tonne and P for poise, more often name a signal."""
 
 
 def text_columns(path: Path) -> Listing:
@@ -55,15 +62,31 @@ def _share(row: list[str], delimiter: str) -> float:
 
 
 def _names(rows: list[list[str]], first: int, width: int) -> list[str]:
-    """The line above the samples with a different name for every cell; of two such lines the upper, since the lower has the units."""
+    """The line above the samples with a different name for every cell; of two such lines the upper where the lower has the units."""
     above = rows[max(0, first - 2) : first]
     if above and uncommented(above[-1]) != above[-1]:
         above = above[-1:]  # of comments, the last
+    found = []
     for row in (names for names in map(uncommented, above) if _is_heading(names, width)):
         names = [name for name in row[:width] if name]
         if len(set(names)) == len(names):
-            return names
-    return [f"#{k}" for k in range(1, width + 1)]
+            found.append(names)
+    if not found:
+        return [f"#{k}" for k in range(1, width + 1)]
+    return found[0] if len(found) == 1 or _are_units(found[1], len(found[0])) else found[1]
+
+
+def _are_units(cells: list[str], names: int) -> bool:
+    """Whether a line of text beneath one of so many cells has their units, and no names beneath a line about the recording.
+
+    One unit that is known is enough, since others may be "counts"; all of them, where the line above would leave one without a name.
+    """
+    letter = {cell: cell.rstrip("0123456789") for cell in cells}
+    known = [
+        _MARKED.fullmatch(cell) is not None or ((len(letter[cell]) != 1 or letter[cell] in _LETTERS) and is_unit(cell))
+        for cell in cells
+    ]
+    return any(known) if names >= len(cells) else all(known)
 
 
 def _is_heading(row: list[str], width: int) -> bool:

@@ -101,7 +101,7 @@ def _samples(path: Path, file: TextIO, layout: Layout) -> Iterator[tuple[int, li
             raise UserError(
                 f"{path}, line {line}: found {len(row)} cell(s), expected {width}{for_names}; "
                 f"{_WORDS[layout.delimiter]} separate cells"
-                + ("" if layout.decimal == "," else ", and decimals have a point")
+                + (", and decimals have a point" if layout.delimiter == "," else "")
             )
         yield line, row
 

@@ -45,7 +45,7 @@ def inputs(judged: Judgement) -> tuple[InputTrace, ...]:
     for e, recording in enumerate(judged.recordings):
         for k, one in enumerate(judged.problem.model.inputs):
             values = records.u[k, records.span(e)]
-            found.append(InputTrace(recording.name, one.name, one.unit, records.time(e), values))
+            found.append(InputTrace(recording.name, one.name, one.unit, records.time(e), values, records.hold == "zoh"))
     return tuple(found)
 
 

@@ -27,9 +27,12 @@ class Mark:
     path: str
 
 
-def line(x: Scale, y: Scale, xs: np.ndarray, ys: np.ndarray, series: str) -> Mark:
-    """A curve through (xs, ys); it breaks where a value is not finite."""
+def line(x: Scale, y: Scale, xs: np.ndarray, ys: np.ndarray, series: str, *, held: bool = False) -> Mark:
+    """A curve through (xs, ys), in steps where each value is ``held`` until the next; it breaks where a value is not finite."""
+    samples = len(xs)
     xs, ys = thinned(xs, np.where(np.isfinite(ys), ys, np.nan))
+    if held and len(xs) == samples:  # among extremes of many samples, steps and straight lines look alike
+        xs, ys = np.repeat(xs, 2)[1:], np.repeat(ys, 2)[:-1]
     across, up = _pixels(x, y, xs, ys)
     pieces, pen_down = [], False
     for a, b, ok in zip(across, up, np.isfinite(ys) & np.isfinite(xs), strict=True):

@@ -19,6 +19,8 @@ class Live:
     names: Mapping[str, str]
     clip: tuple[float, float]
     detail: tuple[float, float]
+    held: bool = False
+    """Whether its lines are steps: every value until the next."""
 
     @property
     def lines(self) -> str:

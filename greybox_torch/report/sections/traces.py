@@ -118,8 +118,8 @@ class _Stretch:
         low, high = _extent(self.trace)
         return high - low
 
-    def live(self, names: dict[str, str], low: float, high: float) -> Live | None:
-        return Live(names, (low, high), self.detail) if self.closer else None
+    def live(self, names: dict[str, str], low: float, high: float, *, held: bool = False) -> Live | None:
+        return Live(names, (low, high), self.detail, held) if self.closer else None
 
 
 def _chart(trace: Trace, mismatch: bool, inputs: Sequence[InputTrace], experiment: int, most: int) -> Chart:
@@ -177,9 +177,10 @@ def _error(here: _Stretch, *, last: bool) -> Panel:
 def _input(here: _Stretch, one: InputTrace, number: int, *, last: bool) -> Panel:
     values = one.values[here.part]
     y = linear(values)
-    marks = (*here.shade, line(here.x, y, here.time, values, "input"))
+    marks = (*here.shade, line(here.x, y, here.time, values, "input", held=one.held))
     alt = f"{here.trace.experiment}: the input {text.words(one.input)} over time."
-    live = here.live({"input": f"input_{number}"}, float(np.nanmin(one.values)), float(np.nanmax(one.values)))
+    ends = float(np.nanmin(one.values)), float(np.nanmax(one.values))
+    live = here.live({"input": f"input_{number}"}, *ends, held=one.held)
     label = "time [s]" if last else ""
     return Panel(here.x, y, label, text.axis(one.input, one.unit), marks, alt, "low", live=live)
 

@@ -71,14 +71,16 @@
     return [Math.max(0, search(begin) - 1), Math.min(count - 1, search(end))];
   }
 
-  function drawn(samples, values, begin, end, low, high) {
+  function drawn(samples, values, begin, end, low, high, held) {
     const [first, last] = within(samples, values, begin, end), parts = [];
     const across = (time) => Math.round(WIDTH * Math.min(2, Math.max(-1, (time - begin) / (end - begin))));
     const up = (value) => Math.round(HEIGHT * (1 - Math.min(2, Math.max(-1, (value - low) / (high - low)))));
     const stretch = Math.max(1, Math.ceil((last - first + 1) / COLUMNS));
-    let down = false;
+    const steps = held && stretch === 1 && samples.each === 1; // every value until the next
+    let down = false, before = 0;
     const point = (time, value) => {
-      if (Number.isFinite(value)) parts.push((down ? "L" : "M") + across(time) + " " + up(value));
+      if (steps && down) parts.push("L" + across(time) + " " + before);
+      if (Number.isFinite(value)) parts.push((down ? "L" : "M") + across(time) + " " + (before = up(value)));
       down = Number.isFinite(value);
     };
     for (let k = first; k <= last; k += stretch) {
@@ -116,7 +118,7 @@
 
   function redraw(panel, samples, begin, end) {
     const [low, high] = heights(panel, samples, begin, end);
-    for (const { path, name } of panel.lines) path.setAttribute("d", drawn(samples, samples.series[name], begin, end, low, high));
+    for (const { path, name } of panel.lines) path.setAttribute("d", drawn(samples, samples.series[name], begin, end, low, high, panel.held));
     const x = ticks(begin, end, MOST_TICKS), y = ticks(low, high, panel.ticks);
     const level = (value) => Math.round(HEIGHT * (1 - (value - low) / (high - low)));
     const place = (time) => Math.round((WIDTH * (time - begin)) / (end - begin));
@@ -142,7 +144,7 @@
         return { path: root.querySelector("path.line." + series), name };
       });
       const panel = {
-        root, lines, clip: numbers(root.dataset.clip), zero: root.dataset.zero === "1", ticks: Number(root.dataset.ticks),
+        root, lines, clip: numbers(root.dataset.clip), zero: root.dataset.zero === "1", held: root.dataset.held === "1", ticks: Number(root.dataset.ticks),
         grid: root.querySelector("path.grid"), line: root.querySelector("path.zero"), detail: root.querySelector("path.detail"),
         span: numbers(root.dataset.span), title: root.querySelector(".panel-title"),
       };

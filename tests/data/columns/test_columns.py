@@ -49,6 +49,10 @@ RECORDS = [{"t": 0.1 * k, "motor": {"w": float(k)}, "state": "on"} for k in rang
 FILES: dict[str, tuple[Callable[[Path], object], list[str], dict[str, float]]] = {
     "names.csv": (text("t,u,y\n" + numbers()), ["t", "u", "y"], {}),
     "units.csv": (text("t;motor u;y\ns;V;rad/s\n" + numbers(";", ",")), ["t", "motor u", "y"], {}),
+    "few units.csv": (text("t;state;y\nms;bool;steps\n" + numbers(";", ",")), ["t", "state", "y"], {}),
+    "index.csv": (text(";u;y\ns;V;rad/s\n" + numbers(";", ",")), ["u", "y"], {}),
+    "one cell fewer above.csv": (text("Bench 7; operator: K\nt;P;q\n" + numbers(";", ",")), ["t", "P", "q"], {}),
+    "as many above.csv": (text("Bench 7; operator: K; 8:00\nt [s];P1;q\n" + numbers(";", ",")), ["t [s]", "P1", "q"], {}),
     "preamble.txt": (text("Bench 3\nDate: today\n\nt\tu\ty\n" + numbers("\t")), ["t", "u", "y"], {}),
     "bare.dat": (text(numbers(" ")), ["#1", "#2", "#3"], {}),
     "dates.csv": (text("when,u,y\n" + "".join(f"2024-01-{k + 1:02d},{k},{2 * k}\n" for k in range(12))), ["when", "u", "y"], {}),
@@ -96,3 +100,13 @@ def test_a_reader_of_ones_own_cannot_list(tmp_path: Path) -> None:
             columns_of(tmp_path / "a.own")
     finally:
         unregister_reader(".own")
+
+
+def test_what_is_said_of_decimals_where_a_line_has_too_few_cells(tmp_path: Path) -> None:
+    """That decimals have a point is said where commas separate: only there can a decimal comma be why."""
+    (tmp_path / "a.csv").write_text("u;y\n1,5;2,5\n1,5\n")
+    (tmp_path / "b.csv").write_text("u,y\n1.5,2.5\n1,5,2,5\n")
+    with pytest.raises(UserError, match=r"line 3: found 1 cell.*; semicolons separate cells$"):
+        read_table(tmp_path / "a.csv", ("u",))
+    with pytest.raises(UserError, match=r"line 3: found 4 cell.*commas separate cells, and decimals have a point$"):
+        read_table(tmp_path / "b.csv", ("u",))

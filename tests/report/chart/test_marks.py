@@ -16,6 +16,13 @@ def test_line() -> None:
     assert mark.path == "M0 1000L1000 0L2000 500"
 
 
+def test_values_that_are_held_are_steps() -> None:
+    mark = line(X, Y, np.array([0.0, 5.0, 10.0]), np.array([0.0, 1.0, 0.5]), "input", held=True)
+    assert mark.path == "M0 1000L1000 1000L1000 0L2000 0L2000 500"
+    gap = line(X, Y, np.array([0.0, 5.0, 10.0]), np.array([1.0, np.nan, 1.0]), "input", held=True)
+    assert gap.path == "M0 0L1000 0M2000 0"
+
+
 def test_a_line_breaks_where_values_are_missing() -> None:
     values = np.array([0.0, np.nan, 1.0, np.inf, 1.0])
     assert line(X, Y, np.array([0.0, 1.0, 2.0, 3.0, 4.0]), values, "").path == "M0 1000M400 0M800 0"

@@ -6,6 +6,7 @@ import html as escapes
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -55,6 +56,33 @@ def test_only_the_whole_record_can_be_looked_closer_at(with_traces: Callable[...
         "input:input_0",
     ]
     assert all(panel.live is None for panel in detail)
+
+
+def test_held_inputs_are_steps(with_traces: Callable[..., Verdict], about: About) -> None:
+    verdict = with_inputs(with_traces(("A", "validation", 1.0)))
+    held = replace(verdict, inputs=tuple(replace(one, held=True) for one in verdict.inputs))
+    sizes = []
+    for data in (verdict, held):
+        detail = drawn(data).charts[0].chart.columns[1]
+        sizes.append([panel.marks[-1].path.count("L") for panel in detail])
+    assert sizes[1] == [*sizes[0][:2], 2 * sizes[0][2]]
+    assert [render_page(data, about).count('data-held="1"') for data in (verdict, held)] == [0, 1]
+
+
+@needs_browser
+def test_held_inputs_are_steps_when_looked_closer_at(
+    with_traces: Callable[..., Verdict], about: About, tmp_path: Path
+) -> None:
+    verdict = with_inputs(with_traces(("A", "validation", 1.0)))
+    held = replace(verdict, inputs=tuple(replace(one, held=True) for one in verdict.inputs))
+    (tmp_path / "report.html").write_text(
+        render_page(held, about).replace("</body>", '<script>location.hash = "#time=0,0.3,0.6";</script></body>'),
+        encoding="utf-8",
+    )
+    _, document = after_scripts(tmp_path / "report.html", tmp_path, "--virtual-time-budget=5000")
+    (path,) = re.findall(r'class="line input" d="(M[^"]*)"', document)[:1]
+    places = [tuple(map(int, place.split())) for place in re.split("[ML]", path)[1:]]
+    assert all(a[0] == b[0] or a[1] == b[1] for a, b in pairwise(places))
 
 
 def test_a_million_samples(with_traces: Callable[..., Verdict], about: About) -> None:

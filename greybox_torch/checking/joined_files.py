@@ -1,0 +1,81 @@
+"""The files that were joined in time to the first one of an experiment, as they stand: what a join hides is looked for in them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greybox_torch.data import DataSet, Recording
+from greybox_torch.data.card import TIME, Card, read_card
+from greybox_torch.data.card_channels import ExperimentEntry
+from greybox_torch.data.readers import read_table
+from greybox_torch.data.readers.table import Table
+from greybox_torch.data.source import Read, Source, source_of
+from greybox_torch.errors import UserError
+
+
+@dataclass(frozen=True, eq=False)
+class JoinedFiles:
+    """Of one recording. ``rows`` are the experiment's in the first file, ``columns`` those of channels that are one column, ``clock`` is
+    the column of time stamps, a unit of which is so many ``seconds``.
+    """
+
+    recording: Recording
+    source: Source
+    rows: tuple[int, int]
+    columns: Mapping[str, str]
+    clock: str
+    seconds: float
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Time stamps of the whole first file, in s."""
+        return self.source.columns[self.clock] * self.seconds
+
+    def stamps(self, table: Table) -> tuple[int, NDArray[np.float64]]:
+        """Time stamps of a joined file, in s, as far as the recording reaches, and which sample of that file the first of them is."""
+        stamps = table.columns[self.clock] * self.seconds
+        begin = max(int(np.searchsorted(stamps, self.recording.time[0], side="right")) - 1, 0)
+        end = int(np.searchsorted(stamps, self.recording.time[-1], side="left")) + 1
+        return begin, stamps[begin:end]
+
+    def of(self, channel: str) -> tuple[Table, str] | None:
+        """The joined file that a channel is one column of, and the column."""
+        column = self.columns.get(channel)
+        return next(((t, column) for t in self.source.joined if column is not None and column in t.columns), None)
+
+
+def joined_files(data: DataSet) -> dict[str, JoinedFiles]:
+    """By the recording's name; without those whose card or files were replaced meanwhile."""
+    if data.path is None or not data.path.is_file():
+        return {}
+    try:
+        card = read_card(data.path)
+    except UserError:
+        return {}
+    read, found = cache(read_table), {}
+    for entry in card.experiment:
+        if entry.join == "time" and len(entry.file) > 1:
+            for recording in data.recordings:
+                if recording.name in (entry.name, f"{entry.name} (held out)"):
+                    try:
+                        found[recording.name] = _read_again(data, card, entry, recording, read)
+                    except (UserError, KeyError):
+                        continue
+    return found
+
+
+def _read_again(data: DataSet, card: Card, entry: ExperimentEntry, recording: Recording, read: Read) -> JoinedFiles:
+    if data.path is None or card.time is None:
+        raise KeyError(TIME)
+    clock = entry.columns.get(TIME, card.time.column)
+    columns = {name: card.channels[name].expression(entry.columns.get(name)).columns for name in recording.signals}
+    needed = dict.fromkeys([*(column for of in columns.values() for column in of), clock])
+    source = source_of([data.path.parent / file for file in entry.file], entry.join, list(needed), clock, read)
+    start, stop = entry.rows or (0, len(source.columns[clock]))
+    alone = {name: of[0] for name, of in columns.items() if len(of) == 1}
+    return JoinedFiles(recording, source, (start, stop), alone, clock, card.time.seconds)
