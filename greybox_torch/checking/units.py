@@ -15,8 +15,8 @@ from greybox_torch.model import Body, Coupling, GreyBoxModel
 
 REMEDY = "what makes units fit: a number in the equation that has a unit is a parameter with that unit and fixed=True"
 
-_SPEEDS = {dimension_of(unit) for unit in ("rad/s", "m/s", "m^3/s", "A")}
-"""Of bodies that turn or slide, of a flow and a current: with a torque, a force, a pressure and a voltage these make power."""
+_FLOWS = {dimension_of(unit) for unit in ("rad/s", "m/s", "m^3/s", "A")}
+"""Flow variables (angular and linear speed, volume flow, current): with their efforts (torque, force, pressure, voltage) they make power."""
 
 
 def unreadable_units(model: GreyBoxModel, source: Source) -> Iterator[Finding]:
@@ -130,7 +130,7 @@ def _force(port: object, of_signal: dict[tuple[str, str], Dimension | None]) -> 
         speed = None if deflection is None else deflection.times(SECOND, -1)
     else:
         return None
-    return WATT.times(speed, -1) if speed is not None and speed in _SPEEDS else None
+    return WATT.times(speed, -1) if speed is not None and speed in _FLOWS else None
 
 
 def _per_unit_of(traced: Traced, node: int, known: Known, names: Names) -> str | None:

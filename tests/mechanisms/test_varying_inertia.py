@@ -197,6 +197,7 @@ def test_which_are_offered_and_how_they_are_called() -> None:
 def test_the_unit_of_a_position_is_that_of_the_integrated_speed() -> None:
     """Seen: the position of a body whose speed is in a tachometer's volts, in V."""
     units = {"rad/s": "rad", "m/s": "m", "V": "V s", "rpm": "rpm s", "rad/s^2": "rad/s", "1/s": "1", "-": "s", "": ""}
+    units |= {"m/s²": "m/s", "m s^-1": "m", "rad s-1": "rad", "m s^-2": "m s^-1", "N m/s": "N m"}
     assert {unit: unit_of_integral(unit) for unit in units} == units
 
 

@@ -28,7 +28,8 @@ def traces(judged: Judgement, effects: bool) -> tuple[Trace, ...]:
 def no_longer_validation(given: DataSet, used: DataSet) -> tuple[str, ...]:
     """A sentence for each validation experiment of ``given`` that is chosen with in ``used``, or the beginning of which is."""
     held_out = {r.name for r in given.validation()}
-    rests = {name: r.name for r in used.validation() for name in held_out if r.name.startswith(f"{name} from ")}
+    parts = [r for r in used.validation() if r.name not in held_out]
+    rests = {name: r.name for r in parts for name in held_out if r.name.startswith(f"{name} from ")}
     why = "was taken to choose with as well (the evidence says why)"
     return tuple(
         f"Of {r.name} only {rests[r.name]} counts as validation: its beginning {why}."
