@@ -16,7 +16,7 @@ from greybox_torch.model import Body, Coupling, GreyBoxModel
 REMEDY = "what makes units fit: a number in the equation that has a unit is a parameter with that unit and fixed=True"
 
 _FLOWS = {dimension_of(unit) for unit in ("rad/s", "m/s", "m^3/s", "A")}
-"""Flow variables (angular and linear speed, volume flow, current): with their efforts (torque, force, pressure, voltage) they make power."""
+"""Angular and linear speed, volume flow, current: with their efforts (torque, force, pressure, voltage) they make power."""
 
 
 def unreadable_units(model: GreyBoxModel, source: Source) -> Iterator[Finding]:
