@@ -20,8 +20,9 @@ def test_a_small_curve_beside_a_larger_law_is_a_refinement(dead_zone_search, stu
 
     def refined(other: Attachment, sizes: tuple[float, float]) -> bool:
         effects = friction, other
-        state = stub(effects=effects, prefixes={e.prefix for e in effects}, current=dead_zone_search.plain)
-        others = stub(times_noise=lambda hypothesis: np.array([1.0]))
+        plain = dead_zone_search.plain
+        state = stub(effects=effects, prefixes={e.prefix for e in effects}, plain=plain, current=plain)
+        others = stub(times_noise=lambda hypothesis: np.array([1.0]), fits=lambda hypothesis: ())
         by_effect = dict(zip((e.prefix for e in effects), sizes, strict=True))
         return other.prefix in refinements(study, state, others, {}, by_effect)
 
