@@ -47,7 +47,8 @@ class _Watch(TorchDispatchMode):
             return func(*args, **given)
         before = torch.get_rng_state()
         made = func(*args, **given)
-        if not torch.equal(before, torch.get_rng_state()):  # what may draw need not: attention without dropout, a generator of its own
+        # what may draw need not: attention without dropout, a generator of its own
+        if not torch.equal(before, torch.get_rng_state()):
             frame: FrameType | None = sys._getframe(1)
             while frame is not None and frame.f_code.co_filename not in self._files:
                 frame = frame.f_back
