@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import torch
 
 import greybox_torch as gt
@@ -54,7 +56,7 @@ def test_no_number_anywhere_is_one_error() -> None:
     assert not gt.check(Lost()).usable
 
 
-def shares(initial: float | str, rest: float) -> type[gt.GreyBoxModel]:
+def shares(initial: float | Literal["measured"], rest: float) -> type[gt.GreyBoxModel]:
     """Ten states between 0 and 1; with ``rest`` = 1 they are less than 1 together, as the fractions of a mixture are."""
 
     class Shares(gt.GreyBoxModel):
@@ -64,7 +66,7 @@ def shares(initial: float | str, rest: float) -> type[gt.GreyBoxModel]:
         ports = [gt.Balance("last", level="s9")]
 
         def derivative(self, x, u, p, port):
-            last = torch.log(1.0 - sum(x[f"s{i}"] for i in range(10))) if rest else 0.0
+            last = torch.log(1.0 - torch.stack([x[f"s{i}"] for i in range(10)]).sum(0)) if rest else 0.0
             rates = {f"s{i}": p.k * (last - torch.log(x[f"s{i}"] / (1.0 - x[f"s{i}"]))) for i in range(10)}
             return {**rates, "s9": rates["s9"] + port.last}
 
@@ -77,8 +79,8 @@ def shares(initial: float | str, rest: float) -> type[gt.GreyBoxModel]:
 def test_many_states_within_narrow_limits_are_no_error() -> None:
     """Seen: no random point is within all limits, and a model that can be simulated "cannot be used: 1 error"."""
     never = "no numbers (nan or inf) at any of the values that were tried"
-    for initial in (0.5, "measured"):
-        found = examine(shares(initial, 0.0)).findings
+    for made in (shares(0.5, 0.0), shares("measured", 0.0)):
+        found = examine(made).findings
         assert {f.level for f in found} == {"warning"}
         assert not [f for f in found if never in f.found or "moves no output" in f.found]
     (found,) = examine(shares(0.05, 1.0)).findings
