@@ -15,6 +15,7 @@ from greybox_torch.checking.examine import examine
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.checking.negative_masses import negative_masses
 from greybox_torch.checking.not_finite import not_finite_at_start
+from greybox_torch.checking.points import Points, start_of
 from greybox_torch.checking.source import source_of
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.beliefs import beliefs_from_mapping
@@ -54,7 +55,7 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
     """
     name, given = _given(model)
     with users_code(_file(given), f"model {name}", "checking it"):
-        examined = examine(given, alone=data is None)
+        examined = examine(given, None if data is None else partial(_starts, data))
     findings, values = list(examined.findings), dict[str, float]()
     if data is not None:
         usable = None if any(f.level == "error" for f in findings) else examined.model
@@ -96,11 +97,21 @@ def _with_data(data: DataSet, model: GreyBoxModel) -> tuple[list[Finding], dict[
     return [*of_values, *_tables(data, model)], values
 
 
+def _starts(data: DataSet, model: GreyBoxModel) -> list[Points]:
+    """Where simulations of the data begin; none where the data do not fit the model."""
+    try:
+        problem = make_problem(data, model, data.recordings)
+    except UserError:
+        return []
+    values = problem.values_by_name
+    return [start_of(model, values, start) for start in _begun(problem).values()]
+
+
 def _begun(problem: Problem) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """The states and inputs that every experiment begins with; not of one whose first samples are missing."""
+    """The states and inputs that every experiment begins with, where first samples are missing the next known ones."""
     records = problem.records
     starts = zip(records.names, problem.initial, records.u[:, records.first].T, strict=True)
-    return {name: (x, u) for name, x, u in starts if np.isfinite([*x, *u]).all()}
+    return {name: (x, u) for name, x, u in starts}
 
 
 def _tables(data: DataSet, model: GreyBoxModel) -> list[Finding]:

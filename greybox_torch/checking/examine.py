@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 from greybox_torch.checking.code import untraceable
@@ -13,7 +14,7 @@ from greybox_torch.checking.influence import Influence, influence
 from greybox_torch.checking.names import declared_names, exchanged_arguments, left_out, unknown_names
 from greybox_torch.checking.negative_masses import negative_masses
 from greybox_torch.checking.not_finite import never_finite, not_finite, not_finite_at_start
-from greybox_torch.checking.points import points_of, wide_points
+from greybox_torch.checking.points import Points, points_of, start_of, wide_points
 from greybox_torch.checking.source import Source, source_of
 from greybox_torch.checking.units import misfits, unreadable_units
 from greybox_torch.errors import UserError
@@ -34,11 +35,13 @@ class Examination:
     compiled: bool = False
 
 
-def examine(given: GreyBoxModel | type[GreyBoxModel], *, alone: bool = True) -> Examination:
+def examine(
+    given: GreyBoxModel | type[GreyBoxModel], starts: Callable[[GreyBoxModel], Collection[Points]] | None = None
+) -> Examination:
     """Examine a class, or the class and the values of an object; its equations are run on made-up values.
 
     Args:
-        alone: there are no data, which say better than the model where a simulation begins.
+        starts: where simulations begin by the data, which say so better than the model; none where they do not fit it.
     """
     made = given if isinstance(given, type) else type(given)
     source = source_of(made)
@@ -58,7 +61,7 @@ def examine(given: GreyBoxModel | type[GreyBoxModel], *, alone: bool = True) -> 
     found += [*unreadable_units(model, source), *no_ports(made, source), *negative_masses(model, source)]
     if any(f.level == "error" for f in found):  # running the equations would repeat it, one at a time
         return Examination(made, model, in_order([*found, *code]))
-    return _run(made, model, source, found, code, alone)
+    return _run(made, model, source, found, code, starts)
 
 
 def _read(made: type[GreyBoxModel], source: Source) -> tuple[list[Finding], list[Finding]]:
@@ -82,7 +85,7 @@ def _run(
     source: Source,
     found: list[Finding],
     code: list[Finding],
-    alone: bool,
+    starts: Callable[[GreyBoxModel], Collection[Points]] | None,
 ) -> Examination:
     wrong = list(fails(model, source))
     graph, uncompiled = (None, []) if wrong else compiled(model, source)
@@ -100,8 +103,8 @@ def _run(
         found.append(told(raised(model, error), source, "functions that torch can differentiate", "warning"))
         return Examination(made, model, in_order(found), None, graph is not None)
     if not acting.finite.any():  # what moves an output cannot be seen either
-        found.append(never_finite(model, points, source))
+        found.append(never_finite(model, points, starts(model) if starts else [start_of(model, {})], source))
         return Examination(made, model, in_order(found), None, graph is not None)
     found += [*without_effect(model, acting, graph, source), *not_finite(model, moved, points, source)]
-    found += not_finite_at_start(model, source) if alone else ()
+    found += not_finite_at_start(model, source) if starts is None else ()
     return Examination(made, model, in_order(found), acting, graph is not None)

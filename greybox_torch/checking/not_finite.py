@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -40,13 +40,24 @@ def not_finite(model: GreyBoxModel, influence: Influence, points: Points, source
     )
 
 
-def never_finite(model: GreyBoxModel, points: Points, source: Source) -> Finding:
-    """The finding where none of the points gives numbers, however far apart they are."""
+def never_finite(model: GreyBoxModel, points: Points, starts: Collection[Points], source: Source) -> Finding:
+    """The finding where none of the points gives numbers, however far apart they are.
+
+    Args:
+        starts: where simulations begin. An error where none of these gives numbers either: points alone are no proof, as many states may
+            have to be within narrow limits.
+    """
     one = Points(*(of.detach()[:, :1] for of in (points.x, points.u, points.p, points.f)))
     found = (
         "the equations are no numbers (nan or inf) at any of the values that were tried, from thousandths to millions"
     )
-    return replace(_finding(found, source, _origin(model, one, source.file)[1]), level="error")
+    lost = [_origin(model, start, source.file)[0] for start in starts]
+    if starts and not all(lost):
+        found += ", but they are where a simulation begins"
+    return replace(
+        _finding(found, source, _origin(model, one, source.file)[1]),
+        level="error" if starts and all(lost) else "warning",
+    )
 
 
 def not_finite_at_start(

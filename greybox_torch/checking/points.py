@@ -58,11 +58,13 @@ def points_of(model: GreyBoxModel) -> Points:
 
 def wide_points(model: GreyBoxModel) -> Points:
     """Points for equations that are no numbers at any of :func:`points_of`: values above zero over many decades, as absolute temperatures
-    and pressures have, in the order drawn, rising and falling from state to state, as levels and pressures along a line may have to.
+    and pressures have, in the order drawn, rising and falling from state to state, as levels and pressures along a line may have to; and
+    states that are all between 0 and 1, as fractions are.
     """
     draw = np.random.default_rng(0)
     drawn = 10.0 ** draw.uniform(*DECADES, size=(len(model.states), WIDE)) * draw.uniform(0.5, 2.0, size=WIDE)
-    x = np.hstack([drawn, np.sort(drawn, axis=0), np.sort(drawn, axis=0)[::-1]])
+    fractions = draw.uniform(size=(len(model.states), WIDE))
+    x = np.hstack([drawn, np.sort(drawn, axis=0), np.sort(drawn, axis=0)[::-1], fractions])
     count = x.shape[1]
     u = 10.0 ** draw.uniform(*DECADES, size=(len(model.inputs), count))
     f = draw.normal(size=(len(model.ports), count))

@@ -12,7 +12,8 @@ from greybox_torch.errors import UserError, did_you_mean
 _PLAIN = re.compile(r"[A-Za-zµμΩ°%/·*^().²³0-9 \-]{1,40}")
 _LONG_NUMBER = re.compile(r"\d{3,}|\*\*|\^\s*-?\s*\d{2,}")
 _FACTOR = re.compile(r"\s*(\d[\d.]*\s*(?:[eE]\s*[-+]?\d+|\^\s*-?\d+|[*·x]\s*10\s*\^\s*-?\d+)?)\s*[*·]?\s*(.*?)\s*")
-_TURNS = re.compile(r"(1|U|r|tr|rev)\s*/\s*min|min\s*\^?\s*(-1|⁻¹)")
+_ONE = re.compile(r"1(\.0*)?")
+_TURNS = re.compile(r"(1(?:\.0*)?|U|r|tr|rev)\s*/\s*min|min\s*\^?\s*(-1|⁻¹)")
 """Turns per minute, as data loggers write them; beside angles and turns, for a rate of anything else may be 1/min."""
 _NAMED_TURNS = re.compile(r"^\W*(?:U|r|tr|rev)\s*/\s*(min|s)\b\W*(?=$|/)")
 _ANGLE = re.compile(r"\b(rad|deg|degrees?|rev|revolutions?|turns?|cycles?|mrad|rps)\b|rpm\b")
@@ -140,7 +141,7 @@ def dimensionality(unit: str) -> dict[str, float]:
 def factor_in(unit: str) -> tuple[str, str] | None:
     """The number that a unit begins with and the unit behind it, where that is more than the 1 of "1/s": "1e6" and "kg m^2"."""
     found = _FACTOR.fullmatch(unit)
-    return (found[1].strip(), found[2]) if found and found[1].strip() != "1" else None
+    return (found[1].strip(), found[2]) if found and not _ONE.fullmatch(found[1].strip()) else None
 
 
 def is_unit(text: str) -> bool:

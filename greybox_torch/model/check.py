@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import torch
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.ports import Port
-from greybox_torch.model.random_numbers import drawn_at
+from greybox_torch.model.random_numbers import Draw, watched
 from greybox_torch.model.signals import Signals
 from greybox_torch.model.stacked import odd_one
 
@@ -45,16 +46,18 @@ def check_equations(model: GreyBoxModel) -> None:
             model declares, changes what it is given, or returns something else the second time.
     """
     _check_ports(model)
+    files = _files(model)
     with torch.no_grad():
         values = model.physical()
         for batch, level in zip(BATCHES, (0.0, 1.0), strict=True):
             x, u = _signals(model, batch, level)
             p = Signals("parameter", {name: value.expand(batch) for name, value in values.items()})
             for function in (model.rates, model.measured):
-                drawn = torch.get_rng_state()
-                first, second = (_evaluated(model, function, x, u, p) for _ in range(2))
-                if not torch.equal(drawn, torch.get_rng_state()):
-                    raise _random(model, function, x, u, p)
+                first = _evaluated(model, function, x, u, p)
+                # the second call alone: what is made once, such as a network, may draw the values that it begins with
+                second, draw = watched(partial(_evaluated, model, function, x, u, p), files)
+                if draw is not None:
+                    raise _random(model, draw)
                 if first.shape[1:] != batch:
                     raise UserError(
                         _of_odd_shape(model, function, x, u, p)
@@ -129,14 +132,12 @@ def _of_odd_shape(model: GreyBoxModel, function: Callable[..., Any], x: torch.Te
     )
 
 
-def _random(model: GreyBoxModel, function: Callable[..., torch.Tensor], *given: Any) -> EquationsError:
-    name, frame = drawn_at(lambda: function(*given), _files(model))
-    found = (
-        f"`{name}` draws random numbers; {ALONE}"
-        if name
-        else f"the equations of {model.title} draw random numbers; {ALONE}"
+def _random(model: GreyBoxModel, draw: Draw) -> EquationsError:
+    if draw.frame is None:
+        return EquationsError(f"`{draw.name}` in the equations of {model.title} draws random numbers; {ALONE}")
+    return EquationsError(
+        f"`{draw.name}` draws random numbers; {ALONE}", (draw.frame.f_code.co_filename, draw.frame.f_lineno)
     )
-    return EquationsError(found, (frame.f_code.co_filename, frame.f_lineno) if frame else None)
 
 
 def raised(model: GreyBoxModel, error: Exception) -> EquationsError:

@@ -31,7 +31,7 @@ def test_a_number_in_front_is_no_part_of_a_unit(unit: str) -> None:
 
 
 def test_one_in_front_is_usual() -> None:
-    assert dimension_of("1/s") == dimension_of("1 / s") == dimension_of("Hz")
+    assert dimension_of("1/s") == dimension_of("1 / s") == dimension_of("1.0/s") == dimension_of("Hz")
     assert dimension_of("1 kg") == dimension_of("kg")
 
 

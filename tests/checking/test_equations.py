@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 
 import pytest
+import torch
 
 from greybox_torch.checking.examine import examine
 from greybox_torch.errors import UserError
+from greybox_torch.model.check import check_equations
 from greybox_torch.systems import load_model, model_class
 
 RATE = "p.b * x.speed"
@@ -76,3 +79,34 @@ def test_a_missing_argument_is_told_with_the_signature(tmp_path: Path, machines:
     (tmp_path / "motor.py").write_text(text)
     with pytest.raises(UserError, match=r"but 5 were given; expected def derivative\(self, x, u, p, port\)"):
         load_model(f"{tmp_path / 'motor.py'}:Motor")
+
+
+@pytest.mark.parametrize(
+    "weights",
+    [
+        'if "net" not in self.__dict__: self.__dict__["net"] = torch.nn.init.constant_(torch.empty(1).uniform_(), 0.5).double()',
+        'self.__dict__["net"] = torch.rand(1, generator=torch.Generator().manual_seed(0)).double()',
+        'self.__dict__["net"] = torch.nn.functional.scaled_dot_product_attention(*torch.ones(3, 1, 1, 1)).double()[0, 0]',
+    ],
+    ids=["made once", "a generator of its own", "attention"],
+)
+def test_what_gives_the_same_at_every_call_draws_no_random_numbers(
+    tmp_path: Path, machines: Path, weights: str
+) -> None:
+    """Seen: a network that is made at the first call, with fixed weights, was refused."""
+    motor(tmp_path, machines, weights, f'{RATE} * self.__dict__["net"]')
+    load_model(f"{tmp_path / 'motor.py'}:Motor")
+
+
+def test_what_other_threads_draw_is_theirs(tmp_path: Path, machines: Path) -> None:
+    """Seen: one load of nine was refused beside a thread that draws."""
+
+    class Beside(threading.Thread):
+        def run(self) -> None:
+            torch.rand(10)
+
+    # a thread that draws between the calls, at each of them
+    motor(tmp_path, machines, "beside = self.beside(); beside.start(); beside.join()", RATE)
+    made = model_class(f"{tmp_path / 'motor.py'}:Motor")
+    made.beside = Beside  # type: ignore[attr-defined]
+    check_equations(made())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import torch
 
 import greybox_torch as gt
@@ -52,6 +54,59 @@ def test_no_number_anywhere_is_one_error() -> None:
     assert (found.level, found.topic) == ("error", "numbers")
     assert "no numbers (nan or inf) at any of the values" in found.found
     assert not gt.check(Lost()).usable
+
+
+def shares(initial: float | Literal["measured"], rest: float) -> type[gt.GreyBoxModel]:
+    """Ten states between 0 and 1; with ``rest`` = 1 they are less than 1 together, as the fractions of a mixture are."""
+
+    class Shares(gt.GreyBoxModel):
+        states = [gt.State(f"s{i}", "", initial=initial) for i in range(10)]
+        outputs = [gt.Output(f"s{i}", "") for i in range(10)]
+        parameters = [gt.Parameter("k", 1.0, unit="1/s", lower=0.0)]
+        ports = [gt.Balance("last", level="s9")]
+
+        def derivative(self, x, u, p, port):
+            last = torch.log(1.0 - torch.stack([x[f"s{i}"] for i in range(10)]).sum(0)) if rest else 0.0
+            rates = {f"s{i}": p.k * (last - torch.log(x[f"s{i}"] / (1.0 - x[f"s{i}"]))) for i in range(10)}
+            return {**rates, "s9": rates["s9"] + port.last}
+
+        def output(self, x, u, p):
+            return {f"s{i}": x[f"s{i}"] for i in range(10)}
+
+    return Shares
+
+
+def test_many_states_within_narrow_limits_are_no_error() -> None:
+    """Seen: no random point is within all limits, and a model that can be simulated "cannot be used: 1 error"."""
+    never = "no numbers (nan or inf) at any of the values that were tried"
+    for made in (shares(0.5, 0.0), shares("measured", 0.0)):
+        found = examine(made).findings
+        assert {f.level for f in found} == {"warning"}
+        assert not [f for f in found if never in f.found or "moves no output" in f.found]
+    (found,) = examine(shares(0.05, 1.0)).findings
+    assert found.level == "warning"
+    assert never in found.found
+    assert found.found.endswith("but they are where a simulation begins")
+    assert [f.level for f in examine(shares(0.5, 1.0)).findings] == ["error"]
+
+
+def test_the_start_that_many_states_have_is_the_one_of_the_recordings(data_set) -> None:
+    units = {f"s{i}": "" for i in range(10)}
+    recorded = [dict.fromkeys(units, [share] * 20) for share in (0.05, 0.5)]
+    made = shares("measured", 1.0)
+    levels = [
+        [f.level for f in gt.check(made, data_set(units, [one])).findings if f.topic == "numbers"] for one in recorded
+    ]
+    assert levels == [["warning"], ["error"]]
+    of_others = gt.check(made, data_set({"t0": ""}, [{"t0": [1.0] * 20}]))  # the card is what is to be mended
+    assert {f.topic for f in of_others.findings if f.level == "error"} == {"card"}
+
+
+def test_where_first_samples_are_missing_the_next_known_ones_are_the_start(data_set) -> None:
+    missing = [float("nan")]
+    recorded = [{"force": [*missing, *[1.0] * 19], "gap": [*missing, *[gap] * 19]} for gap in (0.01, 0.0)]
+    told = [at_the_start(Gap(), data_set({"force": "N", "gap": "m"}, [one])) for one in recorded]
+    assert told == [[], ['the equations are no numbers at the start of "run 1", where gap = 0']]
 
 
 def test_numbers_far_from_zero_alone_are_enough() -> None:

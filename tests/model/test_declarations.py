@@ -132,7 +132,8 @@ def test_names_that_are_not_declared() -> None:
     assert (list(values), len(values)) == (["level"], 1)
     assert values.replaced(level=2.0).level == 2.0
     with pytest.raises(
-        UserError, match=r"the state 'levl', which it does not declare \(declared: level\) \(did you mean \"level\""
+        UserError,
+        match=r"the state 'levl' \(did you mean \"level\"\?\), which it does not declare \(declared: level\)$",
     ):
         values.levl  # noqa: B018
 
