@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from greybox_torch.checking.constant_channels import constant_channels
+from greybox_torch.checking.joined_files import joined_files
 from greybox_torch.checking.lone_samples import lone_samples
 from greybox_torch.checking.missing_inputs import missing_inputs
 from greybox_torch.checking.shared_rows import shared_rows
@@ -31,12 +32,13 @@ def all_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning]
 
 def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning]:
     """Those of a data set; without a model, as far as they need none."""
+    joined = joined_files(data)  # reads the files again, therefore once
     return [
         *contradictions(data.path),
         *contradicted_steps(data),
-        *odd_time_stamps(data),
+        *odd_time_stamps(data, joined),
         *shared_rows(data),
         *constant_channels(data, model),
-        *lone_samples(data),
+        *lone_samples(data, joined),
         *(missing_inputs(data, model) if model is not None else ()),
     ]

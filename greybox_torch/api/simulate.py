@@ -143,10 +143,8 @@ class SimulationResult(Result):
             columns += [recording.signals[name], self.run.comparison.simulated[experiment][:, k]]
         header = ",".join(["time", *[f"{name}_{what}" for name in names for what in ("measured", "simulated")]])
         buffer = BytesIO()
-        digits = [
-            "%.15g",
-            *["%.10g"] * (len(columns) - 1),
-        ]  # of the time more: seconds since 1970 have ten before the point
+        # of the time more digits: seconds since 1970 have ten before the point
+        digits = ["%.15g", *["%.10g"] * (len(columns) - 1)]
         np.savetxt(buffer, np.column_stack(columns), fmt=digits, delimiter=",", header=header, comments="")
         return buffer.getvalue()
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ExperimentEntry
+from greybox_torch.data.gaps import Gap, gap_steps
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.source import Read, Source, source_of
@@ -42,6 +43,24 @@ class JoinedFiles:
         begin = max(int(np.searchsorted(stamps, self.recording.time[0], side="right")) - 1, 0)
         end = int(np.searchsorted(stamps, self.recording.time[-1], side="left")) + 1
         return begin, stamps[begin:end]
+
+    def longest_gap(self, table: Table, until: float) -> Gap | None:
+        """The longest gap of a joined file in which samples of the experiment are missing, the first of them in this recording, which the
+        experiment's next part follows at ``until`` (s). ``after`` is a sample of that file; the gap is told as far as the experiment goes.
+
+        What is a gap is judged on the whole file, as joining it does: a part of it may have another usual step.
+        """
+        stamps, time, own = table.columns[self.clock] * self.seconds, self.time[slice(*self.rows)], self.recording.time
+        steps = np.flatnonzero(gap_steps(table.columns[self.clock]))
+        begins, ends = np.maximum(stamps[steps], time[0]), np.minimum(stamps[steps + 1], time[-1])
+        lost = np.searchsorted(time, stamps[steps], side="right")  # the first sample in each, if one is
+        first = time[np.minimum(lost, len(time) - 1)]
+        here = (lost < len(time)) & (first < stamps[steps + 1]) & (first >= own[0]) & (first < until)
+        if not here.any():
+            return None
+        k = int(np.argmax(np.where(here, ends - begins, -np.inf)))
+        step = float(np.median(np.diff(stamps)))
+        return Gap(int(steps[k]), float(begins[k]), float(ends[k]), step, int(here.sum()), float(own[0]))
 
     def of(self, channel: str) -> tuple[Table, str] | None:
         """The joined file that a channel is one column of, and the column."""

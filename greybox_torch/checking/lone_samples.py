@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from greybox_torch.checking.joined_files import JoinedFiles, joined_files
+from greybox_torch.checking.joined_files import JoinedFiles
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import TIME, read_card
 from greybox_torch.data.data_warning import InASentence
@@ -58,9 +58,8 @@ class LoneSample(InASentence):
         return "an empty cell or NaN in its place, which is a missing sample, unless it was measured"
 
 
-def lone_samples(data: DataSet) -> Iterator[LoneSample]:
-    """Of every channel of every experiment the farthest such sample, if there is one."""
-    joined = joined_files(data)
+def lone_samples(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterator[LoneSample]:
+    """Of every channel of every experiment the farthest such sample, if there is one; ``joined`` are by recording."""
     for recording in data.recordings:
         for name, signal in recording.signals.items():
             # where a file was joined in time, its samples: in between, straight lines spread an error value over several

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
-from greybox_torch.checking.joined_files import JoinedFiles, joined_files
+from greybox_torch.checking.joined_files import JoinedFiles
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.data_warning import InASentence
-from greybox_torch.data.gaps import Gap, longest_gap
+from greybox_torch.data.gaps import Gap, longest_gap, pieces_around
 from greybox_torch.data.readers.table import Table
 
 _SAME = 0.01  # of a sample time: how far a ratio may lie from a power of 1000
@@ -24,20 +24,20 @@ class OddTime(InASentence):
     write: str
 
 
-def odd_time_stamps(data: DataSet) -> Iterator[OddTime]:
-    """Gaps in the time stamps, also in those of files that are joined in time, and experiments whose sample times differ by a thousand,
-    as seconds and milliseconds do.
+def odd_time_stamps(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterator[OddTime]:
+    """Gaps in the time stamps, also in those of files that are joined in time (``joined``, by recording), and experiments whose sample
+    times differ by a thousand, as seconds and milliseconds do.
     """
     for recording in data.recordings:
         gap = longest_gap(recording.time)
         if gap is not None:
             yield _gap(recording, gap, _rows_on_the_card(data, recording))
-    for files in joined_files(data).values():
+    for name, files in joined.items():
+        held_out = joined.get(f"{name} (held out)") if data.held_out_by_default else None
         for table in files.source.joined:
-            first, stamps = files.stamps(table)
-            gap = longest_gap(stamps)
+            gap = files.longest_gap(table, np.inf if held_out is None else held_out.recording.time[0])
             if gap is not None:
-                yield _gap_of_joined(files, table, replace(gap, after=first + gap.after, start=files.recording.time[0]))
+                yield _gap_of_joined(files, table, gap)
     whole = [
         recording for recording in data.recordings if not (data.held_out_by_default and recording.role == "validation")
     ]
@@ -68,15 +68,13 @@ def _gap(recording: Recording, gap: Gap, rows: tuple[int, int]) -> OddTime:
 
 def _gap_of_joined(files: JoinedFiles, table: Table, gap: Gap) -> OddTime:
     """``gap.after`` is a sample of ``table``; the rows to write are of the first file."""
-    start, stop = files.rows
-    last, next_one = np.searchsorted(files.time, gap.begin, side="right"), np.searchsorted(files.time, gap.end)
-    place = table.path.name if table.lines is None else f"{table.path.name}, line {table.lines[gap.after]}"
+    lost = int(np.searchsorted(files.time, gap.begin, side="right")), int(np.searchsorted(files.time, gap.end))
+    where = f"sample {gap.after} (the first is 0)" if table.lines is None else f"line {table.lines[gap.after]}"
     columns = ", ".join(f'"{column}"' for column in table.columns if column != files.clock)
     return OddTime(
-        f'[[experiment]] "{files.recording.name}": {place}: {gap}; what it has ({columns}) is missing there: outputs are left out of the '
-        "comparison, inputs take their last value",
-        "two experiments with the same files if an input is among these, one before the gap and one after it: "
-        f"rows = [{start}, {last}] and rows = [{next_one}, {stop}]",
+        f'[[experiment]] "{files.recording.name}": {table.path.name}, {where}: {gap.in_brief}; what it has ({columns}) is missing there: '
+        "outputs are left out of the comparison, inputs take their last value",
+        f"{pieces_around(lost, files.rows)}, if an input is among these",
     )
 
 

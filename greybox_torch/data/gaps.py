@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from greybox_torch.data.checks import FEWEST_SAMPLES
+
 SAMPLES_LOST = 5
 """Samples that may be missing one after the other before that is a gap: a lost message or two changes nothing."""
 
@@ -33,17 +35,26 @@ class Gap:
         return self.end - self.begin
 
     def __str__(self) -> str:
-        others = f", the longest of {self.count} gaps" if self.count > 1 else ""
+        return f"{self._when} (after sample {self.after}, the first is 0; usual step {self.step:.4g} s){self._others}"
+
+    @property
+    def in_brief(self) -> str:
+        """For where the place in the file is told already."""
+        return f"{self._when}{self._others}"
+
+    @property
+    def _when(self) -> str:
         begin, end = self.begin - self.start, self.end - self.start
-        return (
-            f"gap in the time stamps: no sample for {self.seconds:.4g} s, from {begin:.6g} to {end:.6g} s after the start (after sample "
-            f"{self.after}, the first is 0; usual step {self.step:.4g} s){others}"
-        )
+        return f"gap in the time stamps: no sample for {self.seconds:.4g} s, from {begin:.6g} to {end:.6g} s after the start"
+
+    @property
+    def _others(self) -> str:
+        return f", the longest of {self.count} gaps" if self.count > 1 else ""
 
 
 def longest_gap(time: NDArray[np.float64]) -> Gap | None:
     """The longest gap of increasing time stamps (N,), in s; None where there is none, or where long steps are the rule."""
-    gaps = _gaps(time)
+    gaps = gap_steps(time)
     if not gaps.any():
         return None
     steps = np.diff(time)
@@ -53,12 +64,12 @@ def longest_gap(time: NDArray[np.float64]) -> Gap | None:
 
 def without_gaps(time: NDArray[np.float64]) -> NDArray[np.float64]:
     """The steps (K,) of time stamps that are not gaps."""
-    return np.diff(time)[~_gaps(time)]
+    return np.diff(time)[~gap_steps(time)]
 
 
 def in_gaps(times: NDArray[np.float64], stamps: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which of other times (N,) lie in gaps of increasing stamps (K,); a time that is a stamp lies in none."""
-    gaps = _gaps(stamps)
+    gaps = gap_steps(stamps)
     if not gaps.any():
         return np.zeros(len(times), dtype=bool)
     before = np.searchsorted(stamps, times, side="right") - 1
@@ -67,7 +78,16 @@ def in_gaps(times: NDArray[np.float64], stamps: NDArray[np.float64]) -> NDArray[
     return inside & gaps[k] & (stamps[k] != times)
 
 
-def _gaps(time: NDArray[np.float64]) -> NDArray[np.bool_]:
+def pieces_around(lost: tuple[int, int], rows: tuple[int, int]) -> str:
+    """What to write on a card for an experiment with the rows [start, stop) to leave out the lost ones [first, end)."""
+    around = ((rows[0], lost[0]), (lost[1], rows[1]))
+    pieces = [f"rows = [{start}, {stop}]" for start, stop in around if stop - start >= FEWEST_SAMPLES]
+    if len(pieces) == 2:
+        return "two experiments in place of this one: " + " and ".join(pieces)
+    return pieces[0] if pieces else "a file without gaps"
+
+
+def gap_steps(time: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which steps (N - 1,) of increasing time stamps are gaps: none where long steps are the rule."""
     steps = np.diff(time)
     long = steps > (SAMPLES_LOST + 1.5) * np.median(steps) if len(steps) else np.zeros(0, dtype=bool)

@@ -48,10 +48,11 @@ def check_no_channel_is_empty(recordings: Sequence[Recording], path: Path | None
             if np.isnan(values).all():
                 others = [r for r in recordings if not np.isnan(r.signals[channel]).all()]
                 advice = f"; {left_out(channel)}" if others and path is not None else ""
-                of = "" if recording.source is None else f" in {recording.source}"
+                # rows of the first file, which need not be the one that has the column
+                of = "" if recording.source is None else f" of {recording.source}"
                 raise UserError(
                     f'{_of(recording, path)}, channel "{channel}": all {len(values)} samples are '
-                    f"missing (NaN){of}, rows {list(recording.rows)}; expected numbers{advice}"
+                    f"missing (NaN), rows {list(recording.rows)}{of}; expected numbers{advice}"
                 )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from os import PathLike
 from pathlib import Path
@@ -17,6 +18,7 @@ from greybox_torch.data.checks import check_finite, check_length, check_time
 from greybox_torch.data.dataset import DataSet
 from greybox_torch.data.expression import Expression
 from greybox_torch.data.gaps import longest_gap, without_gaps
+from greybox_torch.data.missing import where_missing
 from greybox_torch.data.processing import EVEN, at_times, decimated, derivative, even_grid, unevenness
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.recording import Channel, Recording
@@ -68,7 +70,13 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
         name: _signal(f'{place}, channel "{name}"', card.channels[name], formula, source, start, stop)
         for name, formula in formulas.items()
     }
-    done = _processed(place, card, time, sample_time, signals)
+    recorded = dict(signals)
+
+    def missing(name: str, at: float) -> str:
+        near = int(np.searchsorted(time, at))
+        return where_missing(source, clock, formulas[name], recorded[name], (start, stop), near)
+
+    done = _processed(place, card, time, sample_time, signals, missing)
     check_length(len(done.time), place)
     return Recording(
         name=experiment.name,
@@ -173,9 +181,14 @@ class _Processed:
 
 
 def _processed(
-    place: str, card: Card, time: NDArray[np.float64], sample_time: float, signals: dict[str, NDArray[np.float64]]
+    place: str,
+    card: Card,
+    time: NDArray[np.float64],
+    sample_time: float,
+    signals: dict[str, NDArray[np.float64]],
+    missing: Callable[[str, float], str],
 ) -> _Processed:
-    """Resampled, differentiated and decimated, as far as the card asks for it."""
+    """Resampled, differentiated and decimated, as far as the card asks for it. `missing` says where a channel's sample is missing."""
     done = _Processed(time, sample_time, signals)
     jitter = 0.0 if card.time is None else unevenness(time)
     if jitter > EVEN:
@@ -203,7 +216,11 @@ def _processed(
         )
     for name, cutoff in rates.items():
         done.signals[name] = derivative(
-            done.signals[name], done.sample_time, cutoff, f'{place}, channel "{name}", derivative'
+            done.signals[name],
+            done.sample_time,
+            cutoff,
+            f'{place}, channel "{name}", derivative',
+            lambda sample, name=name: missing(name, done.time[sample]),
         )
         done.notes.append(f"{name} is the rate of change of the recorded samples behind a low pass at {cutoff:g} Hz")
     if card.decimate is not None:

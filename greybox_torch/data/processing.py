@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -46,11 +47,17 @@ def at_times(times: Samples, stamps: Samples, values: Samples) -> Samples:
     return np.where(stamps[exact] == times, values[exact], found)
 
 
-def derivative(values: Samples, step: float, cutoff: float, place: str) -> Samples:
+def _missing(sample: int) -> str:
+    return f"sample {sample} (the first is 0) is missing; expected no gap where a derivative is asked for"
+
+
+def derivative(
+    values: Samples, step: float, cutoff: float, place: str, missing_at: Callable[[int], str] = _missing
+) -> Samples:
     """The rate of change of even samples, per second: central differences behind a low pass without delay.
 
     The filter is a Butterworth of second order at `cutoff` Hz, run forward and backward over the samples and their odd reflection at the
-    ends.
+    ends. `missing_at` says of a missing sample where it is.
 
     Raises UserError where a sample is missing, the recording is too short, or the cut-off lies above half the sampling rate or near zero.
     """
@@ -62,9 +69,7 @@ def derivative(values: Samples, step: float, cutoff: float, place: str) -> Sampl
         )
     missing = np.flatnonzero(np.isnan(values))
     if missing.size:
-        raise UserError(
-            f"{place}: sample {missing[0]} (the first is 0) is missing; expected no gap where a derivative is asked for"
-        )
+        raise UserError(f"{place}: {missing_at(int(missing[0]))}")
     if not cutoff > _LOWEST_CUTOFF / step:
         raise UserError(
             f"{place}: a cut-off of {cutoff:g} Hz is too far below the sampling rate for numbers of 16 digits; expected more than "

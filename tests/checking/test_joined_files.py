@@ -10,6 +10,8 @@ import pytest
 from greybox_torch.api.data_warnings import data_warnings
 from greybox_torch.checking.joined_files import joined_files
 from greybox_torch.data import load_dataset
+from greybox_torch.data.readers import read_table
+from greybox_torch.errors import UserError
 
 CARD = """time = "t"
 [channels]
@@ -59,7 +61,9 @@ def test_a_gap(card: Path) -> None:
         in gap
     )
     assert (
-        "(after sample 99, the first is 0; usual step 10 s)" in gap and 'what it has ("y", "z") is missing there' in gap
+        "1200 s after the start; what it has" in gap
+        and 'what it has ("y", "z") is missing there' in gap
+        and len(gap) < 400
     )
     assert "rows = [0, 248] and rows = [300, 1000]" in gap
     (run, _) = load_dataset(card).recordings
@@ -69,9 +73,64 @@ def test_a_gap(card: Path) -> None:
 def test_a_gap_in_the_part_that_is_held_out(card: Path) -> None:
     write(card.parent / "encoder.csv", "t,y,z", 10, dict.fromkeys(range(350, 370)))
     (gap,) = told(card)
-    assert (
-        '"run (held out)": encoder.csv, line 351: ' in gap
-        and "from 490 to 700 s after the start (after sample 349" in gap
+    assert '"run (held out)": encoder.csv, line 351: ' in gap and "from 490 to 700 s after the start; " in gap
+
+
+def missing(card: Path) -> list[int]:
+    return [int(np.isnan(run.signals["y"]).sum()) for run in load_dataset(card).recordings]
+
+
+def test_no_gap_where_none_is_in_the_data(card: Path) -> None:
+    """Long steps are the rule in the whole file, though not in the part that is not held out."""
+    kept = [0, 1, 2, 3, 360, 399]
+    write(card.parent / "encoder.csv", "t,y,z", 10, {k: None for k in range(400) if k not in kept})
+    assert missing(card) == [0, 2] and told(card) == []
+
+
+def test_gaps_that_would_be_the_rule_in_the_rows_alone(card: Path) -> None:
+    write(card.parent / "encoder.csv", "t,y,z", 10, dict.fromkeys([*range(50, 57), *range(65, 72)]))
+    card.write_text(card.read_text() + "rows = [100, 220]\n")
+    assert missing(card) == [39, 0]
+    (gap,) = told(card)
+    assert "line 51: " in gap and "no sample for 80 s" in gap and "the longest of 2 gaps" in gap
+    assert "rows = [100, 123] and rows = [143, 220]" in gap
+
+
+def test_a_gap_over_the_split_is_told_once(card: Path) -> None:
+    write(card.parent / "encoder.csv", "t,y,z", 10, dict.fromkeys(range(290, 310)))
+    assert missing(card) == [27, 27]
+    (gap,) = told(card)
+    assert '"run": encoder.csv, line 291: ' in gap and "from 2890 to 3100 s after the start" in gap
+
+
+def test_a_gap_that_the_rows_begin_in(card: Path) -> None:
+    write(card.parent / "encoder.csv", "t,y,z", 10, dict.fromkeys(range(100, 120)))
+    card.write_text(card.read_text() + "rows = [275, 800]\n")
+    (gap,) = told(card)
+    assert "no sample for 100 s, from 0 to 100 s after the start" in gap and gap.endswith(
+        "expected rows = [300, 800], if an input is among these"
+    )
+
+
+def test_every_file_is_read_again_once(card: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    data, read = load_dataset(card), []
+    monkeypatch.setattr(
+        "greybox_torch.checking.joined_files.read_table", lambda *of: (read_table(*of), read.append(of[0].name))[0]
+    )
+    data_warnings(data, None)
+    assert sorted(read) == ["drive.csv", "encoder.csv"]
+
+
+def test_a_gap_and_a_derivative(card: Path) -> None:
+    write(card.parent / "encoder.csv", "t,y,z", 10, dict.fromkeys(range(100, 120)))
+    card.write_text(
+        card.read_text().replace('y = { column = "y", unit = "m"', 'y = { column = "y", unit = "m", derivative = 0.01')
+    )
+    with pytest.raises(UserError) as error:
+        load_dataset(card)
+    assert str(error.value).endswith(
+        f'channel "y", derivative: {card.parent / "encoder.csv"}, line 101, column "y", sample 99 (the first is 0) is followed by a gap; '
+        "expected no gap where a derivative is asked for: two experiments in place of this one: rows = [0, 248] and rows = [300, 1000]"
     )
 
 

@@ -25,7 +25,7 @@ file = "run.csv"
 
 def told(values: np.ndarray) -> list[str]:
     run = Recording.from_arrays("run", {"a": values}, sample_time=0.01)
-    return [str(one) for one in lone_samples(DataSet([run], held_out_by_default=False))]
+    return [str(one) for one in lone_samples(DataSet([run], held_out_by_default=False), {})]
 
 
 def changed(values: np.ndarray, at: list[int], value: float) -> np.ndarray:
@@ -93,6 +93,6 @@ def test_files_that_were_replaced_meanwhile(tmp_path: Path, change: str) -> None
         file.write_text("a\n" + "1.0\n" * 20)
     else:
         file.unlink()
-    (one,) = lone_samples(data)
+    (one,) = lone_samples(data, {})
     assert one.place == "sample 150 (the first is 0)"
     assert one.value == pytest.approx(-9.999)

@@ -52,11 +52,11 @@ def test_rows_before_and_after_the_gap() -> None:
     time = np.delete(EVEN, range(100, 140))
     both = [recorded("Steps", time), replace(recorded("Again", EVEN), role="validation")]
     for odd in (
-        *odd_time_stamps(DataSet(both)),
-        *odd_time_stamps(DataSet(both[:1])),
+        *odd_time_stamps(DataSet(both), {}),
+        *odd_time_stamps(DataSet(both[:1]), {}),
     ):  # the latter holds out its last quarter
         _before_and_after(odd)
-    (late,) = odd_time_stamps(DataSet([recorded("Steps", np.delete(EVEN, range(330, 370)))]))
+    (late,) = odd_time_stamps(DataSet([recorded("Steps", np.delete(EVEN, range(330, 370)))]), {})
     assert "rows = [0, 330] and rows = [330, 360]" in late.write
 
 
@@ -66,9 +66,9 @@ def _before_and_after(odd: OddTime) -> None:
 
 
 def test_seconds_beside_milliseconds() -> None:
-    (odd,) = odd_time_stamps(DataSet([recorded("Steps", EVEN), recorded("Sweep", 1000.0 * EVEN)]))
+    (odd,) = odd_time_stamps(DataSet([recorded("Steps", EVEN), recorded("Sweep", 1000.0 * EVEN)]), {})
     assert '"Sweep": its sample time is 10 s, 1000 times that of "Steps" (0.01 s)' in odd.found
-    assert list(odd_time_stamps(DataSet([recorded("Steps", EVEN), recorded("Sweep", 100.0 * EVEN)]))) == []
+    assert list(odd_time_stamps(DataSet([recorded("Steps", EVEN), recorded("Sweep", 100.0 * EVEN)]), {})) == []
 
 
 def test_check_inspect_and_simulate_warn(motor_folder: Callable[..., Path]) -> None:
@@ -94,5 +94,5 @@ def test_check_inspect_and_simulate_warn(motor_folder: Callable[..., Path]) -> N
 
 
 def test_a_gap_between_dates_is_told_in_seconds_from_the_start() -> None:
-    (odd,) = odd_time_stamps(DataSet([recorded("Steps", 1.7726e9 + np.delete(10.0 * EVEN, range(100, 140)))]))
+    (odd,) = odd_time_stamps(DataSet([recorded("Steps", 1.7726e9 + np.delete(10.0 * EVEN, range(100, 140)))]), {})
     assert "no sample for 4.1 s, from 9.9 to 14 s after the start" in odd.found

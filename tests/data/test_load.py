@@ -133,7 +133,9 @@ def test_infinite_value(bench: Path, edit: Edit) -> None:
 
 def test_all_missing_channel(bench: Path) -> None:
     np.savez(bench / "sweep.npz", u_val=np.arange(20.0), y=np.full(20, np.nan))
-    with pytest.raises(UserError, match=r'"Sweep", channel "speed": all 20 samples are missing \(NaN\) in .*sweep.npz'):
+    with pytest.raises(
+        UserError, match=r'"Sweep", channel "speed": all 20 samples are missing \(NaN\), rows \[0, 20\] of .*sweep.npz'
+    ):
         load_dataset(bench / "dataset.toml")
 
 

@@ -62,18 +62,28 @@ def _share(row: list[str], delimiter: str) -> float:
 
 
 def _names(rows: list[list[str]], first: int, width: int) -> list[str]:
-    """The line above the samples with a different name for every cell; of two such lines the upper where the lower has the units."""
+    """The line above the samples with a different name for every cell; of two such lines the upper, since the lower has units, types or
+    channels of the logger, but the lower beneath a remark on the recording.
+    """
     above = rows[max(0, first - 2) : first]
     if above and uncommented(above[-1]) != above[-1]:
         above = above[-1:]  # of comments, the last
-    found = []
+    found, remark = [], False
     for row in (names for names in map(uncommented, above) if _is_heading(names, width)):
         names = [name for name in row[:width] if name]
         if len(set(names)) == len(names):
+            remark = remark or (not found and _is_remark(row, width))
             found.append(names)
     if not found:
         return [f"#{k}" for k in range(1, width + 1)]
-    return found[0] if len(found) == 1 or _are_units(found[1], len(found[0])) else found[1]
+    return found[1] if len(found) == 2 and remark and not _are_units(found[1], len(found[0])) else found[0]
+
+
+def _is_remark(row: list[str], width: int) -> bool:
+    """Whether a line may be about the recording, as "Bench 7; operator: K" is: a colon, or too few cells, which a first one without a
+    name does not mean.
+    """
+    return any(":" in cell for cell in row) or not any(row[width - 1 : width])
 
 
 def _are_units(cells: list[str], names: int) -> bool:
