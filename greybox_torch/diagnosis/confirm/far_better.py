@@ -15,7 +15,6 @@ from greybox_torch.diagnosis.confirm.take_back import held_out_gains, take_back_
 from greybox_torch.diagnosis.confirm.too_little import removes_too_little
 from greybox_torch.diagnosis.hypothesis.final import finish
 from greybox_torch.diagnosis.select.backward import drop_superfluous
-from greybox_torch.diagnosis.select.sparser_curve import with_all_bumps
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import result_of
@@ -28,10 +27,7 @@ Standing = tuple[SearchState, Mapping[str, Gain], Judgement]
 def far_better(
     study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], judged: Judgement
 ) -> Standing | None:
-    """A free curve with the bumps that were left out of it, names in its place, or what is left without the weakest of several effects, where
-    free runs leave far less with it.
-
-    What windows do not ask for may move a free run far. Seen: a rail with a dip and a bump, 20 % left with 11 of 28 bumps, 0.4 % with all.
+    """Names in the place of a free curve, or what is left without the weakest of several effects, where free runs leave far less with it.
 
     None where neither does, or where too little is left to ask.
     """
@@ -39,10 +35,6 @@ def far_better(
     if others is None:
         return None
     left = judged.left(True)[0]
-    whole = with_all_bumps(study, state) if state.has_curve and left > settings.left_to_doubt_a_curve else None
-    found = None if whole is None else _standing(study, whole, state, others, judged)
-    if found is not None:
-        return found
     if state.has_curve and state.named is not None and left > settings.left_to_doubt_a_curve:
         names = replace(state.named, plain=state.plain, named=None)
         found = _standing(study, result_of(drop_superfluous(study, names)), state, others, judged)

@@ -6,13 +6,15 @@ from collections.abc import Sequence
 
 from greybox_torch.diagnosis.hypothesis.significance import window_significance
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, sound
+from greybox_torch.diagnosis.select.remaining import completes
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
 
 
 def tellable(study: Study, ranked: Sequence[RankedCandidate]) -> list[RankedCandidate]:
-    """Those of ``ranked`` whose values say something of the machine, and whose law goes no farther with values that say nothing.
+    """Those of ``ranked`` whose values say something of the machine, but for laws that complete the model with values that say nothing.
 
+    Where neither do, more is missing, and which values go farther may change with that.
     Seen: a notch of a pivot, told as a ripple of six waves that repeats 2.1 times in the travel (0.95); six that repeat 1.3 times, and so
     draw any curve, left noise alone where that left 1.3 times as much.
     """
@@ -22,8 +24,9 @@ def tellable(study: Study, ranked: Sequence[RankedCandidate]) -> list[RankedCand
 
 
 def _refuted(law: RankedCandidate, other: RankedCandidate, settings: DiagnosisSettings) -> bool:
-    """Whether ``other`` is the same law with values that go farther than a tie, beyond chance."""
+    """Whether ``other`` is the same law with values that leave noise alone, and go farther than a tie, beyond chance."""
     same = law.candidate.attachment.named == other.candidate.attachment.named
     if not same or other.size > law.size or other.fitted.score > law.fitted.score - settings.score_tie:
         return False
-    return window_significance(law.fitted, other.fitted, settings) > settings.least_significance
+    farther = window_significance(law.fitted, other.fitted, settings) > settings.least_significance
+    return farther and completes(other.fitted, settings)

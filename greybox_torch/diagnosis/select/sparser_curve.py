@@ -12,7 +12,6 @@ from dataclasses import replace
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.refit.curve import redrawn
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import Stage
@@ -42,19 +41,6 @@ def with_sparser_curve(study: Study, state: SearchState) -> Stage[SearchState]:
     state = state.at(fitted)
     yield state
     return state
-
-
-def with_all_bumps(study: Study, state: SearchState) -> SearchState | None:
-    """The state with its curve with the bumps that were left out, refitted; None where none was, or where it does not simulate."""
-    curve = next((e for e in state.effects if isinstance(e.mechanism, Unknown) and e.mechanism.left_out), None)
-    if curve is None:
-        return None
-    assert isinstance(curve.mechanism, Unknown)
-    study.working_on("asking for what was left out of the curve")
-    whole, values = redrawn(state.current, curve, study.surroundings[curve.port], curve.mechanism.knots)
-    effects = tuple(whole if e is curve else e for e in state.effects)
-    fitted = fit(study, effects, [values], state.current.fits[0], limits=study.budget.window_iterations)
-    return None if fitted is None else replace(state.at(fitted), without=state.without)
 
 
 def _idle(fitted: Hypothesis, curve: Attachment, least: float) -> tuple[int, ...]:
