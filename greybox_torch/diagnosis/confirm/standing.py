@@ -130,9 +130,10 @@ def _too_small(
 
 def _most_is_left(study: Study, state: SearchState, others: HeldOut | None) -> bool:
     """Whether all effects together leave most of the mismatch, far above the noise."""
+    if not far_above_noise(state.current, study.settings):
+        return False
     plain, full = (h.fits if others is None else others.fits(h) for h in (state.plain, state.current))
-    far = far_above_noise(state.current, study.settings)
-    return far and 1.0 - size(plain, plain, full, study.settings) > study.settings.most_of_the_mismatch
+    return 1.0 - size(plain, plain, full, study.settings) > study.settings.most_of_the_mismatch
 
 
 def _apart(state: SearchState, own: Attachment) -> bool:

@@ -18,9 +18,9 @@ def tellable(study: Study, ranked: Sequence[RankedCandidate]) -> list[RankedCand
     Seen: a notch of a pivot, told as a ripple of six waves that repeats 2.1 times in the travel (0.95); six that repeat 1.3 times, and so
     draw any curve, left noise alone where that left 1.3 times as much.
     """
-    meaningful = [r for r in ranked if sound(study, r)]
-    rest = [r for r in ranked if all(r is not one for one in meaningful)]
-    return [r for r in meaningful if r.unknown or not any(_refuted(r, other, study.settings) for other in rest)]
+    told = [(r, sound(study, r)) for r in ranked]
+    rest = [r for r, says in told if not says]
+    return [r for r, says in told if says and (r.unknown or not any(_refuted(r, o, study.settings) for o in rest))]
 
 
 def _refuted(law: RankedCandidate, other: RankedCandidate, settings: DiagnosisSettings) -> bool:
