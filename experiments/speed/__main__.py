@@ -1,6 +1,6 @@
 """Measure the engine beside other tools: `make bench`, or
 
-python -m experiments.speed --out results/bench [--only free_run,growth] [--quick] [--draws 40] [--against COMMIT]
+python -m experiments.speed --out results/bench [--only free_run,growth] [--quick] [--draws 40] [--against COMMIT] [--cases "demo;d01"]
 """
 
 from __future__ import annotations
@@ -30,7 +30,9 @@ def main() -> int:
         print(f"--only: no row is called {', '.join(unknown)}; expected some of {','.join(KEYS)}", file=sys.stderr)
         return 2
     console, aside = Console(width=None if sys.stdout.isatty() else 150), Console(stderr=True, highlight=False)
-    settings, about, rows = Settings(arguments.quick, arguments.draws, arguments.seed, arguments.against), header(), []
+    cases = tuple(name.strip() for name in arguments.cases.split(";") if name.strip())
+    settings = Settings(arguments.quick, arguments.draws, arguments.seed, arguments.against, cases)
+    about, rows = header(), []
     if settings.quick:
         about = {"quick": "everything shrunk to see that it works; the numbers mean nothing"} | about
     print_header(console, about)
@@ -56,6 +58,9 @@ def _parsed() -> argparse.Namespace:
     parser.add_argument("--draws", type=int, default=40, help="start values of the robustness row")
     parser.add_argument("--seed", type=int, default=1, help="of those start values")
     parser.add_argument("--against", default="", metavar="COMMIT", help="a commit that diagnoses are measured beside")
+    parser.add_argument(
+        "--cases", default="", help="those that are diagnosed, by name and separated by semicolons (all)"
+    )
     return parser.parse_args()
 
 

@@ -40,13 +40,14 @@ ALL_FREE_CARD = CHECKOUT / "experiments" / "recordings" / "robot_arm_all_free.to
 @dataclass(frozen=True)
 class Settings:
     """``quick`` shrinks every measurement to what shows that it works; ``draws`` is the number of start values of the robustness row;
-    ``against``, a commit that diagnoses are measured beside (none where empty).
+    ``against``, a commit that diagnoses are measured beside (none where empty); ``cases``, the names of those diagnosed (all where empty).
     """
 
     quick: bool = False
     draws: int = 40
     seed: int = 1
     against: str = ""
+    cases: tuple[str, ...] = ()
 
     def repeats(self, count: int) -> int:
         return 5 if self.quick else max(count, 5)

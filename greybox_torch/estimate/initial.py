@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from greybox_torch.estimate.levenberg_marquardt import Settings, minimise
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import fit_windows
 from greybox_torch.simulation.passes import Pass
+from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import Windows
 
@@ -52,15 +54,15 @@ def estimate_initial(
     free = problem.initial_free | tried
     if not free.any():
         return problem
-    rows = []
-    for e in range(len(problem.records.first)):
+
+    def start_of(e: int) -> np.ndarray:
         part = beginning(replace(problem, initial_free=free), e, fraction)
         best, cost = _best_start(part, trials, simulator)
         place = (places or {}).get(problem.records.names[e])
         there = None if place is None else _begun_at(replace(part, initial=best[None]), place, simulator)
-        if there is not None:
-            best = there[0] if there[1] < np.exp(2.0 * TELLS / part.samples) * cost else best
-        rows.append(best)
+        return best if there is None or there[1] >= np.exp(2.0 * TELLS / part.samples) * cost else there[0]
+
+    rows = side_by_side(partial(start_of, e) for e in range(len(problem.records.first)))
     return problem.with_values(problem.values, np.array(rows))
 
 

@@ -21,7 +21,7 @@ from greybox_torch.estimate.rival import Rival
 from greybox_torch.estimate.rough_starts import rough_starts
 from greybox_torch.estimate.window_step import Hold, WindowModel, held, stepped
 from greybox_torch.simulation.passes import Pass, Restarts
-from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.records import Records, once
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import Windows, cut
 
@@ -245,6 +245,6 @@ def evaluate(
 
 def _weighted_samples(records: Records, windows: Windows) -> int:
     """How many samples the windows compare, missing ones not counted."""
-    known = np.concatenate([[0], np.cumsum((~np.isnan(records.y)).sum(axis=0))])
+    known = once(records, "known", lambda: np.concatenate([[0], np.cumsum((~np.isnan(records.y)).sum(axis=0))]))
     ends = np.minimum(windows.start + windows.steps, windows.last + 1)
     return int((known[ends] - known[windows.start]).sum())

@@ -27,22 +27,24 @@ def idle_inputs(model: GreyBoxModel) -> frozenset[str]:
     told = _Telling(u)
     model.derivative(x, told, p, no_forces(model))
     model.outputs_with(x, told, p, no_forces(model))
-    return frozenset(u) - told.read
+    return frozenset(u) - told.names_read
 
 
 class _Telling(Signals):
     """Inputs that remember which of them were read."""
 
-    __slots__ = ("read",)
+    names_read: set[str]
 
     def __init__(self, values: Mapping[str, Any]) -> None:
         super().__init__("input", values)
-        self.read: set[str] = set()
+        for name in values:
+            vars(self).pop(name, None)  # so that reading it comes to __getitem__
+        vars(self)["names_read"] = set()
 
     def __getitem__(self, name: str) -> Any:
-        self.read.add(name)
+        self.names_read.add(name)
         return super().__getitem__(name)
 
     def replaced(self, **values: Any) -> Signals:
-        self.read.update(self)
+        self.names_read.update(self)
         return super().replaced(**values)

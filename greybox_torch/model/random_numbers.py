@@ -41,6 +41,11 @@ class _Watch(TorchDispatchMode):
         self._files = files
         self.found: Draw | None = None
 
+    @classmethod
+    def _should_skip_dynamo(cls) -> bool:
+        """Nothing is compiled here: to be told to skip it, torch would import its compiler, which takes a second."""
+        return False
+
     def __torch_dispatch__(self, func: Any, types: Any, args: Any = (), kwargs: Any = None) -> Any:
         given = kwargs or {}
         if self.found is not None or torch.Tag.nondeterministic_seeded not in func.tags:

@@ -42,8 +42,11 @@ class Chain:
     order: np.ndarray
 
     @cached_property
-    def links(self) -> list[tuple[np.ndarray, np.ndarray]]:
+    def links(self) -> list[tuple[np.ndarray, np.ndarray]] | list[tuple[slice, slice]]:
         """By position, indices of the windows there and of those that follow them, where one follows."""
+        if len(self.order) == 1:  # slices: what they pick out is not copied, and most runs are of one experiment
+            count = self.order.shape[1]
+            return [(slice(k, k + 1), slice(k + 1, k + 2)) for k in range(count - 1)]
         pairs = zip(self.order.T[:-1], self.order.T[1:], strict=True)
         return [(now[following >= 0], following[following >= 0]) for now, following in pairs]
 

@@ -14,7 +14,7 @@ from greybox_torch.codegen.emit import emit
 from greybox_torch.codegen.lower import Equations
 from greybox_torch.simulation.packed_normals import Layout, PackedNormals
 from greybox_torch.simulation.passes import Pass, Probes, Run
-from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.records import Records, once
 from greybox_torch.simulation.side_by_side import threads
 
 _LONG, _POINTER = ctypes.c_long, ctypes.c_void_p
@@ -122,7 +122,7 @@ class NativeStepper:
         sizes = (groups, windows.steps, substeps, int(records.hold == "foh"), len(records.dt), n_d, threads)
         sparse = (layout.first, layout.close, layout.band)
         restarts = (1, 0) if asked.restarts is None else (asked.restarts.every, asked.restarts.starts.shape[1])
-        pointers = [None if a is None else a.ctypes.data for a in packed.values()]
+        pointers = [None if a is None else _address(a) for a in packed.values()]
         self.loaded.run(ctypes.byref(_Job(*sizes, *sparse, *restarts, *pointers)))
         dy, normal = packed["dy"], packed["normal"]
         return Run(
@@ -155,18 +155,24 @@ def _threads(groups: int, work: int) -> int:
 
 def _signals(records: Records, real: type) -> dict[str, np.ndarray]:
     """The records' signals as the machine code reads them: copied once, as records is simulated many times."""
-    kept = records.__dict__.setdefault("_signals", {})
-    if real not in kept:
+
+    def copied() -> dict[str, np.ndarray]:
         u = records.u if len(records.u) else np.zeros((1, len(records.dt)))
-        kept[real] = {"u": _aligned(u, real), "dt": _aligned(records.dt, real), "y": _aligned(records.y, real)}
-    return kept[real]
+        return {"u": _aligned(u, real), "dt": _aligned(records.dt, real), "y": _aligned(records.y, real)}
+
+    return once(records, ("signals", real), copied)
+
+
+def _address(array: np.ndarray) -> int:
+    """Where its data begin; ``array.ctypes`` makes three objects to tell it."""
+    return array.__array_interface__["data"][0]
 
 
 def _empty(shape: tuple[int, ...], real: type) -> np.ndarray:
     """An uninitialised array whose data begin on a cache line, as vector loads need."""
     size = math.prod(shape) * np.dtype(real).itemsize
     raw = np.empty(size + 64, dtype=np.uint8)
-    offset = -raw.ctypes.data % 64
+    offset = -_address(raw) % 64
     return raw[offset : offset + size].view(real).reshape(shape)
 
 
@@ -179,9 +185,15 @@ def _zeros(shape: tuple[int, ...], real: type) -> np.ndarray:
 def _mirrored(lower: np.ndarray) -> np.ndarray:
     """Symmetric matrices (W, d, d) from their lower triangles."""
     result = np.ascontiguousarray(lower)
-    above = np.triu_indices(result.shape[1], 1)
-    result[:, above[0], above[1]] = result[:, above[1], above[0]]
+    rows, columns = _above_diagonal(result.shape[1])
+    result[:, rows, columns] = result[:, columns, rows]
     return result
+
+
+@lru_cache(maxsize=64)
+def _above_diagonal(size: int) -> tuple[np.ndarray, np.ndarray]:
+    """Rows and columns of the elements above the diagonal of a matrix (size, size)."""
+    return np.triu_indices(size, 1)
 
 
 def _aligned(values: np.ndarray, real: type) -> np.ndarray:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from greybox_torch.errors import UserError
 from greybox_torch.files import toml_key
 from greybox_torch.model import GreyBoxModel, Input, Output
 from greybox_torch.simulation.driven_inputs import check_controller
+
+Found = TypeVar("Found")
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,14 @@ class Records:
         return Records(
             self.u[:, index], self.y[:, index], self.dt[index], first, first + lengths - 1, tuple(names), self.hold
         )
+
+
+def once(records: Records, key: Hashable, make: Callable[[], Found]) -> Found:
+    """What ``make`` gives, made once for ``records``, whose samples never change: passes over them ask for it again and again."""
+    kept = vars(records).setdefault("_kept", {})
+    if key not in kept:
+        kept[key] = make()
+    return kept[key]
 
 
 def make_records(dataset: DataSet, model: GreyBoxModel, recordings: Sequence[Recording]) -> Records:

@@ -10,7 +10,7 @@ import pytest
 from experiments.speed.diagnosis.cases import ARM, DEMO, PENDULUM, cases, development_cases
 from experiments.speed.diagnosis.profiled import CARRYING, PURPOSES, purpose_of
 from experiments.speed.diagnosis.timed import Timed, checked_out, stood_from
-from experiments.speed.rows.diagnosis import _entry, _leading, _targets
+from experiments.speed.rows.diagnosis import _asked, _entry, _leading, _targets
 
 PACKAGE = Path(__file__).resolve().parents[2] / "greybox_torch"
 
@@ -46,6 +46,13 @@ def test_targets_count_what_did_not_end_as_missed() -> None:
     found = {t.text: t for t in _targets({"d01": 3.0, "d02": 8.0, ARM: 20.0}, names)}
     assert found["development cases, median"].measured == 8.0
     assert [found[text].met for text in ("development cases, slowest", ARM, PENDULUM)] == [False, True, False]
+
+
+def test_some_cases_are_asked_for_by_name() -> None:
+    assert list(_asked([DEMO])) == [DEMO]
+    assert _asked(()) == cases()
+    with pytest.raises(ValueError, match="--cases: no case is called dmo; expected some of demo"):
+        _asked(["dmo"])
 
 
 def test_a_case_is_told_with_what_took_longest_and_how_it_compares() -> None:

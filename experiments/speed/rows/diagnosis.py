@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
+from pathlib import Path
 from statistics import median
 from typing import Any
 
@@ -22,7 +23,7 @@ LEADS = 10.0
 def measure(settings: Settings, progress: Progress) -> Row:
     entries, details, changed = [], {}, []
     limit = 3.0 if settings.quick else None
-    chosen = dict(list(cases().items())[:1]) if settings.quick else cases()
+    chosen = dict(list(cases().items())[:1]) if settings.quick else _asked(settings.cases)
     with ExitStack() as stack:
         other = stack.enter_context(checked_out(settings.against)) if settings.against else None
         for name, card in chosen.items():
@@ -47,6 +48,19 @@ def measure(settings: Settings, progress: Progress) -> Row:
         ),
         details=details,
     )
+
+
+def _asked(names: Sequence[str]) -> dict[str, Path]:
+    """The cases of these names, all where there is none.
+
+    Raises:
+        ValueError: there is no such case.
+    """
+    every = cases()
+    unknown = [name for name in names if name not in every]
+    if unknown:
+        raise ValueError(f"--cases: no case is called {'; '.join(unknown)}; expected some of {'; '.join(every)}")
+    return {name: card for name, card in every.items() if not names or name in names}
 
 
 def _entry(name: str, found: Timed | None, beside: Timed | None = None) -> Entry:

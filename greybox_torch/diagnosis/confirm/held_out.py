@@ -23,6 +23,7 @@ from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, all_starts_free, make_problem, problem_for
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
+from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import Simulator
 
 
@@ -137,7 +138,8 @@ def held_out_fits(
     for length in longer:
         there = placed(short.problem, simulator, length, budget, shorter=short) or short
         fit = partial(fit_windows, there.problem, simulator, length, settings=budget.window_iterations)
-        ended = reduce(_window_by_window, (fit(shorter=there), fit(shorter=short), fit()))
+        begun = (partial(fit, shorter=there), partial(fit, shorter=short), fit)
+        ended = reduce(_window_by_window, side_by_side(begun))
         ended = _no_worse_than_free_runs(ended, started, simulator, length, budget)
         if ended is not None:
             found.append(ended)

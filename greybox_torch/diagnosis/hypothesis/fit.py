@@ -23,6 +23,7 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulation.records import once
 from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 from greybox_torch.simulation.windows import Windows, cut
@@ -153,7 +154,7 @@ def augmented(base: Problem, effects: Sequence[Attachment], surroundings: Mappin
 
 
 def _floor(base: Problem, settings: DiagnosisSettings) -> float:
-    spread = np.nanstd(base.records.y, axis=1) * base.weights
+    spread = once(base.records, "spread of each", lambda: np.nanstd(base.records.y, axis=1)) * base.weights
     return float(np.mean((settings.negligible_error * spread) ** 2)) + 1e-300
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit
+from greybox_torch.simulation.records import Records, once
 
 
 def reaches_noise(problem: Problem, fit: WindowFit, settings: DiagnosisSettings, times: float | None = None) -> bool:
@@ -74,10 +75,15 @@ def mean_squared_step(problem: Problem, settings: DiagnosisSettings) -> float:
 
 
 def _floor(problem: Problem, order: int) -> float:
+    records, weights = problem.records, problem.weights
+    return once(records, ("floor", order, weights.tobytes()), lambda: _measured_floor(records, weights, order))
+
+
+def _measured_floor(records: Records, weights: np.ndarray, order: int) -> float:
     factor = float((_binomial(order) ** 2).sum())
     squares, count = 0.0, 0
-    for e in range(len(problem.records.first)):
-        y = problem.records.y[:, problem.records.span(e)] * problem.weights[:, None]
+    for e in range(len(records.first)):
+        y = records.y[:, records.span(e)] * weights[:, None]
         rough = np.diff(y, order, axis=1)
         known = rough[~np.isnan(rough)]
         squares, count = squares + float((known**2).sum()), count + known.size

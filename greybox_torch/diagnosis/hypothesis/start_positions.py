@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit, fit_windows
+from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import Simulator
 
 FINER = (-0.6, -0.4, -0.2, 0.2, 0.4, 0.6)
@@ -92,8 +94,8 @@ def _best_of(
 ) -> np.ndarray:
     """Of start positions (E, k) tried, those at which each experiment fits best."""
     best, least = trials[0].copy(), np.full(len(trials[0]), np.inf)
-    for trial in trials:
-        found = _moved(fit, places, trial, experiments, simulator, length, budget)
+    moved = side_by_side(partial(_moved, fit, places, t, experiments, simulator, length, budget) for t in trials)
+    for trial, found in zip(trials, moved, strict=True):
         if found is not None:
             energies = np.bincount(experiments, weights=found.energies, minlength=len(trial))
             better = energies < least

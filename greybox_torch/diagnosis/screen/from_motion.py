@@ -12,6 +12,7 @@ Trans. Control Systems Technology 21(2), 2013, for simulated refits that begin w
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -30,6 +31,7 @@ from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Body
+from greybox_torch.simulation.side_by_side import side_by_side
 
 
 def candidates_from_motion(
@@ -62,7 +64,7 @@ def candidates_from_motion(
         best = _best_over_scales([[*tables[0][k], *tables[1][k]] for k in rows], study.surroundings)
         for identity, (scale, score) in best[: study.budget.from_motion]:
             leaders.setdefault(identity, (views.each[rows[scale]], score))
-    refined = (_refined(study, current, accepted, view, score) for view, score in leaders.values())
+    refined = side_by_side(partial(_refined, study, current, accepted, *leader) for leader in leaders.values())
     return [candidate for candidate in refined if candidate is not None]
 
 

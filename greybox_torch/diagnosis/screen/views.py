@@ -11,6 +11,7 @@ from greybox_torch.estimate.equation_error import EquationError
 from greybox_torch.estimate.motion_equations import MotionEquations
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.reconstruction import Motion, reconstructed
+from greybox_torch.simulation.side_by_side import side_by_side
 
 FACTORS = (1, 4, 16, 64)
 """Lengths of the stretches in units of the shortest, over which sensors show rates: short ones forgive nothing, long ones no trend."""
@@ -70,7 +71,7 @@ def views_of(problem: Problem, motion: Motion | str | None = None) -> Views | st
     forms = (False, True) if equations.invertible else (False,)
     made = [EquationError.of(equations, finest, scale, inverse) for inverse in forms for scale in scales]
     sound = [view for view in made if np.isfinite(view.linearised[0]).all()]
-    each = [settled for view in sound if (settled := view.settled()) is not None]
+    each = [view for view in side_by_side(view.settled for view in sound) if view is not None]
     if not each:
         return "the records are too short for what their noise leaves of the motion"
     return Views(motion, equations, tuple(each))

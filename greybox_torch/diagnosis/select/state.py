@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
+from greybox_torch.diagnosis.screen.screens import Screens
 from greybox_torch.mechanisms.attachment import Attachment
 
 
@@ -32,7 +33,7 @@ class SearchState:
     were found in the place of a free curve that goes farther. ``memory``: the model with a residual with memory alone, where that
     was tried in the place of all that was found, or what was left of it. ``found_before``: what a search with fewer experiments came to.
     ``made_up_for``: effects that others made up for, each with the hypothesis that it was last in. ``in_place_of``: the step that took the
-    free curve in whose place the names stand.
+    free curve in whose place the names stand. ``screens``: makes the screens.
     """
 
     plain: Hypothesis
@@ -44,6 +45,7 @@ class SearchState:
     found_before: Hypothesis | None = None
     made_up_for: tuple[tuple[Attachment, Hypothesis], ...] = ()
     in_place_of: SelectionStep | None = None
+    screens: Screens = field(default_factory=Screens)
 
     @property
     def memory_step(self) -> SelectionStep | None:
