@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from experiments.speed.diagnosis.cases import ARM, DEMO, PENDULUM, cases, development_cases
-from experiments.speed.diagnosis.profiled import CARRYING, PURPOSES, purpose_of
+from experiments.speed.diagnosis.profiled import CARRYING, PURPOSES, leave_out_installed, purpose_of
 from experiments.speed.diagnosis.timed import Timed, checked_out, stood_from
 from experiments.speed.rows.diagnosis import _asked, _entry, _leading, _targets
 
@@ -79,6 +79,14 @@ def test_a_finding_leads_from_when_nothing_else_took_its_place() -> None:
 def test_the_share_of_cases_that_lead_in_time_counts_what_failed() -> None:
     details = {"one": [{"leading": 3.0}], "two": [{"leading": 11.0}], "three": [None], "four": [{"leading": 10.0}]}
     assert _leading(details).measured == 50.0 and not _leading(details).met
+
+
+def test_the_installed_tree_does_not_stand_in_for_another(monkeypatch) -> None:
+    installed = type("Finder", (), {"__module__": "__editable___greybox_torch_0_1_0_finder"})
+    kept = [f for f in sys.meta_path if not getattr(f, "__module__", "").startswith("__editable__")]
+    monkeypatch.setattr(sys, "meta_path", [*kept, installed])
+    leave_out_installed()
+    assert sys.meta_path == kept and kept
 
 
 def test_the_demo_is_always_there_and_an_unknown_commit_is_said() -> None:
