@@ -129,6 +129,8 @@ COMMANDS = [
     (["train", "dataset.toml", "--signals", "speed;load"], "speed;load"),
     (["card"], "Missing argument"),
     (["card", "dataset.toml"], 'no reader for files ending in ".toml"'),
+    (["card", "."], ".: is a folder; expected a recording in it"),
+    (["card", "a.csv", "--out", "b.csv"], "--out b.csv: expected a file that ends in .toml"),
     (["card", "b.csv"], 'b.csv: no such file (did you mean "a.csv"?)'),
     (["diagnos", "dataset.toml"], "No such command"),
     (["inspect", "a\0b.toml"], "embedded null byte"),
