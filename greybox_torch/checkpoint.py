@@ -98,8 +98,9 @@ def load_checkpoint(path: str | PathLike[str]) -> Checkpoint:
     for half, other in ((tensors, card), (card, tensors)):
         if not _is_there(half):
             what = f"its other half {other} is there" if _is_there(other) else "nor is its other half"
-            hint = f"; {path} is a folder without results (model.json)" if _is_there(path) and path.is_dir() else ""
-            raise UserError(f"checkpoint {half}: no such file ({what}); expected {tensors.name} and {card.name}{hint}")
+            raise UserError(
+                f"checkpoint {half}: no such file ({what}); expected {tensors.name} and {card.name}{_instead(path)}"
+            )
     content = read_checkpoint_card(card)
     return Checkpoint(
         values=_values(tensors, card, content),
@@ -148,6 +149,17 @@ def _is_there(half: Path) -> bool:
         return half.exists()
     except (OSError, ValueError):
         return False
+
+
+def _instead(path: Path) -> str:
+    """What is at `path` in the place of a checkpoint, to end a message; "" for nothing."""
+    if not _is_there(path):
+        return ""
+    if path.is_dir():
+        return f"; {path} is a folder without results (model.json)"
+    if path.name != f"{IN_RESULTS}.json" and _is_there(path.with_name(f"{IN_RESULTS}.json")):
+        return f"; {path} is none, the folder {path.parent} has results: name the folder"
+    return ""
 
 
 def _found(path: Path) -> Path:

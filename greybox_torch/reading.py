@@ -21,6 +21,9 @@ MOST_TEXT = 64 * 2**20
 _OF_BACKSLASHES = ("Unescaped '\\'", "Invalid hex value")
 """What is said of a path such as C:\\data in quotes."""
 
+_EXPERIMENTS = "Cannot declare ('experiment',) twice"
+"""What is said of a second [experiment] of a card."""
+
 _KINDS = (
     (stat.S_ISFIFO, "is a pipe"),
     (stat.S_ISCHR, "is a device"),
@@ -98,6 +101,8 @@ def read_toml(path: Path, expected: str) -> dict[str, Any]:
     except ValueError as error:  # TOMLDecodeError, and Python's own limit on the digits of an integer
         backslash = any(words in str(error) for words in _OF_BACKSLASHES)
         hint = "; write paths with / in the place of \\" if backslash else ""
+        if str(error).startswith(_EXPERIMENTS):
+            hint = "; expected double brackets, [[experiment]], for every recording"
         raise UserError(f"{path}: not valid TOML: {error}{hint}") from None
 
 

@@ -114,3 +114,11 @@ def test_a_folder_without_one_is_said_to_be_without(tmp_path: Path) -> None:
     (tmp_path / "found" / "model.json").write_text("{}")
     with pytest.raises(UserError, match=r"model\.safetensors: no such file \(its other half .*model\.json is there"):
         load_checkpoint(tmp_path / "found")
+
+
+def test_another_file_of_the_results_is_answered_with_their_folder(tmp_path: Path) -> None:
+    """Seen: `greybox compare dataset.toml results/fit.json` missed a fit.safetensors, which there never was."""
+    save_checkpoint(tmp_path / "found" / "model", MOTOR)
+    (tmp_path / "found" / "fit.json").write_text("{}")
+    with pytest.raises(UserError, match=r"fit\.json is none, the folder .*found has results: name the folder$"):
+        load_checkpoint(tmp_path / "found" / "fit.json")

@@ -130,7 +130,10 @@ def card(
     if sample_time is not None and not 0.0 < sample_time < float("inf"):
         raise ArgumentError("sample_time", sample_time, "expected seconds, above 0")
     given, name = _model(model, place.parent)
-    return CardResult(draft_card(paths, place.parent, given, name, sample_time), place)
+    drafted = draft_card(paths, place.parent, given, name, sample_time)
+    if place.suffix != ".toml":
+        raise ArgumentError("path", str(place), "expected a file that ends in .toml", option="out")
+    return CardResult(drafted, place)
 
 
 def _paths(files: Any) -> list[Path]:

@@ -85,8 +85,7 @@ def export(
     Examples:
         ``export(found, to="c", data=data).save("motor_in_c")``
     """
-    if to not in KINDS:
-        raise ArgumentError("to", to, f"expected one of {', '.join(KINDS)}{did_you_mean(str(to), KINDS)}")
+    check_kind(to)
     given = check_model(model)
     if to in SNIPPETS:
         if step is not None:
@@ -100,6 +99,12 @@ def export(
         step = _needed(given, data) if step is None else step
     made = exported(given, name, step, hold)
     return ExportResult(given, to, made, dict(WRITERS[to](made)))
+
+
+def check_kind(to: str) -> None:
+    """Raises ArgumentError where a model cannot be exported ``to`` that."""
+    if to not in KINDS:
+        raise ArgumentError("to", to, f"expected one of {', '.join(KINDS)}{did_you_mean(str(to), KINDS)}")
 
 
 def _needed(model: GreyBoxModel, data: DataSet) -> float:

@@ -15,6 +15,7 @@ from greybox_torch.api.data_warnings import all_warnings
 from greybox_torch.api.result import HELD_OUT, Result
 from greybox_torch.data import DataSet
 from greybox_torch.data.data_warning import DataWarning
+from greybox_torch.errors import ArgumentError, Kind
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
 
@@ -140,15 +141,18 @@ def inspect(data: DataSet, model: GreyBoxModel | str | None = None) -> Inspectio
             a model only the data are looked at.
 
     Raises:
-        UserError: channels, parameters or start states are not the model's.
+        UserError: channels, parameters or start states are not the model's, or an argument is at fault.
     """
+    if not isinstance(data, DataSet):  # api.arguments says so too, but imports torch
+        raise ArgumentError("data", Kind.of(data), "expected a DataSet, as load_dataset() or DataSet([…]) make it")
     wanted = data.model if model is None else model
     if wanted is None:
         return InspectionResult(data)
-    from greybox_torch.estimate.problem import make_problem  # torch takes seconds
+    from greybox_torch.api.arguments import check_model  # torch takes seconds
+    from greybox_torch.estimate.problem import make_problem
     from greybox_torch.systems import load_model, model_reference
 
-    given = load_model(wanted) if isinstance(wanted, str) else wanted
+    given = load_model(wanted) if isinstance(wanted, str) else check_model(wanted, runs=False)
     make_problem(data, given, data.recordings)
     return InspectionResult(data, wanted if isinstance(wanted, str) else model_reference(given), given)
 

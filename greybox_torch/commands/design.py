@@ -16,7 +16,8 @@ FOLDER = "design"
 def run(results: Path, precision: str | None, seconds: float | None, options: Options) -> None:
     """Designs the input, writes it with a figure and a card (all or nothing), and prints what it is expected to tell."""
     if not results.is_dir():
-        raise UserError(f"{results}: no such folder; expected results of greybox diagnose")
+        what = "is a file" if results.is_file() else "no such folder"
+        raise UserError(f"{results}: {what}; expected the folder of results of greybox diagnose")
     folder = options.out if options.out is not None else results / FOLDER
     check_folder(folder)
     with nothing_written(), stages("designing the next recording") as progress:

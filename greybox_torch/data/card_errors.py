@@ -22,7 +22,6 @@ _EXPECTED = {
     "int_type": "a whole number",
     "bool_type": "true or false",
     "dict_type": "a table",
-    "model_type": "a table, like {{ key = value }}",
     "list_type": "a list",
     "greater_than_equal": "at least {ge}",
     "less_than_equal": "at most {le}",
@@ -70,9 +69,23 @@ def _problem(details: Any, content: dict[str, Any], card: type[BaseModel]) -> st
             + (f"; expected {expected}" if expected else "")
         )
     place = _at(location, content)
+    if kind == "model_type":
+        return (
+            place + f"found {quoted(details['input'])}, expected a table, like {_table_of(location, details['input'])}"
+        )
     if kind == "value_error":
         return place + str(details["ctx"]["error"])
     return place + f"found {quoted(details['input'])}, expected {expected or details['msg']}"
+
+
+def _table_of(location: Sequence[str | int], found: Any) -> str:
+    """A table for what stands alone, with the key that its value has there."""
+    match location:
+        case ["channels", _] if isinstance(found, str | int):
+            return f'{{ column = {quoted(found)}, unit = "…" }}'
+        case ["model", "parameters" | "initial", _] if isinstance(found, int | float):
+            return f"{{ value = {quoted(found)} }}"
+    return "{ key = value }"
 
 
 def _at(location: Sequence[str | int], content: dict[str, Any]) -> str:

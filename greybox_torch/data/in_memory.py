@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.checks import check_finite, check_length, check_time, numbers
+from greybox_torch.data.readers.time_stamps import TimeStamps
 from greybox_torch.errors import UserError, did_you_mean
 
 TIME = "time"
@@ -142,7 +143,21 @@ def _seconds(time: Any, where: str) -> NDArray[np.float64]:
     dated = isinstance(stamps, np.ndarray) and stamps.dtype.kind == "O" and stamps.ndim == 1 and stamps.size
     if dated and all(isinstance(at, datetime) for at in stamps):
         return _since_the_first(list(stamps), where)
+    written = isinstance(stamps, np.ndarray) and stamps.dtype.kind in "OU" and stamps.ndim == 1 and stamps.size
+    if written and all(isinstance(at, str) for at in stamps):
+        return _of_text(stamps, where)
     return numbers(stamps, where)
+
+
+def _of_text(stamps: NDArray, where: str) -> NDArray[np.float64]:
+    """Seconds of dates and times as text, read like those of a file: pandas.read_csv leaves them as they are."""
+    reads, seconds = TimeStamps(), np.empty(len(stamps))
+    for k, text in enumerate(stamps):
+        try:
+            seconds[k] = reads.seconds(text.strip())
+        except ValueError as error:
+            raise UserError(f"{where}, sample {k} (the first is 0): found {str(text)!r:.40}: {error}") from None
+    return seconds - seconds[0]
 
 
 def _since_the_first(stamps: Sequence[datetime], where: str) -> NDArray[np.float64]:

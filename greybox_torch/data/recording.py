@@ -104,7 +104,7 @@ class Recording:
         Args:
             name: what results call the experiment.
             frame: any object that names its columns and gives each by ``frame[column]``, N samples long.
-            time: the column of time stamps in seconds, or of dates and times. Or
+            time: the column of time stamps in seconds, or of dates and times, as text too. Or
             sample_time: seconds between samples.
             role: "estimation" or "validation".
             units: by channel.

@@ -30,6 +30,8 @@ from tests.api.motor import Motor
         (lambda m, d: gt.simulate(Motor, d), "model: found the class Motor, expected an object of it: Motor()"),
         (lambda m, d: gt.simulate("robot_arm", d), "model: found an object of type str, expected a model, or the result"),
         (lambda m, d: gt.simulate(m, "card.toml"), "data: found an object of type str, expected a DataSet"),
+        (lambda m, d: gt.inspect("card.toml"), "data: found an object of type str, expected a DataSet, as load_dataset()"),
+        (lambda m, d: gt.inspect(d, Motor), "model: found the class Motor, expected an object of it: Motor()"),
         (lambda m, d: gt.simulate(m, d, device="tpu"), "device: found 'tpu', expected \"cpu\", \"cuda\" or \"cuda:N\""),
         (lambda m, d: gt.simulate(m, d, precision="half"), "precision: found 'half', expected \"double\" or \"single\""),
         (lambda m, d: gt.compare(d, [m]), "models: found an object of type list, expected models by name"),

@@ -49,7 +49,11 @@ def test_defaults(tmp_path: Path) -> None:
         (TOP + '[channels]\nu = { unit = "V" }\n' + EXPERIMENT, '[channels], u: "column" is missing'),
         (
             TOP + '[channels]\nu = "U"\n' + EXPERIMENT,
-            '[channels], u: found "U", expected a table, like { key = value }',
+            '[channels], u: found "U", expected a table, like { column = "U", unit = "…" }',
+        ),
+        (
+            TOP + CHANNELS + EXPERIMENT + "[model.parameters]\nJ = 0.012\n",
+            "[model.parameters], J: found 0.012, expected a table, like { value = 0.012 }",
         ),
         (TOP + "[channels]\n" + EXPERIMENT, "expected a table [channels] with an entry for every input and output"),
         (TOP + EXPERIMENT, '"channels" is missing; expected a table [channels]'),

@@ -90,3 +90,14 @@ def test_times_in_the_index_are_pointed_at(name: str | None, column: str) -> Non
     with pytest.raises(UserError, match=rf"frame.reset_index\(\) makes a column: time='{column}'"):
         Recording.from_dataframe("steps", frame)
     assert Recording.from_dataframe("steps", frame.reset_index(), time=column).sample_time == 0.25
+
+
+def test_dates_as_text(table: Callable[[dict[str, Any]], Any]) -> None:
+    """Seen: the time stamps of pandas.read_csv, text, were refused as no numbers, though a card reads the same file."""
+    dates = [f"2025-03-04T10:15:02.{20 * k:03d}" for k in range(N)]
+    found = Recording.from_dataframe("steps", table({"t": dates, "speed": Y}), time="t")
+    np.testing.assert_allclose(found.time, 0.02 * np.arange(N), atol=1e-6)
+    with pytest.raises(
+        UserError, match=r"time, sample 3 \(the first is 0\): found 'soon': expected a time stamp like 2026"
+    ):
+        Recording.from_dataframe("steps", table({"t": [*dates[:3], "soon", *dates[4:]], "speed": Y}), time="t")

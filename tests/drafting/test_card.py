@@ -230,3 +230,10 @@ def test_of_a_column_of_dates_no_unit_is_told_that_the_file_does_not_have(folder
     assert done.exit_code == 0, done.output
     card = (folder / "dataset.toml").read_text()
     assert "read in s; steps of 1 s" in card and "the file says s" not in card
+
+
+def test_steps_of_dates_have_no_digits_that_the_dates_do_not_hold(folder: Path) -> None:
+    """Seen: "steps of 0.00200009 s" of dates that are 2 ms apart, as seconds since 1970 are multiples of 0.24 µs."""
+    rows = [f"2025-03-04T10:15:02.{2 * k:03d},{v:.6g},{w:.6g}" for k, v, w in zip(range(100), V, W, strict=True)]
+    (folder / "dates.csv").write_text("\n".join(["Timestamp,voltage,speed", *rows]) + "\n")
+    assert "steps of 0.002 s" in gt.card(folder / "dates.csv").text

@@ -65,6 +65,7 @@ def test_a_model_is_named_by_the_user(bench: Path, tmp_path: Path) -> None:
 
 def test_wrong_use(bench: Path) -> None:
     for arguments, message in (
+        ([str(bench / "results"), "--to", "ada"], "--to ada: expected one of"),  # not that --model is wanted, too
         ([str(bench / "nowhere"), "--to", "c"], "no such file"),
         (
             [str(bench / "results"), "--to", "ada", "--model", f"{bench / 'my_motor.py'}:Motor"],

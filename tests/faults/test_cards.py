@@ -70,7 +70,7 @@ FAULTS = [
     (U, "", "[channels] has no 'voltage', which model Motor needs"),
     (A, "file = 'b.csv'", "b.csv: no such file (did you mean"),
     (A, "file = ''", "expected text that is not empty"),
-    (A, "file = '.'", "no reader for files ending in"),
+    (A, "file = '.'", "is a folder; expected a recording in it"),
     (A, "file = '/dev/zero'", "no reader for files ending in"),
     (A, "file = 'a.xlsx'", 'no reader for files ending in ".xlsx"'),
     (A, 'file = "a\\u0000.csv"', "expected text without control characters"),

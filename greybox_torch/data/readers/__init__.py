@@ -102,6 +102,8 @@ def guarded(path: Path, table: Mapping[str, Callable[..., _Found]]) -> Callable[
             f"{ascii(str(path))[1:-1]}: cannot be the name of a file: embedded null byte; expected a recording"
         )
     suffix = path.suffix.lower()
+    if suffix not in table and path.is_dir():
+        raise UserError(f"{path}: is a folder; expected a recording in it")
     if suffix not in table:
         hint = f"; {SAVE_AS_CSV}" if suffix in WORKBOOKS else ""
         raise UserError(
