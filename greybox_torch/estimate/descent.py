@@ -187,14 +187,22 @@ def _whole_records(
             return found
         astray = cost_of(problem, finer) < cost_of(there, finer)
         problem, methods = (problem, methods) if astray else (there, methods[-1:])
-        found = _optimum(FreeRun(problem, finer), options, found.evaluations, methods)
+        found = _optimum(
+            FreeRun(problem, finer), options, found.evaluations, methods, "in the place of the last, in finer steps"
+        )
     return found
 
 
-def _optimum(run: FreeRun, options: DescentOptions, before: int, methods: Sequence[Method]) -> Descent | None:
-    """Descend by one method after the other, until the plain one has arrived; where it creeps, logarithms are for."""
+def _optimum(
+    run: FreeRun, options: DescentOptions, before: int, methods: Sequence[Method], kept: str = "the best is kept"
+) -> Descent | None:
+    """Descend by one method after the other, until the plain one has arrived; where it creeps, logarithms are for.
+
+    Args:
+        kept: what becomes of the descents before, where there are any.
+    """
     samples, progress, number = run.problem.samples, options.progress, next(options.numbers)
-    report, stage = None, "whole records" if number == 1 else f"whole records, descent {number} (the best is kept)"
+    report, stage = None, "whole records" if number == 1 else f"whole records, descent {number} ({kept})"
     if progress is not None:
         report = lambda i, cost, _: progress(stage, i, 2 * cost / samples)  # noqa: E731
     found = answered(by_methods(run, options.settings, methods, report), run.quadratic, run.admissible)

@@ -106,9 +106,9 @@ def test_an_optimum_of_integration_errors_is_left(oscillation: Any, monkeypatch:
     begun: list[tuple[list[float], int]] = []
     true_way = descent._optimum
 
-    def astray(run: FreeRun, options: Any, before: int, methods: Any) -> Any:
+    def astray(run: FreeRun, *how: Any) -> Any:
         begun.append((run.problem.values.tolist(), run.simulator.substeps))
-        found = true_way(run, options, before, methods)
+        found = true_way(run, *how)
         if len(begun) > 1 or found is None:
             return found
         return replace(found, optimum=replace(found.optimum, point=np.array([1.9, 0.8])))
@@ -119,7 +119,11 @@ def test_an_optimum_of_integration_errors_is_left(oscillation: Any, monkeypatch:
 
     monkeypatch.setattr(descent, "_optimum", astray)
     near = oscillation.with_values(np.array([2.31, 0.7]))
-    found = descend(near, Asking(Simulator.of(near.model, near.free_names), DEFAULT), 1)
+    told: list[str] = []
+    asking = Asking(Simulator.of(near.model, near.free_names), DEFAULT, lambda stage, *_: told.append(stage))
+    found = descend(near, asking, 1)
+    kept = "in the place of the last, in finer steps"
+    assert list(dict.fromkeys(told)) == ["whole records", f"whole records, descent 2 ({kept})"]
     assert begun == [([2.31, 0.7], 1), ([2.31, 0.7], 4)]
     assert found is not None
     assert found.optimum.point == pytest.approx(list(TRUTH.values()), rel=1e-6)
