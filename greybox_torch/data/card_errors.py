@@ -62,6 +62,8 @@ def _problem(details: Any, content: dict[str, Any], card: type[BaseModel]) -> st
         hint = did_you_mean(location[-1], allowed)
         return _at(location[:-1], content) + f'unknown key "{location[-1]}"{hint}; expected {", ".join(allowed)}'
     expected = _EXPECTED_AT.get(location[-1:]) or _EXPECTED.get(kind, "").format(**details.get("ctx", {}))
+    if kind == "model_type" and not expected:
+        expected = f"a table, like {_table_of(location, details['input'])}"
     if kind == "missing":
         return (
             _at(location[:-1], content)
@@ -69,10 +71,6 @@ def _problem(details: Any, content: dict[str, Any], card: type[BaseModel]) -> st
             + (f"; expected {expected}" if expected else "")
         )
     place = _at(location, content)
-    if kind == "model_type":
-        return (
-            place + f"found {quoted(details['input'])}, expected a table, like {_table_of(location, details['input'])}"
-        )
     if kind == "value_error":
         return place + str(details["ctx"]["error"])
     return place + f"found {quoted(details['input'])}, expected {expected or details['msg']}"
