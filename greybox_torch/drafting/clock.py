@@ -75,20 +75,19 @@ def _clock(column: str, values: NDArray[np.float64], unit: str) -> Clock:
     step, uneven = float(np.median(np.diff(values))), unevenness(values) > EVEN
     for known in ("s", "ms", "us", "µs", "ns", "min", "h"):
         if unit.strip("[]() ").lower() == known:
-            return Clock(column, known, remark=f"read in {known}; {_step(values, known)}", uneven=uneven)
+            return Clock(column, known, remark=f"read in {known}; {_step(step, values, known)}", uneven=uneven)
     for known, pattern in _UNITS.items():
         if pattern.search(column):
-            return Clock(column, known, remark=f"by its name; {_step(values, known)}", uneven=uneven)
+            return Clock(column, known, remark=f"by its name; {_step(step, values, known)}", uneven=uneven)
     for known, least in _SINCE_1970.items():
         if values[0] > least:
-            return Clock(column, known, remark=f"by its size, since 1970; {_step(values, known)}", uneven=uneven)
+            return Clock(column, known, remark=f"by its size, since 1970; {_step(step, values, known)}", uneven=uneven)
     doubt = '; if the stamps are milliseconds, unit = "ms"' if step >= 0.5 and float(step).is_integer() else ""
-    return Clock(column, "s", remark=f"{_step(values, 's')}{doubt}", uneven=uneven)
+    return Clock(column, "s", remark=f"{_step(step, values, 's')}{doubt}", uneven=uneven)
 
 
-def _step(values: NDArray[np.float64], unit: str) -> str:
-    """The median step, with as many digits as stamps as large as these hold of it: seconds since 1970 hold no nanoseconds."""
-    step = float(np.median(np.diff(values)))
+def _step(step: float, values: NDArray[np.float64], unit: str) -> str:
+    """The step, with as many digits as stamps as large as ``values`` hold of it: seconds since 1970 hold no nanoseconds."""
     held = math.floor(math.log10(step / float(np.spacing(np.abs(values).max()))))
     return f"steps of {step:.{min(max(held, 1), 6)}g} {unit}"
 

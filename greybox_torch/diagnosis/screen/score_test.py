@@ -53,7 +53,6 @@ class Screen:
     simulator: Simulator
     directions: tuple[tuple[str, ...], ...]
     free_names: tuple[str, ...]
-    options: SimulationOptions
 
     @staticmethod
     def of(
@@ -76,7 +75,7 @@ class Screen:
         )
         zero = [name for group in directions for name in group]
         simulator = Simulator.of(model, [*free_names, *zero], options, at_zero=zero)
-        return Screen(base, tuple(accepted), tuple(probed), model, simulator, directions, tuple(free_names), options)
+        return Screen(base, tuple(accepted), tuple(probed), model, simulator, directions, tuple(free_names))
 
     @property
     def probes(self) -> Probes:

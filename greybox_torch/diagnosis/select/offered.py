@@ -12,7 +12,7 @@ from greybox_torch.diagnosis.screen.candidates import candidates, memory_candida
 from greybox_torch.diagnosis.screen.from_motion import candidates_from_motion
 from greybox_torch.diagnosis.screen.part_of_the_way import curves_over_parts
 from greybox_torch.diagnosis.screen.periodic_orders import distinct_orders, scan_orders
-from greybox_torch.diagnosis.screen.score_test import ScreenScore
+from greybox_torch.diagnosis.screen.score_test import Screen, ScreenScore
 from greybox_torch.diagnosis.screen.screens import described
 from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of, shortlist
 from greybox_torch.diagnosis.select.state import SearchState
@@ -121,14 +121,9 @@ def _scored(study: Study, state: SearchState, every: Sequence[Attachment], fits:
     offered = [a for a in every if _may_join(study, state, a)]
     if not offered:
         return tuple(() for _ in fits)
-    screen = state.screens.showing(
-        model,
-        at.effects,
-        offered,
-        study.surroundings,
-        at.problem.free_names,
-        study.options,
-    )
+    around, free = study.surroundings, at.problem.free_names
+    make = partial(Screen.of, model, at.effects, offered, around, free, study.options)
+    screen = state.screens.showing(offered, make, study, at)
     asked = {described(a) for a in offered}
     scores = side_by_side(partial(screen.scores, fit) for fit in fits)
     return tuple(tuple(s for s in at_length if described(s.attachment) in asked) for at_length in scores)

@@ -3,69 +3,49 @@
 from __future__ import annotations
 
 from types import SimpleNamespace as Stub
+from typing import Any
 
 import pytest
 
-from greybox_torch.diagnosis.screen import screens
 from greybox_torch.diagnosis.screen.screens import Screens, described
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.unknown import Unknown
 
-MODEL, AROUND = object(), {}
-
-
-@pytest.fixture
-def asked(monkeypatch):
-    """What screens are made of, one after another."""
-    made = []
-
-    def of(base, accepted, attachments, surroundings, free_names, options):
-        made.append([a.prefix for a in attachments])
-        probed = tuple((a, None) for a in attachments)
-        return Stub(base=base, accepted=tuple(accepted), probed=probed, free_names=tuple(free_names), options=options)
-
-    monkeypatch.setattr(screens, "Screen", Stub(of=of))
-    return made
+STUDY, HYPOTHESIS = object(), object()
 
 
 def friction(port: str = "rotor") -> Attachment:
     return Attachment(port, CoulombFriction())
 
 
-def test_a_screen_of_more_serves_what_is_in_it(asked) -> None:
-    kept = Screens()
-    whole = kept.showing(MODEL, (), [friction(), Attachment("rotor", TorqueRipple(4.0))], AROUND, ["J"], 1)
-    assert kept.showing(MODEL, (), [friction()], AROUND, ["J"], 1) is whole
-    assert asked == [["rotor.coulomb_friction", "rotor.torque_ripple"]]
+def screen_of(*attachments: Attachment) -> Any:
+    return Stub(probed=tuple((a, None) for a in attachments))
+
+
+def test_a_screen_of_more_serves_what_is_in_it() -> None:
+    kept, more = Screens(), [friction(), Attachment("rotor", TorqueRipple(4.0))]
+    whole = kept.showing(more, lambda: screen_of(*more), STUDY, HYPOTHESIS)
+    assert kept.showing([friction()], lambda: pytest.fail("it is there"), STUDY, HYPOTHESIS) is whole
 
 
 @pytest.mark.parametrize(
-    "other",
+    ("attachments", "beside"),
     [
-        {"base": object()},
-        {"accepted": (friction("arm"),)},
-        {"attachments": [friction("arm")]},
-        {"surroundings": {"rotor": None}},
-        {"free_names": ["J", "k"]},
-        {"options": 2},
+        ([friction("arm")], (STUDY, HYPOTHESIS)),
+        ([friction(), friction("arm")], (STUDY, HYPOTHESIS)),
+        ([friction()], (object(), HYPOTHESIS)),
+        ([friction()], (STUDY, object())),
+        ([friction()], ()),
     ],
-    ids=lambda other: next(iter(other)),
 )
-def test_another_one_is_made_where_anything_differs(asked, other) -> None:
-    how = {
-        "base": MODEL,
-        "accepted": (),
-        "attachments": [friction()],
-        "surroundings": AROUND,
-        "free_names": ["J"],
-        "options": 1,
-    }
-    kept = Screens()
-    first = kept.showing(**how)
-    assert kept.showing(**how) is first
-    assert kept.showing(**{**how, **other}) is not first and len(asked) == 2
+def test_another_one_is_made_where_anything_differs(attachments: list[Attachment], beside: tuple[object, ...]) -> None:
+    kept, first, other = Screens(), screen_of(friction()), screen_of(*attachments)
+    assert kept.showing([friction()], lambda: first, STUDY, HYPOTHESIS) is first
+    assert kept.showing([friction()], lambda: other, STUDY, HYPOTHESIS) is first
+    assert kept.showing(attachments, lambda: other, *beside) is other
+    assert kept.showing(attachments, lambda: first, *beside) is other
 
 
 def test_a_law_is_described_by_how_it_was_made() -> None:
