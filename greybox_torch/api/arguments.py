@@ -67,13 +67,6 @@ def named_model(card: Path, data: DataSet, name: str | None = None) -> GreyBoxMo
     return load_model(wanted)
 
 
-def check_data(data: Any) -> DataSet:
-    """Raises ArgumentError where ``data`` is not a data set."""
-    if not isinstance(data, DataSet):
-        raise ArgumentError("data", Kind.of(data), "expected a DataSet, as load_dataset() or DataSet([…]) make it")
-    return data
-
-
 def check_estimation(data: DataSet) -> None:
     """Raises UserError where no experiment of the data set is there to estimate from."""
     if not data.estimation():

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from greybox_torch.api.arguments import (
-    check_data,
     check_device,
     check_estimation,
     check_kind,
@@ -15,6 +14,7 @@ from greybox_torch.api.arguments import (
     check_seconds,
     check_seed,
 )
+from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.diagnosis_result import DiagnosisResult
 from greybox_torch.codegen.build import check_compiler
 from greybox_torch.data import DataSet

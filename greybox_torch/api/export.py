@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Literal, overload
 
-from greybox_torch.api.arguments import check_data, check_model
+from greybox_torch.api.arguments import check_model
+from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.export_result import ExportResult, SnippetResult
 from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError, did_you_mean

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from greybox_torch.api.arguments import (
-    check_data,
     check_device,
     check_estimation,
     check_model,
@@ -17,6 +16,7 @@ from greybox_torch.api.arguments import (
     check_seed,
     check_whole,
 )
+from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.fit_result import FitResult
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Comparison, compare

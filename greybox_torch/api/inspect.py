@@ -11,11 +11,11 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
+from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.data_warnings import all_warnings
 from greybox_torch.api.result import HELD_OUT, Result
 from greybox_torch.data import DataSet
 from greybox_torch.data.data_warning import DataWarning
-from greybox_torch.errors import ArgumentError, Kind
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
 
@@ -143,8 +143,7 @@ def inspect(data: DataSet, model: GreyBoxModel | str | None = None) -> Inspectio
     Raises:
         UserError: channels, parameters or start states are not the model's, or an argument is at fault.
     """
-    if not isinstance(data, DataSet):  # api.arguments says so too, but imports torch
-        raise ArgumentError("data", Kind.of(data), "expected a DataSet, as load_dataset() or DataSet([…]) make it")
+    check_data(data)
     wanted = data.model if model is None else model
     if wanted is None:
         return InspectionResult(data)

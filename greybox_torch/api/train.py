@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from greybox_torch.api.arguments import (
-    check_data,
     check_device,
     check_estimation,
     check_kind,
@@ -19,6 +18,7 @@ from greybox_torch.api.arguments import (
     check_names,
     check_whole,
 )
+from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.train_range import beyond_learned
 from greybox_torch.api.train_result import TrainingResult
 from greybox_torch.api.train_scores import HYBRID, free_runs_of
