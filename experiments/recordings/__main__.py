@@ -122,7 +122,7 @@ def _parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("out", type=Path, metavar="OUT", help="folder for verdicts, fits, results.json and results.md")
     parser.add_argument("--only", default="", help="names of recordings, separated by commas")
     parser.add_argument("--time-limit", type=float, default=300.0, help="seconds for the search on one recording")
-    parser.add_argument("--workers", type=int, default=1, help="recordings side by side, one thread each")
+    parser.add_argument("--workers", type=int, default=1, help="recordings side by side, which share the cores")
     return parser.parse_args(arguments)
 
 

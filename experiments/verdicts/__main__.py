@@ -87,7 +87,7 @@ def _parser() -> argparse.ArgumentParser:
     run = commands.add_parser("run", help="diagnose every case")
     run.add_argument("cases", type=Path, nargs="+", metavar="CASES", help="folders, cards, or lists of lines NAME CARD")
     run.add_argument("--out", type=Path, required=True, metavar="VERDICTS")
-    run.add_argument("--workers", type=positive, default=2, help="cases side by side, one thread each")
+    run.add_argument("--workers", type=positive, default=2, help="cases side by side, which share the cores")
     run.add_argument("--time-limit", type=positive, help="seconds of search for a case")
     run.add_argument("--only", default="", help="names of cases, separated by commas")
     run.set_defaults(command=_run)

@@ -1,4 +1,4 @@
-"""`greybox diagnose` on many cases, as a user would: a few side by side, one thread each. Keys are never read.
+"""`greybox diagnose` on many cases, as a user would: a few side by side, which share the cores. Keys are never read.
 
 Resumable: an attempt writes into a folder of its own, which becomes the verdict's when it is whole; what has a verdict is passed over.
 """
@@ -55,7 +55,7 @@ def diagnose_all(
     lock = threading.Lock()
 
     def one(name: str) -> None:
-        outcome = diagnose(cards[name], out / name, time_limit)
+        outcome = diagnose(cards[name], out / name, time_limit, threads=max(1, (os.cpu_count() or 1) // workers))
         with lock:
             tell(name, outcome)
 
@@ -67,18 +67,21 @@ def diagnose_all(
         pool.shutdown(cancel_futures=True)
 
 
-def diagnose(card: Path, out: Path, time_limit: float | None) -> Outcome:
-    """One case by the command line: OUT holds what it wrote and run.json, or run.json alone where it ended without a verdict."""
+def diagnose(card: Path, out: Path, time_limit: float | None, *, threads: int | None = None) -> Outcome:
+    """One case by the command line: OUT holds what it wrote and run.json, or run.json alone where it ended without a verdict.
+
+    `threads` is how many the tool may use; None leaves that to the tool.
+    """
     # A folder for each attempt: a tool that outlived a killed run cannot touch what comes later.
     attempt = out.with_name(f".{out.name}.{secrets.token_hex(4)}.attempt")
     command = [sys.executable, "-m", "greybox_torch", "diagnose", str(card), "--out", str(attempt), "--json"]
     command += [] if time_limit is None else ["--time-limit", f"{time_limit:g}"]
     allowed = NO_LIMIT if time_limit is None else GRACE * time_limit + 60.0
     path = os.pathsep.join(part for part in (str(ROOT), os.environ.get("PYTHONPATH", "")) if part)
-    alone = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONPATH": path}
+    within = {**os.environ, "PYTHONPATH": path} | ({} if threads is None else {"OMP_NUM_THREADS": str(threads)})
     began = time.perf_counter()
     try:
-        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=allowed, env=alone)
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=allowed, env=within)
         failure = "" if done.returncode == 0 else f"exit {done.returncode}: {_last_line(done.stderr)}"
     except subprocess.TimeoutExpired:
         failure = f"no verdict after {allowed:.0f} s"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
@@ -91,7 +92,7 @@ def test_a_case_that_does_not_end_is_given_up(case: Path, tmp_path: Path, monkey
 def test_what_has_not_begun_is_left_where_the_user_interrupts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
 
-    def answer(card: Path, out: Path, limit: float | None) -> Outcome:
+    def answer(card: Path, out: Path, limit: float | None, *, threads: int) -> Outcome:
         asked.append(out.name)
         return Outcome(0.0, "said")
 
@@ -103,3 +104,20 @@ def test_what_has_not_begun_is_left_where_the_user_interrupts(tmp_path: Path, mo
     with pytest.raises(KeyboardInterrupt):
         diagnose_all(cards, tmp_path / "out", workers=1, time_limit=None, tell=interrupted)
     assert len(asked) < 50
+
+
+@pytest.mark.parametrize(("workers", "threads"), [(1, "4"), (2, "2"), (3, "1"), (9, "1")])
+def test_cases_side_by_side_share_the_cores(
+    workers: int, threads: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given: list[str] = []
+
+    def run(command: list[str], *, env: dict[str, str], **others: object) -> subprocess.CompletedProcess[str]:
+        given.append(env["OMP_NUM_THREADS"])
+        return subprocess.CompletedProcess(command, 2, "", "stopped here")
+
+    monkeypatch.setattr(running.os, "cpu_count", lambda: 4)
+    monkeypatch.setattr(running.subprocess, "run", run)
+    cards = dict.fromkeys("ab", tmp_path / "dataset.toml")
+    diagnose_all(cards, tmp_path / "out", workers=workers, time_limit=None, tell=lambda name, outcome: None)
+    assert given == [threads, threads]
