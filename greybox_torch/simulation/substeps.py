@@ -31,10 +31,10 @@ def choose_substeps(
     coarse, substeps = stepper.run(records, asked).y, 1
     while substeps <= LARGEST:
         fine = stepper.run(records, asked, 2 * substeps).y
-        if fine_enough(coarse, fine, limit):
+        if fine_enough(coarse, fine, limit, records.lengths):
             return substeps
         coarse, substeps = fine, 2 * substeps
-    return LARGEST if np.isfinite(coarse).all() else None
+    return LARGEST if all_finite(coarse, records.lengths) else None
 
 
 def judged_steps(records: Records) -> int:
@@ -49,8 +49,20 @@ def output_spread(records: Records) -> np.ndarray:
     return np.where(spread > 0, spread, 1.0)
 
 
-def fine_enough(coarse: np.ndarray, fine: np.ndarray, limit: np.ndarray) -> bool:
-    """Whether outputs (E, N, n_y) with steps of two lengths differ by less than ``limit`` (n_y,)."""
-    finite = np.isfinite(coarse).all() and np.isfinite(fine).all()
+def fine_enough(coarse: np.ndarray, fine: np.ndarray, limit: np.ndarray, lengths: np.ndarray) -> bool:
+    """Whether outputs (E, N, n_y) of experiments of ``lengths`` (E,) with steps of two lengths differ by less than ``limit`` (n_y,)."""
+    if not (all_finite(coarse, lengths) and all_finite(fine, lengths)):
+        return False
     with np.errstate(over="ignore"):  # steps that are too long give numbers of any size
-        return bool(finite and (np.sqrt(np.mean((fine - coarse) ** 2, axis=(0, 1))) <= limit).all())
+        apart = _recorded(fine, lengths) - _recorded(coarse, lengths)
+        return bool((np.sqrt(np.mean(apart**2, axis=0)) <= limit).all())
+
+
+def all_finite(y: np.ndarray, lengths: np.ndarray) -> bool:
+    """Whether all outputs (E, N, n_y) that experiments of ``lengths`` (E,) have are finite."""
+    return bool(np.isfinite(_recorded(y, lengths)).all())
+
+
+def _recorded(y: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Of outputs (E, N, n_y) those that the experiments have, (samples, n_y): a run goes on beyond the end of a shorter one."""
+    return y[np.arange(y.shape[1]) < lengths[:, None]]
