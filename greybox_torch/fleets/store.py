@@ -1,7 +1,7 @@
 """The folder of one data set's results: what `greybox diagnose` writes there, and beside it the row of the fleet's table.
 
-The row is written together with the other files, all of them or none. So a data set counts as done exactly when its row is there, whoever
-was killed meanwhile: a worker, the scheduler or the command itself.
+The row is written together with the other files and takes its place last. So a data set counts as done exactly when its row is there,
+whoever was killed meanwhile: a worker, the scheduler or the command itself.
 """
 
 from __future__ import annotations
