@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from greybox_torch.data.columns.listing import Listing, is_sample
-from greybox_torch.data.readers.json_log import by_index
+from greybox_torch.data.readers.json_log import by_index, records_of
 from greybox_torch.errors import UserError
-from greybox_torch.reading import parsed_json, read_json, read_text
+from greybox_torch.reading import read_json
 
 _LOOKED_AT = 200
 """Records of which members are listed."""
@@ -28,10 +29,7 @@ def json_columns(path: Path) -> Listing:
 
 def json_lines_columns(path: Path) -> Listing:
     """Raises UserError for lines that are no records."""
-    lines = [line for line in read_text(path, "a log in JSON").splitlines() if line.strip()][:_LOOKED_AT]
-    return _of_records(
-        path, [parsed_json(line, f"{path}, line {k}", "one record a line") for k, line in enumerate(lines, 1)]
-    )
+    return _of_records(path, [record for _, record in islice(records_of(path), _LOOKED_AT)])
 
 
 def _of_records(path: Path, records: list[Any]) -> Listing:

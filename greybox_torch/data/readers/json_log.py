@@ -5,6 +5,7 @@ Nested members are written with dots: "motor.current" is `{"motor": {"current": 
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Collection, Iterator
 from pathlib import Path
@@ -42,12 +43,20 @@ def read_json(path: Path, columns: Collection[str]) -> Table:
 def read_json_lines(path: Path, columns: Collection[str]) -> Table:
     """Reads columns of a file with one JSON record a line. Raises UserError, with the line, for whatever is no record."""
     records, lines = [], []
-    for line, text in enumerate(read_text(path, _EXPECTED).splitlines(), start=1):
-        if not text.strip():
-            continue
-        records.append(parsed_json(text, f"{path}, line {line}", "one record a line"))
+    for line, record in records_of(path):
+        records.append(record)
         lines.append(line)
     return _from_records(path, records, columns, lines)
+
+
+def records_of(path: Path) -> Iterator[tuple[int, Any]]:
+    """Line number and content of every line that is not blank. Raises UserError, with the line, for what is not JSON.
+
+    Lines end where those of any text file do, not at the further separators of Unicode, which JSON allows in its texts.
+    """
+    for line, text in enumerate(io.StringIO(read_text(path, _EXPECTED), newline=None), start=1):
+        if text.strip():
+            yield line, parsed_json(text, f"{path}, line {line}", "one record a line")
 
 
 def by_index(value: Any) -> Any:
