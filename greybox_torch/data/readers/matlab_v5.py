@@ -100,7 +100,10 @@ class _Element:
         self.data = content[begin : begin + length]
 
     def matrix(self, most: int | None = None) -> _Element:
-        """The element itself, or the one that is packed in it, of which the first `most` bytes may do."""
+        """The element itself, or the one that is packed in it, of which the first `most` bytes may do.
+
+        Raises ValueError and zlib.error where what is packed is damaged, which only the whole of it tells for sure.
+        """
         if self.kind != _COMPRESSED:
             return self
         packed = self.data if most is None else self.data[:most]
@@ -113,6 +116,10 @@ class _Element:
             raise ValueError(f"declares {declared} bytes, more than its {len(self.data)} can be unpacked to")
         wanted = declared if most is None else min(declared, most)
         rest = unpacker.decompress(unpacker.unconsumed_tail, wanted) if wanted else b""
+        if most is None and (unpacker.decompress(unpacker.unconsumed_tail, 1) or not unpacker.eof):
+            raise ValueError(
+                "unpacks to another length than it declares"
+            )  # zlib compares its checksum at the end alone
         tag = struct.pack(self.order + "II", struct.unpack(self.order + "I", head[:4])[0], len(rest))
         return _Element(memoryview(tag + rest), 0, 8 + len(rest), self.order)
 

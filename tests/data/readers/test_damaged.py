@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 import pyarrow as pa
 import pytest
+import scipy.io
 from pyarrow import parquet
 
 from greybox_torch.data.readers import READERS, read_table
@@ -181,6 +182,23 @@ def matrix(dimensions: tuple[int, ...], kind: int = 6, length: int | None = None
 def test_matlab_that_declares_more_than_it_holds(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "a.mat").write_bytes(content)
     refused(tmp_path / "a.mat", r"declares|cannot be read as|no column")
+
+
+def test_matlab_with_a_bit_that_fell_over(tmp_path: Path) -> None:
+    """Seen: one in ten such files was read as other numbers, as the checksum behind them was never looked at."""
+    values = np.random.default_rng(0).normal(size=500)
+    scipy.io.savemat(tmp_path / "a.mat", {"u": values}, do_compression=True)
+    sound = (tmp_path / "a.mat").read_bytes()
+    np.testing.assert_array_equal(read_table(tmp_path / "a.mat", ("u",)).columns["u"], values)
+    for place in range(300, len(sound), 37):
+        (tmp_path / "a.mat").write_bytes(sound[:place] + bytes([sound[place] ^ 0x10]) + sound[place + 1 :])
+        refused(tmp_path / "a.mat", "cannot be read|declares|unpacks|no column")
+
+
+def test_matlab_that_unpacks_to_more_than_it_declares(tmp_path: Path) -> None:
+    packed = zlib.compress(element(14, matrix((5, 1))) + bytes(8))
+    (tmp_path / "a.mat").write_bytes(mat(element(15, packed, len(packed))))
+    refused(tmp_path / "a.mat", "unpacks to another length than it declares")
 
 
 def test_parquet_with_a_column_twice(tmp_path: Path) -> None:
