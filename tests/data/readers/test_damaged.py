@@ -131,6 +131,22 @@ def test_hdf5_that_declares_more_than_it_holds(tmp_path: Path, shape: tuple[int,
     refused(tmp_path / "a.mat", "declares .* samples")
 
 
+@pytest.mark.parametrize(
+    "packed",
+    [
+        {"scaleoffset": 0},
+        {"scaleoffset": 0, "compression": "gzip"},
+        {"compression": "lzf"},
+        {"shuffle": True, "fletcher32": True},
+    ],
+)
+def test_hdf5_that_holds_more_than_its_bytes(tmp_path: Path, packed: dict[str, int | str]) -> None:
+    """Seen: a sound dataset behind a filter that is no compression to h5py was "damaged"."""
+    with h5(tmp_path / "a.h5") as file:
+        file.create_dataset("u", data=np.full(100_000, 3), **packed)
+    np.testing.assert_array_equal(read_table(tmp_path / "a.h5", ("u",)).columns["u"], np.full(100_000, 3.0))
+
+
 def test_hdf5_of_other_kinds(tmp_path: Path) -> None:
     with h5(tmp_path / "a.h5") as file:
         file["u"] = h5py.Empty("f8")
