@@ -87,8 +87,12 @@ def numbers(values: Any, place: str) -> NDArray[np.float64]:
 
 
 def _as_array(values: Any, place: str) -> NDArray:
-    if np.ma.isMaskedArray(values):
-        return np.ma.asarray(values, dtype=np.float64).filled(np.nan)
+    if isinstance(values, np.ma.MaskedArray):
+        missing, held = np.ma.getmaskarray(values), np.asarray(values.data)
+        if held.dtype.kind in "fiubO":
+            held = held.astype(object if held.dtype.kind == "O" else np.float64)
+            held[missing] = np.nan
+        return held
     try:
         return np.asarray(values.detach().cpu() if hasattr(values, "detach") else values)
     except (TypeError, ValueError, RuntimeError, OverflowError) as error:

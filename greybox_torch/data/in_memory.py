@@ -136,6 +136,8 @@ def _signal(place: str, channel: str, values: Any) -> NDArray[np.float64]:
 def _seconds(time: Any, where: str) -> NDArray[np.float64]:
     """Time stamps in seconds; dates and times count from the first of them."""
     stamps = time if np.ma.isMaskedArray(time) or hasattr(time, "detach") else np.asarray(time)
+    if isinstance(stamps, np.ma.MaskedArray) and stamps.dtype.kind in "mM":
+        stamps = np.where(np.ma.getmaskarray(stamps), np.array("NaT", dtype=stamps.dtype), stamps.data)
     if isinstance(stamps, np.ndarray) and stamps.dtype.kind in "mM" and stamps.ndim == 1 and stamps.size:
         since = stamps - stamps[0] if stamps.dtype.kind == "M" else stamps
         seconds = since / np.timedelta64(1, "s")
