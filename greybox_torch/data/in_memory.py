@@ -11,12 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from greybox_torch.data.card import TIME
 from greybox_torch.data.checks import check_finite, check_length, check_time, numbers
 from greybox_torch.data.readers.time_stamps import TimeStamps
 from greybox_torch.data.steps import usual_step
 from greybox_torch.errors import UserError, did_you_mean
-
-TIME = "time"
 
 
 @dataclass(frozen=True)

@@ -13,10 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.readers.column import Element, Field, Line, Step, inside, root_of, steps_of
-from greybox_torch.data.readers.table import Table, as_vector, check_declared, require
+from greybox_torch.data.readers.table import MOST_UNPACKED, Table, as_vector, check_declared, require
 from greybox_torch.errors import UserError, did_you_mean
-
-_MOST_UNPACKED = 1032  # a byte of deflate gives at most as many
 
 
 def read_hdf5(path: Path, columns: Collection[str]) -> Table:
@@ -108,7 +106,7 @@ def _most_samples(dataset: Any) -> int:
     created = dataset.id.get_create_plist()
     filters = [created.get_filter(k)[0] for k in range(created.get_nfilters())]
     packing = sum(one not in (h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32) for one in filters)
-    return dataset.id.get_storage_size() * _MOST_UNPACKED**packing // max(dataset.dtype.itemsize, 1) + 1
+    return dataset.id.get_storage_size() * MOST_UNPACKED**packing // max(dataset.dtype.itemsize, 1) + 1
 
 
 def _shown(step: Step) -> str:

@@ -17,12 +17,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from greybox_torch.data.readers.table import MOST_SAMPLES
+from greybox_torch.data.readers.table import MOST_SAMPLES, MOST_UNPACKED
 from greybox_torch.reading import read_bytes
 
 _HEADER, _MATRIX, _COMPRESSED = 128, 14, 15
 _CELL, _STRUCT, _OBJECT, _CHAR, _SPARSE, _FUNCTION, _OPAQUE = 1, 2, 3, 4, 5, 16, 17
-_MOST_UNPACKED = 1032  # a byte of deflate gives at most as many
 _MOST_BYTES = 8 * MOST_SAMPLES
 _PREFIX = 2048  # enough of an element for its flags, dimensions and name
 _NUMBERS = {
@@ -112,7 +111,7 @@ class _Element:
         if len(head) < 8:
             raise ValueError("ends in the middle of a variable")
         _, declared = struct.unpack(self.order + "II", head)
-        if declared > min(len(self.data) * _MOST_UNPACKED, _MOST_BYTES):
+        if declared > min(len(self.data) * MOST_UNPACKED, _MOST_BYTES):
             raise ValueError(f"declares {declared} bytes, more than its {len(self.data)} can be unpacked to")
         wanted = declared if most is None else min(declared, most)
         rest = unpacker.decompress(unpacker.unconsumed_tail, wanted) if wanted else b""
