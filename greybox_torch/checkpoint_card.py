@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections import Counter
 from collections.abc import Iterable
@@ -12,7 +11,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from greybox_torch.errors import UserError, quoted
-from greybox_torch.reading import read_bytes
+from greybox_torch.reading import parsed_json, read_bytes
 
 SCHEMA = "greybox-checkpoint/1"
 
@@ -50,7 +49,7 @@ def read_checkpoint_card(path: Path) -> CheckpointCard:
     Raises:
         UserError: it cannot be read, is not JSON, was written by a newer version, or a field is missing or not what it must be.
     """
-    content = _json(path)
+    content = _content(path)
     schema = content.get("schema") if isinstance(content, dict) else None
     if schema != SCHEMA:
         newer = re.fullmatch(r"greybox-checkpoint/([2-9]|[1-9]\d+)", str(schema)) is not None
@@ -65,11 +64,13 @@ def read_checkpoint_card(path: Path) -> CheckpointCard:
     return card
 
 
-def _json(path: Path) -> Any:
+def _content(path: Path) -> Any:
+    expected = "the card of a checkpoint"
     try:
-        return json.loads(read_bytes(path, "a JSON card", "checkpoint").decode("utf-8"))
-    except (ValueError, RecursionError) as error:  # not UTF-8, not JSON, a number too long to read, nested without end
-        raise UserError(f"checkpoint {path}: not JSON: {error}; expected the card of a checkpoint") from None
+        text = read_bytes(path, "a JSON card", "checkpoint").decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise UserError(f"checkpoint {path}: not JSON: {error}; expected {expected}") from None
+    return parsed_json(text, f"checkpoint {path}", expected)
 
 
 def _problem(details: Any) -> str:

@@ -29,20 +29,35 @@ def replacing(path: Path) -> Iterator[Path]:
     The folder is made where it is missing. The temporary name keeps the suffix, as many writers go by it. Raises
     UserError where the folder or the file cannot be written.
     """
+    with _beside(path) as temporary:
+        yield temporary
+        temporary.replace(path)
+
+
+@contextmanager
+def _beside(path: Path) -> Iterator[Path]:
+    """A temporary path in the folder of `path`, gone once the block ends. Raises UserError as :func:`replacing` does."""
     if "\0" in str(path):
         raise UserError(f"{str(path)!r}: cannot be written: holds a NUL character; expected a place to write results")
     temporary = path.with_name(f".{path.stem}.{os.getpid()}.partial{path.suffix}")
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        yield temporary
-        temporary.replace(path)
+        with _told(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            yield temporary
+    finally:
+        with suppress(OSError):  # a name that is too long for a file was none from the start
+            temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """Turns what the system raises in the block into a UserError about `path`."""
+    try:
+        yield
     except OSError as error:
         raise UserError(
             f"{path}: cannot be written: {error.strerror or error}; expected a place to write results"
         ) from error
-    finally:
-        with suppress(OSError):  # a name that is too long for a file was none from the start
-            temporary.unlink(missing_ok=True)
 
 
 def _is_folder(path: Path) -> bool:
@@ -74,13 +89,23 @@ def write_new(path: Path, text: str) -> None:
 
 
 def write_all(contents: Mapping[Path, str | bytes]) -> None:
-    """Writes files that belong together: all of them, or none. Text is encoded as UTF-8. Raises UserError where one cannot be written."""
+    """Writes files that belong together. Text is encoded as UTF-8.
+
+    All are written beside their places before the first takes its place, and they take them in the order given. So where one cannot be
+    written, none is; and whenever the process is killed, the last one is new only if all others are.
+
+    Raises UserError where one cannot be written. Where the system then refuses a file its place, those before it have theirs.
+    """
     with ExitStack() as together:
+        written: dict[Path, Path] = {}
         for path, content in contents.items():
             if _is_folder(path):
                 raise UserError(f"{path}: cannot be written: it is a folder; expected a place for a file")
-            temporary = together.enter_context(replacing(path))
-            temporary.write_bytes(content.encode() if isinstance(content, str) else content)
+            written[path] = together.enter_context(_beside(path))
+            written[path].write_bytes(content.encode() if isinstance(content, str) else content)
+        for path, temporary in written.items():
+            with _told(path):
+                temporary.replace(path)
 
 
 def remove_all(paths: Iterable[Path]) -> None:

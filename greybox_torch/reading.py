@@ -5,6 +5,7 @@ A pipe would wait for ever, a device never ends, and a file that claims more tha
 
 from __future__ import annotations
 
+import json
 import os
 import stat
 import tomllib
@@ -89,6 +90,20 @@ def read_text(path: Path, expected: str) -> str:
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise UserError(f"{path}, line {line}: not UTF-8 text; expected {expected}, saved as UTF-8") from None
+
+
+def read_json(path: Path, expected: str) -> Any:
+    """What the JSON file at `path` holds. Raises UserError as :func:`read_text` does, and where it is not JSON."""
+    return parsed_json(read_text(path, expected), f"{path}", expected)
+
+
+def parsed_json(text: str, place: str, expected: str) -> Any:
+    """What a JSON text holds. Raises UserError, beginning with `place`, where it is not JSON."""
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:  # Python's own limit on the digits of an integer is a ValueError
+        said = "nested too deeply" if isinstance(error, RecursionError) else error
+        raise UserError(f"{place}: not JSON: {said}; expected {expected}") from None
 
 
 def read_toml(path: Path, expected: str) -> dict[str, Any]:

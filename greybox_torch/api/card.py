@@ -14,6 +14,7 @@ from rich.text import Text
 
 from greybox_torch.api.drafted_file import DraftedFile
 from greybox_torch.data import DataSet, Recording
+from greybox_torch.data.card import USUAL
 from greybox_torch.drafting.card import CardDraft, draft_card
 from greybox_torch.errors import ArgumentError, UserError
 from greybox_torch.files import absolute
@@ -126,7 +127,7 @@ def card(
         ``card(["steps.csv", "sweep.csv"], Motor()).save()``
     """
     paths = _paths(files)
-    place = Path(path) if path is not None else paths[0].parent / "dataset.toml"
+    place = Path(path) if path is not None else paths[0].parent / USUAL
     if sample_time is not None and not 0.0 < sample_time < float("inf"):
         raise ArgumentError("sample_time", sample_time, "expected seconds, above 0")
     given, name = _model(model, place.parent)

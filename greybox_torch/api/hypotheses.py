@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -19,7 +18,7 @@ from greybox_torch.mechanisms.attached import attached
 from greybox_torch.mechanisms.stored import stored_effects
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
-from greybox_torch.reading import read_text
+from greybox_torch.reading import read_json
 from greybox_torch.restored import load_beside
 from greybox_torch.systems import load_model, model_reference
 
@@ -138,8 +137,8 @@ def read_hypotheses(folder: Path, model: str | None = None) -> Hypotheses:
     own = load_model(name)
     try:
         groups = [[_kept(folder, entry, own, data) for entry in group] for group in content["findings"]]
-        starts = content["initial"]
-    except (KeyError, TypeError, AttributeError) as error:
+        starts = _starts(content["initial"])
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise UserError(
             f"{path}: damaged: {type(error).__name__}: {error}; expected what greybox diagnose writes"
         ) from None
@@ -149,10 +148,7 @@ def read_hypotheses(folder: Path, model: str | None = None) -> Hypotheses:
 
 
 def _content(path: Path) -> dict[str, Any]:
-    try:
-        content = json.loads(read_text(path, "results of greybox diagnose"))
-    except json.JSONDecodeError as error:
-        raise UserError(f"{path}: not JSON: {error}; expected what greybox diagnose writes") from None
+    content = read_json(path, "results of greybox diagnose")
     if not isinstance(content, dict) or content.get("schema") != SCHEMA:
         found = content.get("schema") if isinstance(content, dict) else type(content).__name__
         raise UserError(f'{path}, "schema": found {found!r}, expected "{SCHEMA}"')
@@ -162,7 +158,12 @@ def _content(path: Path) -> dict[str, Any]:
 def _kept(folder: Path, entry: Mapping[str, Any], own: GreyBoxModel, data: DataSet) -> Kept:
     model, _ = load_beside(folder / str(entry["checkpoint"]), own, data)
     name, in_verdict = spoken_at(str(entry["mechanism"]), str(entry["port"])), entry.get("in_verdict")
-    return Kept(name, float(entry["probability"]), model, entry["initial"], in_verdict)
+    in_verdict = None if in_verdict is None else float(in_verdict)
+    return Kept(name, float(entry["probability"]), model, _starts(entry["initial"]), in_verdict)
+
+
+def _starts(content: Mapping[str, Mapping[str, Any]]) -> Starts:
+    return {recording: {state: float(value) for state, value in own.items()} for recording, own in content.items()}
 
 
 def to_tell_apart(held: Hypotheses) -> tuple[Sequence[Kept], Sequence[Kept]]:

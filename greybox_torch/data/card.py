@@ -22,7 +22,10 @@ from greybox_torch.errors import UserError, did_you_mean, quoted
 from greybox_torch.reading import read_toml
 
 USUAL = "dataset.toml"
-TIME = "time"  # in an experiment's `columns`, the key that renames the column of time stamps
+"""The name of a card that is the only one in its folder."""
+
+TIME = "time"
+"""A name that no channel has: in an experiment's `columns` it is that of the time stamps."""
 
 
 class ParameterEntry(Entry):

@@ -14,7 +14,8 @@ FEWEST_SAMPLES = 10
 LARGEST = 1e100
 """Largest sample: squares and sums of squares of larger ones are no numbers any more."""
 
-_DAY = 86400.0
+DAY = 86400.0
+"""Seconds of a day."""
 
 KINDS = {"U": "text", "S": "text", "T": "text", "c": "complex numbers", "O": "cells or objects", "V": "a structure"}
 """What an array holds, by the kind of its dtype, in words for messages."""
@@ -53,7 +54,7 @@ def _past_midnight(time: NDArray[np.float64], later: int) -> str:
     """What to do where a time of day begins anew, to end a message; empty elsewhere."""
     before, after = time[later - 1], time[later]
     steps = np.diff(time)
-    if not (0.0 <= after < before <= _DAY and before - after > _DAY / 2 and (steps > 0.0).any()):
+    if not (0.0 <= after < before <= DAY and before - after > DAY / 2 and (steps > 0.0).any()):
         return ""
     return (
         "; the time of day passes midnight here: give stamps with the date, or "
@@ -87,8 +88,12 @@ def numbers(values: Any, place: str) -> NDArray[np.float64]:
 
 
 def _as_array(values: Any, place: str) -> NDArray:
-    if np.ma.isMaskedArray(values):
-        return np.ma.asarray(values, dtype=np.float64).filled(np.nan)
+    if isinstance(values, np.ma.MaskedArray):
+        missing, held = np.ma.getmaskarray(values), np.asarray(values.data)
+        if held.dtype.kind in "fiubO":
+            held = held.astype(object if held.dtype.kind == "O" else np.float64)
+            held[missing] = np.nan
+        return held
     try:
         return np.asarray(values.detach().cpu() if hasattr(values, "detach") else values)
     except (TypeError, ValueError, RuntimeError, OverflowError) as error:

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from greybox_torch.data.card import TIME
 from greybox_torch.data.checks import check_finite, check_length, check_time, numbers
 from greybox_torch.data.readers.time_stamps import TimeStamps
+from greybox_torch.data.steps import usual_step
 from greybox_torch.errors import UserError, did_you_mean
-
-TIME = "time"
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def samples_of_arrays(
         step, stamps = float(sample_time), np.arange(length, dtype=np.float64) * sample_time
     else:
         check_time(stamps, lambda k: f"{place}, time, sample {k} (the first is 0)")
-        step = float(np.median(np.diff(stamps)))
+        step = usual_step(stamps)
     return Samples(stamps, step, held, _units(place, units, held))
 
 
@@ -136,6 +136,8 @@ def _signal(place: str, channel: str, values: Any) -> NDArray[np.float64]:
 def _seconds(time: Any, where: str) -> NDArray[np.float64]:
     """Time stamps in seconds; dates and times count from the first of them."""
     stamps = time if np.ma.isMaskedArray(time) or hasattr(time, "detach") else np.asarray(time)
+    if isinstance(stamps, np.ma.MaskedArray) and stamps.dtype.kind in "mM":
+        stamps = np.where(np.ma.getmaskarray(stamps), np.array("NaT", dtype=stamps.dtype), stamps.data)
     if isinstance(stamps, np.ndarray) and stamps.dtype.kind in "mM" and stamps.ndim == 1 and stamps.size:
         since = stamps - stamps[0] if stamps.dtype.kind == "M" else stamps
         seconds = since / np.timedelta64(1, "s")
@@ -151,13 +153,13 @@ def _seconds(time: Any, where: str) -> NDArray[np.float64]:
 
 def _of_text(stamps: NDArray, where: str) -> NDArray[np.float64]:
     """Seconds of dates and times as text, read like those of a file: pandas.read_csv leaves them as they are."""
-    reads, seconds = TimeStamps(), np.empty(len(stamps))
+    reads, found = TimeStamps(), np.empty((2, len(stamps)))
     for k, text in enumerate(stamps):
         try:
-            seconds[k] = reads.seconds(text.strip())
+            found[:, k] = reads.minute_and_seconds(text.strip())
         except ValueError as error:
             raise UserError(f"{where}, sample {k} (the first is 0): found {str(text)!r:.40}: {error}") from None
-    return seconds - seconds[0]
+    return (found - found[:, :1]).sum(axis=0)
 
 
 def _since_the_first(stamps: Sequence[datetime], where: str) -> NDArray[np.float64]:

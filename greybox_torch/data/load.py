@@ -19,10 +19,11 @@ from greybox_torch.data.dataset import DataSet
 from greybox_torch.data.expression import Expression
 from greybox_torch.data.gaps import longest_gap, without_gaps
 from greybox_torch.data.missing import where_missing
-from greybox_torch.data.processing import EVEN, at_times, decimated, derivative, even_grid, unevenness
+from greybox_torch.data.processing import at_times, decimated, derivative, even_grid
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.recording import Channel, Recording
 from greybox_torch.data.source import Read, Source, source_of
+from greybox_torch.data.steps import EVEN, unevenness, usual_step
 from greybox_torch.data.units import conversion, slip
 from greybox_torch.errors import UserError
 from greybox_torch.files import absolute
@@ -106,7 +107,7 @@ def _rows(place: str, source: Source, rows: list[int] | None) -> tuple[int, int]
 def _time(
     place: str, path: Path, card: Card, source: Source, clock: str | None, start: int, stop: int
 ) -> tuple[NDArray[np.float64], float]:
-    """Time stamps (N,) and the median step, in seconds."""
+    """Time stamps (N,) and the usual step, in seconds."""
     if card.time is None or clock is None:
         step = card.sample_time or 1.0
         with np.errstate(over="ignore"):
@@ -120,7 +121,7 @@ def _time(
     time = source.columns[clock][start:stop]
     time = time if card.time.unit == "s" else time * card.time.seconds
     check_time(time, lambda sample: f"{place}: {source.place(clock, start + sample)}")
-    return time, float(np.median(np.diff(time)))
+    return time, usual_step(time)
 
 
 def _check_unit_of_time(path: Path, time: TimeEntry, source: Source, clock: str) -> None:
@@ -195,7 +196,7 @@ def _processed(
         steps, gap = without_gaps(time), longest_gap(time)
         if gap is not None and card.resample is not None:
             done.notes.append(f"{gap}, filled with straight lines by resample")
-        if np.abs(steps / sample_time - 1.0).max() > EVEN:
+        if unevenness(time, gaps=False) > EVEN:
             done.notes.append(
                 f"time stamps are uneven: steps between {steps.min():.6g} and {steps.max():.6g} s, median {sample_time:.6g} s"
             )

@@ -8,22 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from greybox_torch.data.steps import usual_step
 from greybox_torch.errors import UserError
-
-EVEN = 0.01
-"""Time stamps are even where no step differs from the median by more than this share."""
 
 Samples = NDArray[np.float64]
 _PADDING = 200  # reflected samples at the ends
 _LEAST_WEIGHT = 0.25  # at the ends of a recording it is a half
 _LOWEST_CUTOFF = 1e-7  # of the sampling rate: below it the filter's poles are one in double precision
-
-
-def unevenness(time: Samples) -> float:
-    """The largest deviation of a step from the median step, as a share of it."""
-    steps = np.diff(time)
-    median = float(np.median(steps))
-    return float(np.max(np.abs(steps - median)) / median)
 
 
 def even_grid(time: Samples, step: float, place: str) -> Samples:
@@ -34,8 +25,8 @@ def even_grid(time: Samples, step: float, place: str) -> Samples:
     count = np.floor((time[-1] - time[0]) / step * (1 + 1e-12)) + 1
     if not 2 <= count <= 100 * len(time) + 100:
         raise UserError(
-            f"{place}: resample = {step:g} s makes {count:g} samples of {len(time)}; the median step of the recording is "
-            f"{np.median(np.diff(time)):.6g} s"
+            f"{place}: resample = {step:g} s makes {count:g} samples of {len(time)}; the usual step of the recording is "
+            f"{usual_step(time):.6g} s"
         )
     return time[0] + np.arange(int(count)) * step
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from greybox_torch.data.processing import EVEN, unevenness
+from greybox_torch.data.steps import EVEN, unevenness
 from greybox_torch.drafting.recorded import Recorded
 
 _TIME = re.compile(

@@ -7,10 +7,9 @@ from collections.abc import Iterable, Iterator
 from glob import glob, has_magic
 from pathlib import Path
 
+from greybox_torch.data.card import USUAL
 from greybox_torch.errors import UserError
 from greybox_torch.files import absolute
-
-CARD = "dataset.toml"
 
 
 def find_cards(places: Iterable[str | os.PathLike[str]], *, beside: Path) -> dict[str, Path]:
@@ -35,7 +34,7 @@ def find_cards(places: Iterable[str | os.PathLike[str]], *, beside: Path) -> dic
                 )
     if not found:
         shown = ", ".join(os.fspath(place) for place in places) or "nothing"
-        raise UserError(f"{shown}: no data card found; expected a folder with {CARD} somewhere below it, or a pattern")
+        raise UserError(f"{shown}: no data card found; expected a folder with {USUAL} somewhere below it, or a pattern")
     return dict(sorted(found.items()))
 
 
@@ -51,7 +50,7 @@ def _cards_at(place: str, beside: Path) -> Iterator[tuple[Path, Path]]:
     elif has_magic(place):
         root = absolute(_folder_before(path))
         for match in sorted(absolute(Path(match)) for match in glob(place, recursive=True)):  # noqa: PTH207 - may begin at the root
-            card = match / CARD if match.is_dir() else match
+            card = match / USUAL if match.is_dir() else match
             if card.is_file() and beside not in card.parents:
                 yield root, card
     else:
@@ -61,8 +60,8 @@ def _cards_at(place: str, beside: Path) -> Iterator[tuple[Path, Path]]:
 def _below(root: Path, beside: Path) -> Iterator[Path]:
     for folder, inner, files in os.walk(root):
         inner[:] = sorted(name for name in inner if not name.startswith(".") and Path(folder, name) != beside)
-        if CARD in files:
-            yield Path(folder, CARD)
+        if USUAL in files:
+            yield Path(folder, USUAL)
 
 
 def _folder_before(pattern: Path) -> Path:
@@ -74,6 +73,6 @@ def _folder_before(pattern: Path) -> Path:
 def _name(root: Path, card: Path) -> str:
     """Such as "line1/robot7": also the folder of its results below that of the fleet's."""
     folder = card.parent.relative_to(root).as_posix()
-    own = () if card.name == CARD else (card.stem,)
+    own = () if card.name == USUAL else (card.stem,)
     parts = [*(() if folder == "." else (folder,)), *own]
     return "/".join(parts) or root.name or "recordings"

@@ -1,12 +1,11 @@
 """The folder of one data set's results: what `greybox diagnose` writes there, and beside it the row of the fleet's table.
 
-The row is written together with the other files, all of them or none. So a data set counts as done exactly when its row is there, whoever
-was killed meanwhile: a worker, the scheduler or the command itself.
+The row is written together with the other files and takes its place last. So a data set counts as done exactly when its row is there,
+whoever was killed meanwhile: a worker, the scheduler or the command itself.
 """
 
 from __future__ import annotations
 
-import json
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,7 +14,7 @@ from greybox_torch.errors import UserError
 from greybox_torch.files import json_text, remove_all, write_all, write_text
 from greybox_torch.fleets.job import Job
 from greybox_torch.fleets.row import Row
-from greybox_torch.reading import read_text
+from greybox_torch.reading import read_json
 
 ROW = "fleet_row.json"
 RESULTS = ("verdict.json", "report.html", "model.json", "model.safetensors", "hypotheses.json")
@@ -26,7 +25,7 @@ RIVALS = "hypotheses"
 def stored(job: Job, fingerprint: str) -> Row | None:
     """The row of an earlier run, if it came to a verdict on the same files with the same choices, and its files are all there."""
     try:
-        row = Row.from_json(json.loads(read_text(job.folder / ROW, "a row of the fleet's table")))
+        row = Row.from_json(read_json(job.folder / ROW, "a row of the fleet's table"))
     except (UserError, ValueError):
         return None
     whole = all((job.folder / name).is_file() for name in RESULTS)

@@ -9,6 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from greybox_torch.data import DataSet, Recording
+from greybox_torch.data.steps import steps_of
 from greybox_torch.data.units import dimensionality, written_alike
 from greybox_torch.errors import UserError
 from greybox_torch.files import toml_key
@@ -79,7 +80,7 @@ def make_records(dataset: DataSet, model: GreyBoxModel, recordings: Sequence[Rec
     first = np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(np.int64)
     u = [[_held(r.signals[i.name]) for r in recordings] for i in model.inputs]
     y = [[r.signals[o.name] for r in recordings] for o in model.outputs]
-    dt = [np.append(np.diff(r.time), r.sample_time) for r in recordings]
+    dt = [np.append(steps_of(r.time), r.sample_time) for r in recordings]
     total = int(lengths.sum())
     return Records(
         u=np.ascontiguousarray([np.concatenate(row) for row in u]).reshape(len(u), total),

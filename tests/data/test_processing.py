@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from greybox_torch.data.processing import at_times, decimated, derivative, even_grid, unevenness
+from greybox_torch.data.processing import at_times, decimated, derivative, even_grid
+from greybox_torch.data.steps import unevenness
 from greybox_torch.data.units import conversion, slip
 from greybox_torch.errors import UserError
 

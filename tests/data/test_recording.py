@@ -22,6 +22,7 @@ from greybox_torch.errors import UserError
 
 N = 20
 U, Y = np.arange(float(N)), np.linspace(-1, 1, N)
+STAMPS = np.ma.masked_array(np.datetime64("2026-11-21T08:00:00") + np.arange(N) * np.timedelta64(2, "s"), mask=U == 12)
 
 
 def made(**changes: Any) -> Recording:
@@ -82,6 +83,7 @@ def test_sequences_of_other_libraries(values: Any) -> None:
     [
         [1.0, None, *[3.0] * 10],
         np.ma.masked_array([1.0, 7.0, *[3.0] * 10], mask=[0, 1, *[0] * 10]),
+        np.ma.masked_array([1.0, "?", *[3.0] * 10], mask=[0, 1, *[0] * 10], dtype=object),
         pa.array([1, None, *[3] * 10]),
         [1.0, float("nan"), *[3.0] * 10],
     ],
@@ -95,6 +97,22 @@ def test_dates_and_times_count_from_the_first(unit: str) -> None:
     stamps = np.datetime64("2026-11-21T08:00:00", unit) + np.arange(N) * np.timedelta64(2, "s")
     np.testing.assert_array_equal(made(sample_time=None, time=stamps).time, np.arange(N) * 2.0)
     np.testing.assert_array_equal(made(sample_time=None, time=stamps - stamps[0]).time, np.arange(N) * 2.0)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"signals": {"u": np.ma.masked_array(["a"] * N)}}, 'channel "u": holds text; expected real numbers'),
+        ({"signals": {"u": np.ma.masked_array([1 + 2j] * N)}}, 'channel "u": holds complex numbers'),
+        ({"sample_time": None, "time": STAMPS}, "time, sample 12 (the first is 0): the time stamp is missing"),
+        ({"sample_time": None, "time": STAMPS - STAMPS[0]}, "sample 12 (the first is 0): the time stamp is missing"),
+    ],
+)
+def test_masked_arrays_of_other_kinds(changes: dict[str, Any], message: str) -> None:
+    """Seen: a raw ValueError, a recording without the imaginary parts, and "found 0 s after 22 s" of a time that is masked."""
+    with pytest.raises(UserError) as error:
+        made(**changes)
+    assert message in str(error.value)
 
 
 def test_times_of_a_zone_pass_to_summer_time() -> None:

@@ -96,7 +96,7 @@ def test_dates_as_text(table: Callable[[dict[str, Any]], Any]) -> None:
     """Seen: the time stamps of pandas.read_csv, text, were refused as no numbers, though a card reads the same file."""
     dates = [f"2025-03-04T10:15:02.{20 * k:03d}" for k in range(N)]
     found = Recording.from_dataframe("steps", table({"t": dates, "speed": Y}), time="t")
-    np.testing.assert_allclose(found.time, 0.02 * np.arange(N), atol=1e-6)
+    np.testing.assert_allclose(found.time, 0.02 * np.arange(N), rtol=0, atol=1e-12)
     with pytest.raises(
         UserError, match=r"time, sample 3 \(the first is 0\): found 'soon': expected a time stamp like 2026"
     ):

@@ -138,6 +138,8 @@ def test_options_at_fault(results: Path, options: list[str], message: str) -> No
     [
         (None, "no such file; expected results of greybox diagnose"),
         ("{", "not JSON"),
+        ("[" * 200_000, "not JSON: nested too deeply"),
+        ("1" * 5000, "not JSON: Exceeds the limit"),
         ("[]", "\"schema\": found 'list'"),
         ('{"schema": "greybox-hypotheses/1", "dataset": null}', "recordings in memory"),
         ('{"schema": "greybox-hypotheses/1", "dataset": "nowhere.toml"}', "nowhere.toml"),
@@ -148,6 +150,26 @@ def test_results_at_fault(results: Path, content: str | None, message: str) -> N
     file.unlink() if content is None else file.write_text(content)
     result = CliRunner().invoke(app, ["design", str(results)])
     assert result.exit_code == 2 and message in result.output
+
+
+@pytest.mark.parametrize(
+    ("damage", "message"),
+    [
+        ({"checkpoint": None}, "no such file"),
+        ({"probability": "abc"}, "damaged: ValueError: could not convert string to float: 'abc'"),
+        ({"in_verdict": "abc"}, "damaged: ValueError"),
+        ({"initial": {"steps": 2.0}}, "damaged: AttributeError"),
+        ({"initial": {"steps": {"speed": None}}}, "damaged: TypeError"),
+    ],
+)
+def test_damaged_hypothesis(results: Path, damage: dict[str, object], message: str) -> None:
+    """Seen: tracebacks, of a probability that is no number and of start states that are none."""
+    file = results / "hypotheses.json"
+    content = json.loads(file.read_text())
+    content["findings"][0][0] |= damage
+    file.write_text(json.dumps(content))
+    with pytest.raises(UserError, match=message):
+        gt.design(results)
 
 
 def test_damaged_list(results: Path) -> None:

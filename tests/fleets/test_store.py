@@ -77,7 +77,15 @@ def test_nothing_is_done_where_a_file_is_gone(job: Job, lost: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["{", '{"answer": "nothing"}', '{"dataset": "a", "card": "b", "answer": "nothing", "new": 1}', "[]", "7"]
+    "text",
+    [
+        "{",
+        '{"answer": "nothing"}',
+        '{"dataset": "a", "card": "b", "answer": "nothing", "new": 1}',
+        "[]",
+        "7",
+        "[" * 200_000,
+    ],
 )
 def test_a_row_of_another_form_is_none(job: Job, text: str) -> None:
     store(job, Row("pump", str(job.card), "nothing", fingerprint=""), results(job))

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from greybox_torch.data.columns.listing import Listing, is_sample
-from greybox_torch.data.readers.json_log import by_index
+from greybox_torch.data.readers.json_log import by_index, records_of
 from greybox_torch.errors import UserError
-from greybox_torch.reading import read_text
+from greybox_torch.reading import read_json
 
 _LOOKED_AT = 200
 """Records of which members are listed."""
@@ -18,7 +19,7 @@ _LOOKED_AT = 200
 
 def json_columns(path: Path) -> Listing:
     """Raises UserError for what is not JSON, or neither an object nor a list."""
-    content = _parsed(path, read_text(path, "a log in JSON"), "")
+    content = read_json(path, "a log in JSON")
     if isinstance(content, list):
         return _of_records(path, content[:_LOOKED_AT])
     if not isinstance(content, dict):
@@ -28,15 +29,7 @@ def json_columns(path: Path) -> Listing:
 
 def json_lines_columns(path: Path) -> Listing:
     """Raises UserError for lines that are no records."""
-    lines = [line for line in read_text(path, "a log in JSON").splitlines() if line.strip()][:_LOOKED_AT]
-    return _of_records(path, [_parsed(path, line, f", line {k}") for k, line in enumerate(lines, 1)])
-
-
-def _parsed(path: Path, text: str, place: str) -> Any:
-    try:
-        return json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise UserError(f"{path}{place}: not JSON: {error}; expected a log in JSON") from None
+    return _of_records(path, [record for _, record in islice(records_of(path), _LOOKED_AT)])
 
 
 def _of_records(path: Path, records: list[Any]) -> Listing:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from greybox_torch.data.columns.listing import Listing, of_shape
+from greybox_torch.data.readers.npz import header_of
 from greybox_torch.errors import UserError
 
 
@@ -21,9 +22,7 @@ def npz_columns(path: Path) -> Listing:
     with zipfile.ZipFile(path) as archive:
         for member in archive.namelist():
             with archive.open(member) as file:
-                version = np.lib.format.read_magic(file)
-                read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-                shape, _, dtype = read(file)
+                shape, dtype = header_of(file)
                 names += [f"{member.removesuffix('.npy')}.{name}" for name in (dtype.names or ()) if len(shape) == 1]
                 if dtype.kind not in "fiubmM":
                     continue

@@ -13,10 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.readers.column import Element, Field, Line, Step, inside, root_of, steps_of
-from greybox_torch.data.readers.table import Table, as_vector, check_declared, require
+from greybox_torch.data.readers.table import MOST_UNPACKED, Table, as_vector, check_declared, require
 from greybox_torch.errors import UserError, did_you_mean
-
-_MOST_UNPACKED = 1032  # a byte of deflate gives at most as many
 
 
 def read_hdf5(path: Path, columns: Collection[str]) -> Table:
@@ -96,10 +94,19 @@ def _read(path: Path, column: str, dataset: Any, is_matlab: bool) -> NDArray:
         raise UserError(f"{place}: holds nothing; expected real numbers")
     if dataset.is_virtual or dataset.external:
         raise UserError(f"{place}: its numbers stand in other files; expected numbers in this one")
-    most = dataset.id.get_storage_size() * (1 if dataset.compression is None else _MOST_UNPACKED)
-    check_declared(path, column, int(np.prod(dataset.shape, dtype=object)), most // max(dataset.dtype.itemsize, 1) + 1)
+    check_declared(path, column, int(np.prod(dataset.shape, dtype=object)), _most_samples(dataset))
     values = np.asarray(dataset[()])
     return values.T if is_matlab and values.ndim == 2 else values
+
+
+def _most_samples(dataset: Any) -> int:
+    """What the bytes that are stored of a dataset can at most be unpacked to. All filters pack but those that reorder or check."""
+    import h5py
+
+    created = dataset.id.get_create_plist()
+    filters = [created.get_filter(k)[0] for k in range(created.get_nfilters())]
+    packing = sum(one not in (h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32) for one in filters)
+    return dataset.id.get_storage_size() * MOST_UNPACKED**packing // max(dataset.dtype.itemsize, 1) + 1
 
 
 def _shown(step: Step) -> str:

@@ -5,6 +5,7 @@ Nested members are written with dots: "motor.current" is `{"motor": {"current": 
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Collection, Iterator
 from pathlib import Path
@@ -17,17 +18,14 @@ from greybox_torch.data.readers.column import Field, Step, inside, root_of, step
 from greybox_torch.data.readers.table import NoSuchColumn, Table, as_vector, require
 from greybox_torch.data.readers.time_stamps import TimeStamps, is_time_stamp
 from greybox_torch.errors import UserError
-from greybox_torch.reading import read_text
+from greybox_torch.reading import parsed_json, read_text
 
 _EXPECTED = "a log in JSON"
 
 
 def read_json(path: Path, columns: Collection[str]) -> Table:
     """Reads columns of a JSON file. Raises UserError for files that are not JSON and for columns that do not hold numbers."""
-    try:
-        content = json.loads(read_text(path, _EXPECTED))
-    except (ValueError, RecursionError) as error:
-        raise UserError(f"{path}: not JSON: {_said(error)}; expected {_EXPECTED}") from None
+    content = parsed_json(read_text(path, _EXPECTED), f"{path}", _EXPECTED)
     if isinstance(content, list):
         return _from_records(path, content, columns, None)
     if not isinstance(content, dict):
@@ -45,15 +43,20 @@ def read_json(path: Path, columns: Collection[str]) -> Table:
 def read_json_lines(path: Path, columns: Collection[str]) -> Table:
     """Reads columns of a file with one JSON record a line. Raises UserError, with the line, for whatever is no record."""
     records, lines = [], []
-    for line, text in enumerate(read_text(path, _EXPECTED).splitlines(), start=1):
-        if not text.strip():
-            continue
-        try:
-            records.append(json.loads(text))
-        except (ValueError, RecursionError) as error:
-            raise UserError(f"{path}, line {line}: not JSON: {_said(error)}; expected one record a line") from None
+    for line, record in records_of(path):
+        records.append(record)
         lines.append(line)
     return _from_records(path, records, columns, lines)
+
+
+def records_of(path: Path) -> Iterator[tuple[int, Any]]:
+    """Line number and content of every line that is not blank. Raises UserError, with the line, for what is not JSON.
+
+    Lines end where those of any text file do, not at the further separators of Unicode, which JSON allows in its texts.
+    """
+    for line, text in enumerate(io.StringIO(read_text(path, _EXPECTED), newline=None), start=1):
+        if text.strip():
+            yield line, parsed_json(text, f"{path}, line {line}", "one record a line")
 
 
 def by_index(value: Any) -> Any:
@@ -127,7 +130,3 @@ def _each(place: str, values: list[Any], lines: list[int] | None) -> Iterator[fl
         line = f"line {lines[k]}, " if lines else ""
         shown = json.dumps(value)[:40] if not isinstance(value, int) else "a number of very many digits"
         raise UserError(f"{place}, {line}sample {k} (the first is 0): found {shown}, expected a number")
-
-
-def _said(error: Exception) -> str:
-    return "nested too deeply" if isinstance(error, RecursionError) else str(error)

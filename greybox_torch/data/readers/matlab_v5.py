@@ -17,12 +17,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from greybox_torch.data.readers.table import MOST_SAMPLES
+from greybox_torch.data.readers.table import MOST_SAMPLES, MOST_UNPACKED
 from greybox_torch.reading import read_bytes
 
 _HEADER, _MATRIX, _COMPRESSED = 128, 14, 15
 _CELL, _STRUCT, _OBJECT, _CHAR, _SPARSE, _FUNCTION, _OPAQUE = 1, 2, 3, 4, 5, 16, 17
-_MOST_UNPACKED = 1032  # a byte of deflate gives at most as many
 _MOST_BYTES = 8 * MOST_SAMPLES
 _PREFIX = 2048  # enough of an element for its flags, dimensions and name
 _NUMBERS = {
@@ -100,7 +99,10 @@ class _Element:
         self.data = content[begin : begin + length]
 
     def matrix(self, most: int | None = None) -> _Element:
-        """The element itself, or the one that is packed in it, of which the first `most` bytes may do."""
+        """The element itself, or the one that is packed in it, of which the first `most` bytes may do.
+
+        Raises ValueError and zlib.error where what is packed is damaged, which only the whole of it tells for sure.
+        """
         if self.kind != _COMPRESSED:
             return self
         packed = self.data if most is None else self.data[:most]
@@ -109,10 +111,14 @@ class _Element:
         if len(head) < 8:
             raise ValueError("ends in the middle of a variable")
         _, declared = struct.unpack(self.order + "II", head)
-        if declared > min(len(self.data) * _MOST_UNPACKED, _MOST_BYTES):
+        if declared > min(len(self.data) * MOST_UNPACKED, _MOST_BYTES):
             raise ValueError(f"declares {declared} bytes, more than its {len(self.data)} can be unpacked to")
         wanted = declared if most is None else min(declared, most)
         rest = unpacker.decompress(unpacker.unconsumed_tail, wanted) if wanted else b""
+        if most is None and (unpacker.decompress(unpacker.unconsumed_tail, 1) or not unpacker.eof):
+            raise ValueError(
+                "unpacks to another length than it declares"
+            )  # zlib compares its checksum at the end alone
         tag = struct.pack(self.order + "II", struct.unpack(self.order + "I", head[:4])[0], len(rest))
         return _Element(memoryview(tag + rest), 0, 8 + len(rest), self.order)
 

@@ -7,6 +7,7 @@ import zipfile
 import zlib
 from collections.abc import Collection
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,12 +55,23 @@ def _array(path: Path, column: str, archive: zipfile.ZipFile, member: str) -> ND
     """The array of one member. Its header is read first: what it declares has to be what the member holds."""
     size = archive.getinfo(member).file_size
     with archive.open(member) as file:
-        version = np.lib.format.read_magic(file)
-        read_header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-        shape, _, dtype = read_header(file)
+        shape, dtype = header_of(file)
         if dtype.hasobject:
             raise ValueError("Object arrays cannot be read: they would have to be unpickled")
         count = math.prod(shape)
         check_declared(path, column, count, size // max(dtype.itemsize, 1))
     with archive.open(member) as file:
         return np.lib.format.read_array(file, allow_pickle=False)
+
+
+def header_of(file: IO[bytes]) -> tuple[tuple[int, ...], np.dtype]:
+    """Shape and type of the array that a member holds. Raises ValueError and what Python's parser raises where it is none.
+
+    NumPy's public functions know the formats 1.0 and 2.0. Format 3.0 differs in the names of fields alone, which are UTF-8.
+    """
+    version = np.lib.format.read_magic(file)
+    read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+    shape, _, dtype = read(file)
+    if version == (3, 0) and dtype.names is not None:
+        dtype.names = tuple(name.encode("latin-1").decode() for name in dtype.names)
+    return shape, dtype

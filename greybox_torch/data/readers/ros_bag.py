@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sqlite3
 from collections.abc import Collection, Iterator
 from contextlib import closing
@@ -11,15 +12,20 @@ from urllib.parse import quote
 from greybox_torch.data.readers.robot_log import Message, RobotLog, columns_of_log
 from greybox_torch.data.readers.ros_messages import Decoder
 from greybox_torch.data.readers.table import Table
+from greybox_torch.errors import UserError
 
 
 def read_ros_bag(path: Path, columns: Collection[str]) -> Table:
-    """Reads fields of messages. Raises UserError for types of messages that are not known, and what SQLite raises for a damaged file."""
+    """Reads fields of messages.
+
+    Raises UserError for types of messages that are not known and bags that are still open, and what SQLite raises for a damaged file.
+    """
     return columns_of_log(ros_bag(path), columns)
 
 
 def ros_bag(path: Path) -> RobotLog:
-    """The log in a file. Raises what SQLite raises for a damaged file."""
+    """The log in a file. Raises UserError where messages are still beside it, and what SQLite raises for a damaged file."""
+    _check_closed(path)
     with closing(_opened(path)) as bag:
         topics = bag.execute("SELECT id, name, type, serialization_format FROM topics").fetchall()
         definitions = _definitions(bag)
@@ -43,6 +49,16 @@ def ros_bag(path: Path) -> RobotLog:
         {name: counts.get(number, 0) for number, name, _, _ in topics},
         messages,
     )
+
+
+def _check_closed(path: Path) -> None:
+    """Raises UserError where SQLite has not yet moved what was recorded from its log of changes into the file."""
+    changes = path.with_name(f"{path.name}-wal")
+    if changes.is_file() and changes.stat().st_size:
+        raise UserError(
+            f"{path}: messages are still in {changes.name} beside it; expected a bag that was closed "
+            f'(sqlite3 {shlex.quote(path.name)} "PRAGMA wal_checkpoint(TRUNCATE)" moves them into the file)'
+        )
 
 
 def _definitions(bag: sqlite3.Connection) -> dict[str, tuple[str, str]]:

@@ -15,6 +15,9 @@ from greybox_torch.errors import UserError, did_you_mean
 MOST_SAMPLES = 200_000_000
 """Most samples of a column. What a file declares beyond that is not believed, so that nobody allocates it."""
 
+MOST_UNPACKED = 1032
+"""Bytes that a byte of deflate gives at most."""
+
 
 class NoSuchColumn(UserError):
     """A file does not have the column `column`."""
@@ -64,13 +67,13 @@ def _shown(name: str) -> str:
     return (name if name.isprintable() else ascii(name))[:80]
 
 
-def check_declared(path: Path, column: str, samples: int, most_bytes: int) -> None:
+def check_declared(path: Path, column: str, samples: int, most: int) -> None:
     """Raises UserError where a file declares more samples than it can hold, before anything is allocated for them.
 
     Args:
-        most_bytes: what the bytes of the file that belong to the column could at most be unpacked to.
+        most: samples that the bytes of the file that belong to the column could at most be unpacked to.
     """
-    if samples > MOST_SAMPLES or samples > most_bytes:
+    if samples > MOST_SAMPLES or samples > most:
         raise UserError(
             f'{path}, column "{column}": declares {samples:.6g} samples, more than the file can hold or than {MOST_SAMPLES:.0e}; '
             "the file is damaged, or larger than is read at once"

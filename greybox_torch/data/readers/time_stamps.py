@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from datetime import date
 
-_DAY = 86400.0
+from greybox_torch.data.checks import DAY
+
 _EPOCH = date(1970, 1, 1).toordinal()
 _STAMP = re.compile(
     r"""(?:(?P<date>(?P<y>\d{4})[-/](?P<m>\d{1,2})[-/](?P<d>\d{1,2}) | (?P<d2>\d{1,2})\.(?P<m2>\d{1,2})\.(?P<y2>\d{4})
@@ -28,6 +29,13 @@ class TimeStamps:
 
     def seconds(self, text: str) -> float:
         """Raises ValueError for what is no time stamp, and for a date that may be one of two."""
+        minute, seconds = self.minute_and_seconds(text)
+        return minute + seconds
+
+    def minute_and_seconds(self, text: str) -> tuple[float, float]:
+        """The seconds to the minute, a whole number, and those from it on: together they hold more digits than their sum, a quarter of a
+        microsecond since 1970. Raises ValueError as :meth:`seconds` does.
+        """
         found = _STAMP.fullmatch(text)
         if found is None:
             raise ValueError("expected a time stamp like 2026-03-01T12:00:00.010")
@@ -36,7 +44,7 @@ class TimeStamps:
             hour = hour % 12 + 12 * (found["half"] in "Pp")
         if hour > 23 or minute > 59 or second >= 61.0:
             raise ValueError("no such time of day")
-        return self._days(found) * _DAY + 3600.0 * hour + 60.0 * minute + second - _offset(found["zone"])
+        return self._days(found) * DAY + 3600.0 * hour + 60.0 * minute - _offset(found["zone"]), second
 
     def _days(self, found: re.Match[str]) -> int:
         if found["date"] is None:

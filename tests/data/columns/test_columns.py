@@ -66,6 +66,7 @@ FILES: dict[str, tuple[Callable[[Path], object], list[str], dict[str, float]]] =
     "new.mat": (mat73, ["Y[:, 0]", "Y[:, 1]"], {}),
     "log.h5": (hdf5, ["Y[:, 0]", "Y[:, 1]", "log.u"], {"Ts": 0.01}),
     "log.npz": (lambda p: np.savez(p, u=U, Y=Y, Ts=0.01, name="x"), ["u", "Y[:, 0]", "Y[:, 1]"], {"Ts": 0.01}),
+    "fields.npz": (lambda p: np.savez(p, log=np.zeros(12, dtype=[("θ", "f8"), ("u", "f8")])), ["log.θ", "log.u"], {}),
     "log.parquet": (lambda p: pq.write_table(pa.table({"u": U, "name": ["a"] * 12}), p), ["u"], {}),
     "log.json": (
         text(json.dumps({"log": {"u": U.tolist()}, "Ts": 0.01, "runs": [{"w": U.tolist()}]})),
@@ -77,6 +78,7 @@ FILES: dict[str, tuple[Callable[[Path], object], list[str], dict[str, float]]] =
 }  # fmt: skip
 
 
+@pytest.mark.filterwarnings("ignore:Stored array in format 3.0")
 @pytest.mark.parametrize("name", FILES)
 def test_columns(tmp_path: Path, name: str) -> None:
     write, names, single = FILES[name]

@@ -14,6 +14,7 @@ import h5py
 import numpy as np
 import pyarrow as pa
 import pytest
+import scipy.io
 from pyarrow import parquet
 
 from greybox_torch.data.readers import READERS, read_table
@@ -130,6 +131,22 @@ def test_hdf5_that_declares_more_than_it_holds(tmp_path: Path, shape: tuple[int,
     refused(tmp_path / "a.mat", "declares .* samples")
 
 
+@pytest.mark.parametrize(
+    "packed",
+    [
+        {"scaleoffset": 0},
+        {"scaleoffset": 0, "compression": "gzip"},
+        {"compression": "lzf"},
+        {"shuffle": True, "fletcher32": True},
+    ],
+)
+def test_hdf5_that_holds_more_than_its_bytes(tmp_path: Path, packed: dict[str, int | str]) -> None:
+    """Seen: a sound dataset behind a filter that is no compression to h5py was "damaged"."""
+    with h5(tmp_path / "a.h5") as file:
+        file.create_dataset("u", data=np.full(100_000, 3), **packed)
+    np.testing.assert_array_equal(read_table(tmp_path / "a.h5", ("u",)).columns["u"], np.full(100_000, 3.0))
+
+
 def test_hdf5_of_other_kinds(tmp_path: Path) -> None:
     with h5(tmp_path / "a.h5") as file:
         file["u"] = h5py.Empty("f8")
@@ -181,6 +198,23 @@ def matrix(dimensions: tuple[int, ...], kind: int = 6, length: int | None = None
 def test_matlab_that_declares_more_than_it_holds(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "a.mat").write_bytes(content)
     refused(tmp_path / "a.mat", r"declares|cannot be read as|no column")
+
+
+def test_matlab_with_a_bit_that_fell_over(tmp_path: Path) -> None:
+    """Seen: 23 of 300 such files were read as other numbers, as the checksum behind them was never looked at."""
+    values = np.random.default_rng(0).normal(size=500)
+    scipy.io.savemat(tmp_path / "a.mat", {"u": values}, do_compression=True)
+    sound = (tmp_path / "a.mat").read_bytes()
+    np.testing.assert_array_equal(read_table(tmp_path / "a.mat", ("u",)).columns["u"], values)
+    for place in range(300, len(sound), 37):
+        (tmp_path / "a.mat").write_bytes(sound[:place] + bytes([sound[place] ^ 0x10]) + sound[place + 1 :])
+        refused(tmp_path / "a.mat", "cannot be read|declares|unpacks|no column")
+
+
+def test_matlab_that_unpacks_to_more_than_it_declares(tmp_path: Path) -> None:
+    packed = zlib.compress(element(14, matrix((5, 1))) + bytes(8))
+    (tmp_path / "a.mat").write_bytes(mat(element(15, packed, len(packed))))
+    refused(tmp_path / "a.mat", "unpacks to another length than it declares")
 
 
 def test_parquet_with_a_column_twice(tmp_path: Path) -> None:

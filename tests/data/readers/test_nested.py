@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import scipy.io
 
+from greybox_torch.data.columns import columns_of
 from greybox_torch.data.readers import read_table
 from greybox_torch.errors import UserError
 
@@ -150,6 +151,15 @@ def test_records(tmp_path: Path, name: str) -> None:
         read_table(tmp_path / name, ("motor.v",))
     with pytest.raises(UserError, match='no column "z"; found t, motor, y'):
         read_table(tmp_path / name, ("z",))
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_separators_of_unicode_end_no_line(tmp_path: Path, end: str) -> None:
+    """Seen: a log with a line separator in a note was "not JSON: Unterminated string"."""
+    lines = [json.dumps({"u": u, "note": "one\u2028two\x85three"}, ensure_ascii=False) for u in U]
+    (tmp_path / "a.jsonl").write_text(end.join(lines), encoding="utf-8", newline="")
+    np.testing.assert_array_equal(read_table(tmp_path / "a.jsonl", ("u",)).columns["u"], U)
+    assert columns_of(tmp_path / "a.jsonl").names == ("u",)
 
 
 @pytest.mark.parametrize(

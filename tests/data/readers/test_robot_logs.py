@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sqlite3
 import sys
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -139,6 +140,22 @@ def test_a_damaged_bag(bag: Path, tmp_path: Path) -> None:
     cut.write_bytes(bag.read_bytes()[: bag.stat().st_size // 2])
     with pytest.raises(UserError, match=r"cut\.(db3|mcap): "):
         read_table(cut, ["/link.torque"])
+
+
+def test_a_bag_that_is_still_open(tmp_path: Path) -> None:
+    """Seen: of a bag whose recorder was killed, the messages that SQLite had not moved into the file yet were left out without a word."""
+    file = a_bag(tmp_path, StoragePlugin.SQLITE3)
+    with closing(sqlite3.connect(file)) as recorder:
+        recorder.execute("PRAGMA journal_mode = WAL")
+        recorder.execute("DELETE FROM messages WHERE id > 60")
+        recorder.commit()
+        beside = (
+            rf"{file.name}: messages are still in {file.name}-wal beside it; expected a bag that was closed \(sqlite3 "
+        )
+        for read in (columns_of, lambda path: read_table(path, ["/link.torque"])):
+            with pytest.raises(UserError, match=beside):
+                read(file)
+    assert len(read_table(file, ["/link.torque"]).columns["/link.torque"]) == 10
 
 
 def test_json_in_mcap(tmp_path: Path) -> None:

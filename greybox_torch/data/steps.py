@@ -1,0 +1,50 @@
+"""The usual step of time stamps, and how even they are. What floats round of the stamps is no step of the logger's.
+
+Seconds since 1970 hold a quarter of a microsecond: stamps 0.1 ms apart differ by 0.09990 or 0.10014 ms, and seldom by what they stand for.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greybox_torch.data.gaps import gap_steps, without_gaps
+
+EVEN = 0.01
+"""Time stamps are even where no step differs from the usual one by more than this share."""
+
+_HELD = 1e-6
+"""Share of a step that floats have to hold: stamps that hold more are taken as they are."""
+
+
+def usual_step(time: NDArray[np.float64]) -> float:
+    """The median step (s) of increasing time stamps (N,); the mean one of stamps that are even as far as floats tell, but for gaps."""
+    mean = _even(time)
+    return float(np.median(np.diff(time))) if mean is None else mean
+
+
+def steps_of(time: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The steps (N - 1,) of increasing time stamps (N,) in s; those of stamps that are even as far as floats tell are the usual one."""
+    steps, mean = np.diff(time), _even(time)
+    return steps if mean is None else np.where(np.abs(steps - mean) <= _rounded(time), mean, steps)
+
+
+def unevenness(time: NDArray[np.float64], *, gaps: bool = True) -> float:
+    """The largest deviation of a step from the usual one, as a share of it. Without `gaps`, steps that are gaps do not count."""
+    step, steps = usual_step(time), steps_of(time)
+    counted = steps if gaps else steps[~gap_steps(time)]
+    return float(np.max(np.abs(counted - step)) / step)
+
+
+def _even(time: NDArray[np.float64]) -> float | None:
+    """The mean step but for gaps, where floats round steps noticeably and all agree with it as far as they tell."""
+    rounded, steps = _rounded(time), without_gaps(time)
+    if not len(steps) or rounded <= _HELD * np.median(steps):
+        return None
+    mean = float(np.mean(steps))
+    return mean if np.abs(steps - mean).max() <= rounded else None
+
+
+def _rounded(time: NDArray[np.float64]) -> float:
+    """By how much a step may differ for the rounding of its two stamps: each from nanoseconds to a float, and that to seconds."""
+    return 2.0 * float(np.spacing(np.abs(time[[0, -1]]).max()))
