@@ -74,7 +74,7 @@ class TorqueRipple(Mechanism):
         return self if order is None else TorqueRipple(order)
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        order = values["order"]
+        order = strongest_wave(values, self.harmonics)["order"]  # orders 2 and 3 are harmonics of the first, which weight would be
         if is_angle(around) and abs(order - 1.0) < LIKE_WEIGHT:
             return f"order = {order:.4g}: once per turn is what weight does"
         return not_seen_to_repeat(order, around)
