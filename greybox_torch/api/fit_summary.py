@@ -35,13 +35,14 @@ def print_estimate(console: Console, found: Estimation, profiles: Mapping[str, P
 
 def statistics(found: Estimation) -> dict[str, str]:
     """How the estimation ended, in words."""
+    fpe = f"{found.fpe:.6g}" if found.fpe < float("inf") else "undetermined: no more samples than unknowns"
     several = " (each output's error over its spread)" if len(found.problem.model.outputs) > 1 else ""
     return {
         "termination": found.termination.value,
         "iterations": f"{found.iterations} (of the descent that ended here; not of windows, of a search, or of descents that were left)",
         "evaluations": str(found.evaluations),
         "mean squared error": f"{found.mse:.6g}{several}",
-        "final prediction error": f"{found.fpe:.6g}",
+        "final prediction error": fpe,
         "samples": str(found.samples),
     }
 

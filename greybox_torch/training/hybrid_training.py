@@ -14,6 +14,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.free_run import FreeRun
+from greybox_torch.estimate.metrics import final_prediction_error
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.estimate.termination import Termination
@@ -185,11 +186,10 @@ def _result(polished: Polished, simulator: Simulator) -> Estimation:
     run = FreeRun(problem, simulator)
     here = run.quadratic(run.start)
     mse = float("inf") if here is None else 2.0 * here.cost / problem.samples
-    share = len(run.start) / problem.samples
     return Estimation(
         problem=problem,
         mse=mse,
-        fpe=mse * (1 + share) / (1 - share),
+        fpe=final_prediction_error(mse, len(run.start), problem.samples),
         samples=problem.samples,
         iterations=0 if optimum is None else optimum.iterations,
         evaluations=0 if optimum is None else optimum.evaluations,
