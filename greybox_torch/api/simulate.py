@@ -150,8 +150,9 @@ class SimulationResult(Result):
         return buffer.getvalue()
 
 
+@np.errstate(all="ignore")
 def _correlation(measured: np.ndarray, simulated: np.ndarray) -> float:
-    """Of two signals (N,), where both are known; NaN where one of them is constant."""
+    """Of two signals (N,), where both are known; NaN where one of them is constant; NaN or zero where it cannot be squared."""
     known = np.isfinite(measured) & np.isfinite(simulated)
     if known.sum() < 2 or min(np.ptp(measured[known]), np.ptp(simulated[known])) == 0:
         return float("nan")
