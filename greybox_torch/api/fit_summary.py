@@ -11,9 +11,9 @@ from greybox_torch.api.estimated import EstimatedStart, estimated_parameters, es
 from greybox_torch.api.scores import print_substeps
 from greybox_torch.estimate.brief_lists import brief_pairs, brief_sentences
 from greybox_torch.estimate.fit import Estimation
-from greybox_torch.estimate.name_lists import brief
 from greybox_torch.estimate.profile import LEVEL, Profile
 from greybox_torch.estimate.termination import Termination
+from greybox_torch.name_lists import brief
 from greybox_torch.report.tables import number, print_table
 
 
