@@ -99,7 +99,7 @@ def _run(
     """The rows in the order in which they came, and whether all of them did."""
     rows: list[Row] = []
     state = Progress(len(jobs))
-    folders = [folder, *{job.card.parent for job in jobs[:1]}]
+    folders = list(dict.fromkeys([folder, *(job.card.parent for job in jobs)]))
     try:
         with cluster.connected(scheduler, min(workers or allowed_cores(), len(jobs)), folders) as there:
             for job, done in share_out(there, jobs, diagnose_machine):
