@@ -55,13 +55,17 @@ def train_hybrid(
     """Estimate ``model`` on the experiments of role "estimation", attach a network, and train it.
 
     Args:
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
+        model: the physics, without a network.
         net: "friction" (a body's speed, and what else is asked for) or "residual" (any signals at any port), or "memory" (the
             same with hidden states).
         port: where; the driving body by default.
         signals: what it reads, by their names at the port.
         network: further arguments of :class:`FrictionNet`, :class:`ResidualNet` or :class:`MemoryNet`: units, seed, odd, dissipative,
             memories.
+        settings: of the training, its seed among them; by default ``TrainingSettings()``.
         physics: ``model`` as :func:`fit_physics` has estimated it before, so that several trainings share that; estimated here otherwise.
+        device: "cpu", "cuda" or "cuda:N".
         progress: is called with what is being done, and at the end of every epoch.
         snapshot: a file that the training can be taken up from; it is written at most every half a second.
         resume: take it up from there.
