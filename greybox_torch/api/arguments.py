@@ -124,14 +124,14 @@ def check_precision(precision: str) -> str:
 
 def check_whole(argument: str, value: Any, low: int, high: int) -> int:
     """``value``, which may be one of NumPy's. Raises ArgumentError where it is not a whole number from ``low`` to ``high``."""
-    if isinstance(value, bool) or not isinstance(value, Integral) or not low <= value <= high:
+    if isinstance(value, bool) or not isinstance(value, Integral) or not low <= int(value) <= high:
         raise ArgumentError(argument, value, f"expected a whole number from {low} to {high}")
     return int(value)
 
 
 def check_seconds(argument: str, value: Any) -> float:
     """``value``, which may be one of NumPy's. Raises ArgumentError where it is not a finite number above zero."""
-    if isinstance(value, bool) or not isinstance(value, Real) or not 0 < value < math.inf:
+    if isinstance(value, bool) or not isinstance(value, Real) or not 0 < float(value) < math.inf:
         raise ArgumentError(argument, value, "expected a number above 0")
     return float(value)
 
