@@ -24,11 +24,9 @@ from greybox_torch.checkpoint_card import SCHEMA, CheckpointCard, read_checkpoin
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.files import absolute, json_text, write_all
 from greybox_torch.reading import read_bytes
+from greybox_torch.result_names import MODEL
 
 _SUFFIXES = (".safetensors", ".json")
-
-IN_RESULTS = "model"
-"""What the checkpoint in a folder of results is called."""
 
 
 @dataclass(frozen=True)
@@ -157,15 +155,15 @@ def _instead(path: Path) -> str:
         return ""
     if path.is_dir():
         return f"; {path} is a folder without results (model.json)"
-    if path.name != f"{IN_RESULTS}.json" and _is_there(path.with_name(f"{IN_RESULTS}.json")):
+    if path.name != f"{MODEL}.json" and _is_there(path.with_name(f"{MODEL}.json")):
         return f"; {path} is none, the folder {path.parent} has results: name the folder"
     return ""
 
 
 def _found(path: Path) -> Path:
     """`path`, or the checkpoint `model` in it where it is a folder of results and not a checkpoint's name itself."""
-    inside, itself = _halves(path / IN_RESULTS), _halves(path) if path.name not in ("", "..") else ()
-    return path / IN_RESULTS if any(map(_is_there, inside)) and not any(map(_is_there, itself)) else path
+    inside, itself = _halves(path / MODEL), _halves(path) if path.name not in ("", "..") else ()
+    return path / MODEL if any(map(_is_there, inside)) and not any(map(_is_there, itself)) else path
 
 
 def checkpoint_name(path: Path) -> str:

@@ -95,9 +95,12 @@ def evaluate(
     """Simulate all experiments of ``data`` with the card's values, or with the model of a checkpoint.
 
     Args:
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
         checkpoint: what `greybox fit`, `train` or `diagnose` have written: either of its two files, what their names have in
             common, or the folder that it is in.
         model: wins over the model that the card names; either stands in for a checkpoint's whose class is not where it was.
+        device: "cpu", "cuda" or "cuda:N".
+        precision: "double" or "single".
 
     Raises:
         UserError: neither card nor caller names a model, or the checkpoint is damaged or of another model.

@@ -80,12 +80,14 @@ def write_new(path: Path, text: str) -> None:
         try:
             os.link(temporary, path)  # fails where the name is taken, in whatever moment it was
         except FileExistsError:
-            raise UserError(f"{path}: is there already and is not overwritten; expected a new name, or --out") from None
+            raise _taken(path) from None
         except OSError:  # a file system without links
             if path.exists():
-                raise UserError(
-                    f"{path}: is there already and is not overwritten; expected a new name, or --out"
-                ) from None
+                raise _taken(path) from None
+
+
+def _taken(path: Path) -> UserError:
+    return UserError(f"{path}: is there already and is not overwritten; expected a new name, or --out")
 
 
 def write_all(contents: Mapping[Path, str | bytes]) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import wraps
+from functools import partial, wraps
 from typing import ParamSpec, TypeVar
 
 import numpy as np
@@ -143,23 +143,41 @@ def eigenvalues(matrix: np.ndarray) -> np.ndarray:
 
 
 def cholesky(matrix: np.ndarray) -> np.ndarray:
-    """The lower factor of positive definite matrices (…, n, n); a ridge is added to those that are not."""
-    try:
-        return np.linalg.cholesky(matrix)
-    except np.linalg.LinAlgError:
-        sound = np.nan_to_num(matrix, posinf=0.0, neginf=0.0)
-        values, vectors = np.linalg.eigh(0.5 * (sound + np.swapaxes(sound, -1, -2)))
-        least = np.maximum(RIDGE * values[..., -1:], 1e-300)
-        lifted = (vectors * np.maximum(values, least)[..., None, :]) @ np.swapaxes(vectors, -1, -2)
-        return np.linalg.cholesky(lifted + _ridge(lifted))
+    """The lower factor of positive definite matrices (…, n, n). Of one that is not, the factor of the nearest that is, with a ridge; there,
+    entries that are not finite count as zero.
+    """
+    return _one_by_one(np.linalg.cholesky, _lifted_factor, matrix)
+
+
+def _lifted_factor(matrix: np.ndarray) -> np.ndarray:
+    """The lower factor of the positive definite matrix nearest to one (n, n), and of a ridge."""
+    sound = np.nan_to_num(matrix, posinf=0.0, neginf=0.0)
+    values, vectors = np.linalg.eigh(0.5 * sound + 0.5 * sound.T)
+    least = max(RIDGE * values[-1], 1e-300)
+    lifted = (vectors * np.maximum(values, least)) @ vectors.T
+    return np.linalg.cholesky(lifted + _ridge(lifted))
 
 
 def pseudo_inverse(matrix: np.ndarray, rcond: float = RIDGE, *, hermitian: bool = False) -> np.ndarray:
-    """The pseudo-inverse of (…, m, n), as :func:`numpy.linalg.pinv`; zeros where there is none."""
+    """The pseudo-inverse of (…, m, n), as :func:`numpy.linalg.pinv`; zeros where there is none that is finite."""
+    return _one_by_one(
+        partial(np.linalg.pinv, rcond=rcond, hermitian=hermitian), lambda one: np.zeros(one.T.shape), matrix
+    )
+
+
+def _one_by_one(
+    function: Callable[[np.ndarray], np.ndarray], instead: Callable[[np.ndarray], np.ndarray], stack: np.ndarray
+) -> np.ndarray:
+    """``function`` of a stack of matrices (…, m, n), and ``instead`` of those of them for which it fails or is not finite."""
     try:
-        return np.linalg.pinv(matrix, rcond=rcond, hermitian=hermitian)
+        found = function(stack)
+        if np.isfinite(found).all():
+            return found
     except np.linalg.LinAlgError:
-        return np.zeros(np.swapaxes(matrix, -1, -2).shape)
+        pass
+    if stack.ndim == 2:
+        return instead(stack)
+    return np.stack([_one_by_one(function, instead, one) for one in stack])
 
 
 def _ridge(matrix: np.ndarray) -> np.ndarray:

@@ -54,7 +54,15 @@ def load(path: str | PathLike[str], model: GreyBoxModel | str | None = None) -> 
 
 
 def load_saved_model(path: str | PathLike[str], model: GreyBoxModel | str | None = None) -> SavedModel:
-    """What :func:`load` loads, with the checkpoint's card and the model without effects. Arguments and errors are the same."""
+    """What :func:`load` loads, with the checkpoint's card and the model without effects.
+
+    Args:
+        path: of the checkpoint, as for :func:`load`.
+        model: the plain model, or how to load it, where it is not at hand otherwise, as for :func:`load`.
+
+    Raises:
+        UserError: the checkpoint is damaged, is of a model that is not at hand, or is not one of ``model``.
+    """
     path = Path(path)
     checkpoint = load_checkpoint(path)
     return _saved(path, checkpoint, _with_effects(path, _plain_model(path, checkpoint, model), checkpoint))

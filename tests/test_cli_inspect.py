@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -37,6 +39,24 @@ def test_table_and_figure(bench: Path) -> None:
     assert "Written to results/bench: channels.png" in result.stdout
     assert figure.read_bytes().startswith(b"\x89PNG")
     assert files(Path("results")) == ["bench", "bench/channels.png"]
+
+
+WITHOUT_TORCH = """
+import sys
+from greybox_torch.__main__ import main
+try:
+    main()
+finally:
+    assert "torch" not in sys.modules
+"""
+
+
+def test_data_alone_are_looked_at_without_torch(bench: Path) -> None:
+    """Seen: a second of waiting for torch, for the sake of one list of names in a sentence."""
+    command = [sys.executable, "-c", WITHOUT_TORCH, "inspect", "bench/dataset.toml"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "Steps (estimation)" in done.stdout
 
 
 def test_json(bench: Path) -> None:

@@ -12,7 +12,16 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from greybox_torch.linear_algebra import HARDLY, cholesky, eigh, least_squares, lengths, on_one_thread, solve
+from greybox_torch.linear_algebra import (
+    HARDLY,
+    cholesky,
+    eigh,
+    least_squares,
+    lengths,
+    on_one_thread,
+    pseudo_inverse,
+    solve,
+)
 
 MATRIX = np.array([[4.0, 1.0], [1.0, 3.0]])
 RIGHT = np.array([1.0, 2.0])
@@ -40,11 +49,36 @@ def test_a_matrix_that_is_not_definite_gets_a_factor_near_to_it() -> None:
     np.testing.assert_allclose(lower @ lower.T, almost, atol=1e-6)
 
 
+NOT_DEFINITE = np.array([[1.0, 2.0], [2.0, 1.0]])
+NOT_FINITE = [np.array([[1.0, value], [value, 2.0]]) for value in (np.nan, np.inf)]
+
+
+@pytest.mark.parametrize("other", [NOT_DEFINITE, *NOT_FINITE])
+def test_a_matrix_beside_one_that_cannot_be_factored_has_its_own_factor(other: np.ndarray) -> None:
+    """Seen: all of the stack changed by 5e-13, and factors of NaN."""
+    both = cholesky(np.stack([MATRIX, other]))
+    np.testing.assert_array_equal(both[0], np.linalg.cholesky(MATRIX))
+    np.testing.assert_array_equal(both[1], cholesky(other))
+    assert np.isfinite(both).all() and (np.diagonal(both[1]) > 0).all()
+
+
+@pytest.mark.parametrize("hermitian", [False, True])
+@pytest.mark.parametrize("other", [*NOT_FINITE, np.full((2, 2), 1e-320)])
+def test_a_matrix_beside_one_without_a_pseudo_inverse_has_its_own(other: np.ndarray, hermitian: bool) -> None:
+    """Seen: NaN in place of zeros, and zeros in place of the others' pseudo-inverses."""
+    with np.errstate(all="ignore"):
+        both = pseudo_inverse(np.stack([MATRIX, other]), hermitian=hermitian)
+    np.testing.assert_array_equal(both[0], np.linalg.pinv(MATRIX, hermitian=hermitian))
+    np.testing.assert_array_equal(both[1], np.zeros((2, 2)))
+
+
 @example(np.full((3, 3), 1e-273), np.full(3, 1e40))
 @given(arrays(float, (3, 3), elements=ANY), arrays(float, 3, elements=ANY))
 def test_the_answer_is_finite_whatever_is_asked(matrix, right) -> None:
     with np.errstate(all="ignore"):
         assert np.isfinite(least_squares(np.clip(matrix, -1e100, 1e100), np.clip(right, -1e100, 1e100))).all()
+        assert np.isfinite(cholesky(np.clip(matrix, -1e100, 1e100))).all()
+        assert np.isfinite(pseudo_inverse(np.clip(matrix, -1e100, 1e100))).all()
         assert np.isfinite(solve(np.clip(matrix, -1e100, 1e100), np.clip(right, -1e100, 1e100))).all()
 
 

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from greybox_torch.cores import allowed_cores
 from greybox_torch.files import json_text, write_text
 
 ROOT = Path(__file__).parents[2]
@@ -55,7 +56,7 @@ def diagnose_all(
     lock = threading.Lock()
 
     def one(name: str) -> None:
-        outcome = diagnose(cards[name], out / name, time_limit, threads=max(1, (os.cpu_count() or 1) // workers))
+        outcome = diagnose(cards[name], out / name, time_limit, threads=max(1, allowed_cores() // workers))
         with lock:
             tell(name, outcome)
 

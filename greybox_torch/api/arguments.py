@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from numbers import Integral, Real
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -122,15 +123,15 @@ def check_precision(precision: str) -> str:
 
 
 def check_whole(argument: str, value: Any, low: int, high: int) -> int:
-    """Raises ArgumentError where ``value`` is not a whole number from ``low`` to ``high``."""
-    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+    """``value``, which may be one of NumPy's. Raises ArgumentError where it is not a whole number from ``low`` to ``high``."""
+    if isinstance(value, bool) or not isinstance(value, Integral) or not low <= int(value) <= high:
         raise ArgumentError(argument, value, f"expected a whole number from {low} to {high}")
-    return value
+    return int(value)
 
 
 def check_seconds(argument: str, value: Any) -> float:
-    """Raises ArgumentError where ``value`` is not a finite number above zero."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < math.inf:
+    """``value``, which may be one of NumPy's. Raises ArgumentError where it is not a finite number above zero."""
+    if isinstance(value, bool) or not isinstance(value, Real) or not 0 < float(value) < math.inf:
         raise ArgumentError(argument, value, "expected a number above 0")
     return float(value)
 

@@ -38,10 +38,12 @@ class CardResult(DraftedFile):
 
     @property
     def text(self) -> str:
+        """The card, in TOML."""
         return self.draft.text
 
     @property
     def open(self) -> tuple[str, ...]:
+        """What is left to fill in, a line each."""
         return self.draft.open
 
     @property

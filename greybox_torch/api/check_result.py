@@ -39,10 +39,12 @@ class CheckResult(Result):
 
     @property
     def usable(self) -> bool:
+        """Whether nothing that was found is an error, of the model or of the card."""
         return not any(finding.level == "error" for finding in self.findings)
 
     @property
     def compiled(self) -> bool:
+        """Whether the equations have a compiled form."""
         return self.examined.compiled
 
     @property

@@ -104,6 +104,7 @@ def compare(
     A model whose simulation overflows is reported so, beside the others.
 
     Args:
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
         models: by the name they are to have: models with the values that they hold, results of a fit or a diagnosis, or checkpoints by
             path. What the data set's card says of parameters and start states is meant for the first of them, and for others of its kind.
         device: "cpu", "cuda" or "cuda:N".

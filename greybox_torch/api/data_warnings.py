@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from greybox_torch.checking.constant_channels import constant_channels
 from greybox_torch.checking.joined_files import joined_files
 from greybox_torch.checking.lone_samples import lone_samples
@@ -12,7 +14,9 @@ from greybox_torch.data import DataSet
 from greybox_torch.data.data_warning import DataWarning, InASentence
 from greybox_torch.drafting.contradicted import contradictions
 from greybox_torch.drafting.contradicted_steps import contradicted_steps
-from greybox_torch.model import GreyBoxModel
+
+if TYPE_CHECKING:
+    from greybox_torch.model import GreyBoxModel
 
 
 class NothingToEstimateFrom(InASentence):

@@ -47,6 +47,7 @@ def diagnose(
     Args:
         model: searched from the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else the
             declared ones. It stays as it is; the result's ``model`` is a copy with the effects that were found.
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
         time_limit: seconds after which the best answer so far is given, with a list of what was not tried. Only two
             steps may take longer, as no answer is possible without them: the fit of the model as it stands, and the
             comparison of the result with all experiments.

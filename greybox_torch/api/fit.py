@@ -50,6 +50,7 @@ def fit(
     Args:
         model: estimated from the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else
             the declared ones. It stays as it is; the result's ``model`` is a copy with the estimates.
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
         starts: how many sets of start values to try, drawn around those given; by default only those given, and many
             where these turn out poor.
         seed: of the random start values.

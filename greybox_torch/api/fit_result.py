@@ -30,12 +30,11 @@ from greybox_torch.mechanisms.stored import stored_effects
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
 from greybox_torch.report import notebook
+from greybox_torch.result_names import FIT, MODEL
 from greybox_torch.systems import model_reference
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-RESULT, MODEL = "fit.json", "model"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -108,7 +107,7 @@ class FitResult(EstimatedModel):
     def files(self, folder: Path) -> dict[Path, str | bytes]:
         """The result as JSON, the model as a checkpoint, and a figure of every profile."""
         return {
-            folder / RESULT: json_text(self.content(folder)),
+            folder / FIT: json_text(self.content(folder)),
             **checkpoint_files(folder / MODEL, self._checkpoint()),
             **{folder / f"profile_{name}.png": self._profile_picture(name) for name in self.profiles},
         }

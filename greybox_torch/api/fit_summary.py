@@ -11,9 +11,9 @@ from greybox_torch.api.estimated import EstimatedStart, estimated_parameters, es
 from greybox_torch.api.scores import print_substeps
 from greybox_torch.estimate.brief_lists import brief_pairs, brief_sentences
 from greybox_torch.estimate.fit import Estimation
-from greybox_torch.estimate.name_lists import brief
 from greybox_torch.estimate.profile import LEVEL, Profile
 from greybox_torch.estimate.termination import Termination
+from greybox_torch.name_lists import brief
 from greybox_torch.report.tables import number, print_table
 
 
@@ -35,13 +35,14 @@ def print_estimate(console: Console, found: Estimation, profiles: Mapping[str, P
 
 def statistics(found: Estimation) -> dict[str, str]:
     """How the estimation ended, in words."""
+    fpe = f"{found.fpe:.6g}" if found.fpe < float("inf") else "undetermined: no more samples than unknowns"
     several = " (each output's error over its spread)" if len(found.problem.model.outputs) > 1 else ""
     return {
         "termination": found.termination.value,
         "iterations": f"{found.iterations} (of the descent that ended here; not of windows, of a search, or of descents that were left)",
         "evaluations": str(found.evaluations),
         "mean squared error": f"{found.mse:.6g}{several}",
-        "final prediction error": f"{found.fpe:.6g}",
+        "final prediction error": fpe,
         "samples": str(found.samples),
     }
 

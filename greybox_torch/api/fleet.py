@@ -12,6 +12,7 @@ from typing import Any
 from greybox_torch.api.arguments import check_device, check_seconds, check_seed, check_whole
 from greybox_torch.api.fleet_machine import diagnose_machine
 from greybox_torch.api.fleet_result import FleetResult
+from greybox_torch.cores import allowed_cores
 from greybox_torch.diagnosis.settings import settings_from_file, settings_from_mapping
 from greybox_torch.errors import ArgumentError, Kind
 from greybox_torch.files import absolute
@@ -61,7 +62,7 @@ def fleet(
         time_limit: seconds after which the search on one data set stops and the best answer so far is given.
         seed: written into the verdicts; the search itself draws no random numbers.
         device: "cpu", "cuda" or "cuda:N", as the workers have it.
-        workers: processes on this machine; by default one for each core.
+        workers: processes on this machine; by default one for each core that this process may use.
         scheduler: address of a Dask scheduler whose workers are to be used in their place. They have to see the same files under the same
             paths.
         progress: is told how far it has come, after every data set.
@@ -98,9 +99,9 @@ def _run(
     """The rows in the order in which they came, and whether all of them did."""
     rows: list[Row] = []
     state = Progress(len(jobs))
-    folders = [folder, *{job.card.parent for job in jobs[:1]}]
+    folders = list(dict.fromkeys([folder, *(job.card.parent for job in jobs)]))
     try:
-        with cluster.connected(scheduler, min(workers or cluster.cores(), len(jobs)), folders) as there:
+        with cluster.connected(scheduler, min(workers or allowed_cores(), len(jobs)), folders) as there:
             for job, done in share_out(there, jobs, diagnose_machine):
                 row, kept = (killed_row(job), False) if isinstance(done, Killed) else done
                 rows.append(row)

@@ -20,6 +20,7 @@ from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
 from greybox_torch.reading import read_json
 from greybox_torch.restored import load_beside
+from greybox_torch.result_names import HYPOTHESES, MODEL, RIVALS
 from greybox_torch.systems import load_model, model_reference
 
 if TYPE_CHECKING:
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from greybox_torch.diagnosis.describe.rivals import Rival
 
 SCHEMA = "greybox-hypotheses/1"
-FILE, FOLDER, MODEL = "hypotheses.json", "hypotheses", "model"
 _OF_A_HYPOTHESIS = re.compile(r"\d+-.+\.(json|safetensors)")
 Starts = Mapping[str, Mapping[str, float]]
 
@@ -90,8 +90,8 @@ def hypothesis_files(folder: Path, result: DiagnosisResult, checkpoint: Checkpoi
             free_starts=True,
             dataset=checkpoint.dataset,
         )
-        files |= checkpoint_files(folder / FOLDER / name, own)
-        entry = {"checkpoint": f"{FOLDER}/{name}", "port": rival.port, "mechanism": rival.mechanism}
+        files |= checkpoint_files(folder / RIVALS / name, own)
+        entry = {"checkpoint": f"{RIVALS}/{name}", "port": rival.port, "mechanism": rival.mechanism}
         entry |= {"probability": rival.probability, "initial": rival.initial, "in_verdict": _in_verdict(result, rival)}
         findings.setdefault(rival.finding, []).append(entry)
     path = result.data.path
@@ -103,12 +103,12 @@ def hypothesis_files(folder: Path, result: DiagnosisResult, checkpoint: Checkpoi
         "findings": list(findings.values()),
         "complete": result.verdict.complete,
     }
-    return {**files, folder / FILE: json_text(content)}
+    return {**files, folder / HYPOTHESES: json_text(content)}
 
 
 def kept_hypotheses(folder: Path) -> list[Path]:
     """The files of the hypotheses that some diagnosis has left in a folder; none that goes by another kind of name."""
-    return [path for path in (folder / FOLDER).glob("*") if _OF_A_HYPOTHESIS.fullmatch(path.name)]
+    return [path for path in (folder / RIVALS).glob("*") if _OF_A_HYPOTHESIS.fullmatch(path.name)]
 
 
 def read_hypotheses(folder: Path, model: str | None = None) -> Hypotheses:
@@ -120,7 +120,7 @@ def read_hypotheses(folder: Path, model: str | None = None) -> Hypotheses:
     Raises:
         UserError: the folder holds no such results, they are damaged, or the data set that they are of is not there.
     """
-    path = folder / FILE
+    path = folder / HYPOTHESES
     content = _content(path)
     card = content.get("dataset")
     if not isinstance(card, str):

@@ -137,6 +137,7 @@ def inspect(data: DataSet, model: GreyBoxModel | str | None = None) -> Inspectio
     """Look at the channels of a data set, and check it against a model.
 
     Args:
+        data: from :func:`greybox_torch.load_dataset`, or made with ``DataSet(…)``.
         model: an object, or a name as :func:`greybox_torch.load_model` takes it; by default the card's. Without
             a model only the data are looked at.
 

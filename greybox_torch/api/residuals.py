@@ -111,7 +111,19 @@ class ResidualResult(Result):
 def residuals(
     model: GreyBoxModel | Any, data: DataSet, *, name: str | None = None, device: str = "cpu", precision: str = "double"
 ) -> ResidualResult:
-    """Test the errors of a model's free runs. Arguments and errors are those of :func:`greybox_torch.simulate`."""
+    """Test the errors of a model's free runs: whether they are white, and whether the inputs still explain part of them.
+
+    Args:
+        model: with the values that it holds, as for :func:`greybox_torch.simulate`; a result of a fit or a diagnosis stands for its model.
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
+        name: what the model is called in the result; by default as for :func:`greybox_torch.simulate`.
+        device: "cpu", "cuda" or "cuda:N".
+        precision: "double" or "single".
+
+    Raises:
+        UserError: model and data do not fit, or an argument is at fault.
+        NumericalError: the simulation overflows in every experiment.
+    """
     simulated = simulate(model, data, name=name, device=device, precision=precision)
     return ResidualResult(simulated.run, simulated.name)
 

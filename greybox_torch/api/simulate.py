@@ -150,8 +150,9 @@ class SimulationResult(Result):
         return buffer.getvalue()
 
 
+@np.errstate(all="ignore")
 def _correlation(measured: np.ndarray, simulated: np.ndarray) -> float:
-    """Of two signals (N,), where both are known; NaN where one of them is constant."""
+    """Of two signals (N,), where both are known; NaN where one of them is constant; NaN or zero where it cannot be squared."""
     known = np.isfinite(measured) & np.isfinite(simulated)
     if known.sum() < 2 or min(np.ptp(measured[known]), np.ptp(simulated[known])) == 0:
         return float("nan")
@@ -166,6 +167,7 @@ def simulate(
     Args:
         model: used with the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else the
             declared ones. The result of a fit or a diagnosis stands for its model.
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
         name: what the model is called in the result; by default "refit" for the result of a fit, "augmented" for those of ``diagnose`` and
             ``train`` and for a model with effects, "held values" for one that holds some (``fit.model``, or after ``set_values()``), else
             "start".

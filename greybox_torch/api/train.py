@@ -54,6 +54,7 @@ def train(
     Args:
         model: the physics, estimated first, from the values that it holds: those set by ``set_values()``, else the start values of the data
             set's card, else the declared ones. It stays as it is; the result's ``model`` is a copy with the trained network.
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
         net: "friction" (a body's speed, and what else is asked for) or "residual" (any signals at any port), or "memory" (the
             same with hidden states).
         port: where it acts; by default the first body that the model declares.

@@ -30,13 +30,14 @@ from greybox_torch.mechanisms.stored import stored_effects
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
 from greybox_torch.report import notebook
+from greybox_torch.result_names import MODEL, TRAINED
 from greybox_torch.systems import model_reference
 from greybox_torch.training import Explanation, Trained
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-RESULT, MODEL, NAMED_MODEL, FIGURE = "train.json", "model", "named", "learned.png"
+NAMED_MODEL, FIGURE = "named", "learned.png"
 """The hybrid, the model with a law in the network's place, and the picture of what the network has learned."""
 
 
@@ -112,7 +113,7 @@ class TrainingResult(EstimatedModel):
         """The result as JSON, the hybrid as a checkpoint, what was learned as a figure, the model with the law as a checkpoint."""
         learned, explained = self.plot_learned(), self.explanation
         contents: dict[Path, str | bytes] = {
-            folder / RESULT: json_text(self.content(folder)),
+            folder / TRAINED: json_text(self.content(folder)),
             **checkpoint_files(folder / MODEL, self._checkpoint(self.trained.result)),
         }
         if learned is not None:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.data_warning import InASentence
-from greybox_torch.estimate.name_lists import brief
-from greybox_torch.model import GreyBoxModel
+from greybox_torch.name_lists import brief
+
+if TYPE_CHECKING:
+    from greybox_torch.model import GreyBoxModel
 
 
 @dataclass(frozen=True)

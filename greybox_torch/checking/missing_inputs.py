@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.gaps import SAMPLES_LOST as LONGEST
-from greybox_torch.model import GreyBoxModel
+
+if TYPE_CHECKING:
+    from greybox_torch.model import GreyBoxModel
 
 
 @dataclass(frozen=True)

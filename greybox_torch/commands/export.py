@@ -5,20 +5,20 @@ from __future__ import annotations
 from pathlib import Path
 
 from greybox_torch.api.export import check_kind, export
-from greybox_torch.checkpoint import IN_RESULTS
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.results_folder import check_folder
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.errors import UserError
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.restored import load, load_beside
+from greybox_torch.result_names import MODEL
 from greybox_torch.systems import load_model
 
 
 def run(results: Path, to: str, dataset: Path | None, name: str | None, step: float | None, options: Options) -> None:
     """Writes the files to --out, by default beside the checkpoint."""
     check_kind(to)
-    stem = results / IN_RESULTS if results.is_dir() else results
+    stem = results / MODEL if results.is_dir() else results
     folder = options.out if options.out is not None else stem.parent / to
     check_folder(folder)
     model, data = _loaded(stem, dataset, options)

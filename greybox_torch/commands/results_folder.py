@@ -11,15 +11,16 @@ from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.errors import UserError
+from greybox_torch.result_names import FIT, MODEL, TRAINED, VERDICT
 
-COMMANDS = {"diagnose": "verdict.json", "fit": "fit.json", "train": "train.json"}
+COMMANDS = {"diagnose": VERDICT, "fit": FIT, "train": TRAINED}
 """The commands that write a model, model.safetensors and model.json, by what they write beside it."""
 
 
 def others_model(folder: Path, command: str) -> str:
     """What to warn of where ``folder`` holds the model of another command, whose results would lie beside one that is not theirs."""
     there = [name for name, file in COMMANDS.items() if name != command and (folder / file).is_file()]
-    if not there or not (folder / "model.json").is_file():
+    if not there or not (folder / f"{MODEL}.json").is_file():
         return ""
     named = " and ".join(f"greybox {name} ({COMMANDS[name]})" for name in there)
     return (

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from greybox_torch.estimate.identifiability import Unidentifiable
-from greybox_torch.estimate.name_lists import brief, listed
+from greybox_torch.name_lists import brief, listed
 
 MOST_SENTENCES = 5
 """Findings that are told in words; all are in the result's JSON."""

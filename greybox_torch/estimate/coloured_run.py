@@ -93,11 +93,6 @@ def spectrum(errors: np.ndarray) -> np.ndarray:
     return _smoothed(transformed(errors))
 
 
-def coloured_cost(errors: Sequence[np.ndarray]) -> float:
-    """Negative logarithm of the likelihood of ``errors`` [e] (N_e, n_y) with their own spectrum, but for a constant."""
-    return _cost([transformed(own) for own in errors])
-
-
 def _smoothed(frequencies: np.ndarray) -> np.ndarray:
     """Root mean square (N, n_y) of the transform (N, n_y) over neighbouring frequencies."""
     power, count = frequencies**2, len(frequencies)
@@ -110,7 +105,7 @@ def _smoothed(frequencies: np.ndarray) -> np.ndarray:
 
 
 def _cost(frequencies: Sequence[np.ndarray]) -> float:
-    """:func:`coloured_cost` of transforms."""
+    """Negative logarithm of the likelihood, but for a constant, of errors with these transforms [e] (N_e, n_y) and their own spectrum."""
     total = 0.0
     for own in frequencies:
         sizes = _smoothed(own)

@@ -15,7 +15,8 @@ from greybox_torch.estimate.metrics import fit_percent, root_mean_square
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.simulation.simulator import Simulator
 
-START, REFIT, AUGMENTED = MODELS = ("start", "refit", "augmented")
+START, AUGMENTED = "start", "augmented"
+MODELS = (START, "refit", AUGMENTED)
 """The models that a diagnosis compares: with the card's values, re-estimated, and with the effects found."""
 
 MOST = 0.7

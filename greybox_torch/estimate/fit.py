@@ -13,6 +13,7 @@ from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.identifiability import Unidentifiable, identifiability
 from greybox_torch.estimate.information import UNSEEN, energy_of
 from greybox_torch.estimate.levenberg_marquardt import DEFAULT, Settings
+from greybox_torch.estimate.metrics import final_prediction_error
 from greybox_torch.estimate.nested import descend_nested
 from greybox_torch.estimate.notes import notes
 from greybox_torch.estimate.overflow import overflow_error
@@ -31,8 +32,9 @@ class Estimation:
     """An estimate: the problem at its optimum and what is known about it.
 
     ``mse`` is the mean squared weighted error; ``fpe`` Akaike's final prediction error with d counting free parameters and free start
-    states; ``uncertainty`` covers the unknowns in the order free parameters, then start states experiment by experiment.
-    ``identifiability`` says what the data do not determine at the optimum, ``notes`` what is to be known beside its ``termination``.
+    states, infinite from d = samples on; ``uncertainty`` covers the unknowns in the order free parameters, then start states experiment
+    by experiment. ``identifiability`` says what the data do not determine at the optimum, ``notes`` what is to be known beside its
+    ``termination``.
     """
 
     problem: Problem
@@ -126,11 +128,11 @@ def estimation_of(
     run, optimum = found.run, found.optimum
     mse = 2 * optimum.model.cost / samples
     point = _begun_where_without_effect(found, unidentifiable)
-    share, problem = len(point) / samples, run.at(point)
+    problem = run.at(point)
     return Estimation(
         problem=problem,
         mse=mse,
-        fpe=mse * (1 + share) / (1 - share),
+        fpe=final_prediction_error(mse, len(point), samples),
         samples=samples,
         iterations=optimum.iterations,
         evaluations=found.evaluations,

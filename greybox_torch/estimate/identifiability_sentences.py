@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from greybox_torch.estimate.name_lists import brief, listed
+from greybox_torch.name_lists import brief, listed
 
 MOST_CHANGES = 4
 """Changes that a sentence spells out, the first ones."""

@@ -17,7 +17,6 @@ from greybox_torch.estimate.levenberg_marquardt import (
     Optimum,
     Quadratic,
     Settings,
-    answered,
     descending,
 )
 
@@ -47,21 +46,6 @@ class Scale:
         return np.where(self.logarithmic, point, 1.0)
 
 
-def minimise_on_logarithms(
-    evaluate: Callable[[np.ndarray], Quadratic[None] | None],
-    start: np.ndarray,
-    lower: np.ndarray,
-    upper: np.ndarray,
-    *,
-    settings: Settings,
-    admissible: Callable[[np.ndarray], bool],
-    on_iteration: Callable[[int, float, float], None] | None = None,
-) -> Optimum[None] | None:
-    """As :func:`minimise`, with positive unknowns varied by factors. A bound at zero is approached and not reached."""
-    descent = descending_on_logarithms(start, lower, upper, settings=settings, on_iteration=on_iteration)
-    return answered(descent, evaluate, admissible)
-
-
 def descending_on_logarithms(
     start: np.ndarray,
     lower: np.ndarray,
@@ -70,7 +54,9 @@ def descending_on_logarithms(
     settings: Settings,
     on_iteration: Callable[[int, float, float], None] | None = None,
 ) -> Descending[None]:
-    """What :func:`minimise_on_logarithms` does, as questions about the unknowns themselves."""
+    """As :func:`descending`, with positive unknowns varied by factors; it asks about the unknowns themselves. A bound at zero is approached
+    and not reached.
+    """
     scale = Scale.of(start, lower)
     descent = descending(
         scale.seen(start),

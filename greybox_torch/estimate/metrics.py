@@ -27,6 +27,16 @@ def root_mean_square(measured: np.ndarray, simulated: np.ndarray) -> float:
     return float(np.sqrt(np.mean(error**2))) if np.isfinite(error).all() else float("inf")
 
 
+def final_prediction_error(mse: float, unknowns: int, samples: int) -> float:
+    """Akaike's final prediction error, mse (1 + d/N) / (1 − d/N) with d unknowns and N samples: the mean squared error to be expected of
+    other recordings of the kind. Infinite where there are no more samples than unknowns, which pass through all of them.
+
+    Source: L. Ljung, "System Identification: Theory for the User", 2nd edition, 1999, sections 7.4 and 16.4.
+    """
+    share = unknowns / samples
+    return mse * (1 + share) / (1 - share) if share < 1 else float("inf")
+
+
 def digits_between(before: float, after: float, most: int = 4) -> int:
     """Decimals, one at the least, that show how two fits in % differ where both are near 100; ``most`` where even these do not."""
     return next((n for n in range(1, most) if f"{before:.{n}f}" != f"{after:.{n}f}"), most if before != after else 1)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from greybox_torch.estimate.identifiability import Unidentifiable
-from greybox_torch.estimate.name_lists import listed
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.termination import Outcome, Termination
+from greybox_torch.name_lists import listed
 
 
 def notes(problem: Problem, unidentifiable: Sequence[Unidentifiable]) -> tuple[Outcome, ...]:

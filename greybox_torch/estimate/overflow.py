@@ -9,9 +9,9 @@ import numpy as np
 
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.free_run import simulate
-from greybox_torch.estimate.name_lists import listed
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.termination import Outcome, Termination
+from greybox_torch.name_lists import listed
 from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import Windows

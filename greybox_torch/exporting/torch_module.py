@@ -48,4 +48,4 @@ def _table(variables: Sequence[Variable], value: str = "") -> str:
 
 def _prose(text: str) -> str:
     """Text that may stand in a docstring."""
-    return text.replace("\\", "/").replace('"""', "'''").replace('"', "'")
+    return text.replace("\\", "/").replace('"', "'")

@@ -48,13 +48,6 @@ class Workers:
         return sum(there.values())
 
 
-def cores() -> int:
-    """Cores that this process may use, limits of its container included."""
-    from dask.system import CPU_COUNT
-
-    return CPU_COUNT
-
-
 @contextmanager
 def connected(scheduler: str | None, workers: int, folders: list[Path]) -> Iterator[Workers]:
     """The workers of the scheduler at that address; of a cluster on this machine, gone at the end, where it is None.

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
@@ -75,14 +74,10 @@ def histories(rows: Iterable[Row]) -> tuple[History, ...]:
     for row in rows:
         if row.recorded and row.answer not in ("failed", "unfinished"):
             by_machine.setdefault(row.machine, []).append(row)
-    found = [_history(machine, sorted(own, key=_day)) for machine, own in by_machine.items() if len(own) > 1]
+    found = [
+        _history(machine, sorted(own, key=lambda row: row.day)) for machine, own in by_machine.items() if len(own) > 1
+    ]
     return tuple(sorted(found, key=lambda history: (not history.changed, history.machine)))
-
-
-def _day(row: Row) -> float:
-    """Days since 1970-01-01; a date without a zone is taken as of UTC."""
-    at = datetime.fromisoformat(row.recorded or "")
-    return (at if at.tzinfo else at.replace(tzinfo=UTC)).timestamp() / 86400.0
 
 
 def _history(machine: str, rows: Sequence[Row]) -> History:
@@ -122,7 +117,7 @@ def _series(
     presence: bool = False,
     key: bool = False,
 ) -> Series:
-    days = np.array([_day(row) for row in rows])
+    days = np.array([row.day for row in rows])
     dates = tuple(str(row.recorded) for row in rows)
     changes = change_points(values, level=level, binary=presence) if np.isfinite(values).all() else ()
     spread = np.full(len(values), np.nan) if deviations is None else deviations

@@ -83,7 +83,7 @@ def latest(rows: Iterable[Row]) -> list[Row]:
     by_machine: dict[str, Row] = {}
     for row in rows:
         before = by_machine.get(row.machine)
-        if before is None or (row.recorded or "") >= (before.recorded or ""):
+        if before is None or row.day >= before.day:
             by_machine[row.machine] = row
     return list(by_machine.values())
 

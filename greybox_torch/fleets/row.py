@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from typing import Any
 
 from greybox_torch.data.card import Card
@@ -60,6 +61,14 @@ class Row:
     @property
     def failed(self) -> bool:
         return self.answer == "failed"
+
+    @property
+    def day(self) -> float:
+        """Days since 1970-01-01 when it was recorded, minus infinity where that is not known; a date without a zone is taken as of UTC."""
+        if not self.recorded:
+            return float("-inf")
+        at = datetime.fromisoformat(self.recorded)
+        return (at if at.tzinfo else at.replace(tzinfo=UTC)).timestamp() / 86400.0
 
     @property
     def key_parameter(self) -> str:

@@ -15,11 +15,9 @@ from greybox_torch.files import json_text, remove_all, write_all, write_text
 from greybox_torch.fleets.job import Job
 from greybox_torch.fleets.row import Row
 from greybox_torch.reading import read_json
+from greybox_torch.result_names import OF_A_DIAGNOSIS, RIVALS
 
 ROW = "fleet_row.json"
-RESULTS = ("verdict.json", "report.html", "model.json", "model.safetensors", "hypotheses.json")
-RIVALS = "hypotheses"
-"""The folder of the rivals' checkpoints, where there are any."""
 
 
 def stored(job: Job, fingerprint: str) -> Row | None:
@@ -28,7 +26,7 @@ def stored(job: Job, fingerprint: str) -> Row | None:
         row = Row.from_json(read_json(job.folder / ROW, "a row of the fleet's table"))
     except (UserError, ValueError):
         return None
-    whole = all((job.folder / name).is_file() for name in RESULTS)
+    whole = all((job.folder / name).is_file() for name in OF_A_DIAGNOSIS)
     return row if whole and not row.failed and row.fingerprint == fingerprint else None
 
 
@@ -46,6 +44,6 @@ def store_failure(job: Job, row: Row) -> None:
 
     Raises UserError where it cannot be written.
     """
-    remove_all(job.folder / name for name in RESULTS)
+    remove_all(job.folder / name for name in OF_A_DIAGNOSIS)
     shutil.rmtree(job.folder / RIVALS, ignore_errors=True)
     write_text(job.folder / ROW, json_text(row.as_json()))

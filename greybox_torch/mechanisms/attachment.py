@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import chain, count
+from typing import TypeVar
 
 from greybox_torch.mechanisms.mechanism import Mechanism
 from greybox_torch.model import Body, GreyBoxModel
 from greybox_torch.model.ports import driving_body
+
+Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,11 @@ class Attachment:
     def prefix(self) -> str:
         """What the names of its parameters and states begin with."""
         return f"{self.port}.{self.mechanism.name}{self.label}"
+
+    def own(self, values: Mapping[str, Value]) -> dict[str, Value]:
+        """What ``values`` of a model, by name, say of its parameters, by the names that its law has for them."""
+        begin = f"{self.prefix}."
+        return {name.removeprefix(begin): value for name, value in values.items() if name.startswith(begin)}
 
     @property
     def named(self) -> tuple[str, str]:

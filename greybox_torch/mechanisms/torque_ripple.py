@@ -15,7 +15,7 @@ from greybox_torch.mechanisms.waves import (
     HARMONICS,
     amplitudes,
     amplitudes_up_to,
-    strongest_wave,
+    strongest_alone,
     wave_parameters,
     waves,
 )
@@ -62,10 +62,7 @@ class TorqueRipple(Mechanism):
 
     def plainer(self, values: Mapping[str, float]) -> tuple[Mechanism, Mapping[str, float]] | None:
         """Its strongest wave alone: of a ripple of order 4 that was taken for order 2 and harmonics, that is the second."""
-        if self.harmonics == 1:
-            return None
-        alone = strongest_wave(values, self.harmonics)
-        return TorqueRipple(alone["order"]), alone
+        return strongest_alone(TorqueRipple, values, self.harmonics)
 
     def nearest(
         self, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray

@@ -11,7 +11,7 @@ from greybox_torch.mechanisms.waves import (
     HARMONICS,
     amplitudes_up_to,
     slope_of_waves,
-    strongest_wave,
+    strongest_alone,
     wave_parameters,
     waves,
 )
@@ -77,10 +77,7 @@ class TransmissionError(Mechanism):
 
     def plainer(self, values: Mapping[str, float]) -> tuple[Mechanism, Mapping[str, float]] | None:
         """Its strongest wave alone."""
-        if self.harmonics == 1:
-            return None
-        alone = strongest_wave(values, self.harmonics)
-        return TransmissionError(alone["order"]), alone
+        return strongest_alone(TransmissionError, values, self.harmonics)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         fixed = {"order": self.order, **({"damping": 0.0} if "speed" in around.ranges else {})}

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import torch
 
-from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.model import Parameter, Signals
 
 HARMONICS = 3
@@ -36,6 +36,16 @@ def strongest_wave(values: Mapping[str, float], harmonics: int) -> dict[str, flo
     beside = {n: v for n, v in values.items() if n not in amplitudes_up_to(harmonics)}
     alone = zip(amplitudes(1), (values[n] for n in amplitudes(largest)), strict=True)
     return beside | dict(alone) | {"order": largest * values["order"]}
+
+
+def strongest_alone(
+    law: Callable[[float], Mechanism], values: Mapping[str, float], harmonics: int
+) -> tuple[Mechanism, Mapping[str, float]] | None:
+    """The ``law`` of an order with the largest wave of a sum alone, and its values; None where the sum has no other."""
+    if harmonics == 1:
+        return None
+    alone = strongest_wave(values, harmonics)
+    return law(alone["order"]), alone
 
 
 def wave_parameters(around: Surroundings, order: float, harmonics: int, unit: str | None = None) -> list[Parameter]:

@@ -25,10 +25,12 @@ class Body:
 
     @property
     def kind(self) -> str:
+        """What a mechanism has to be made for to act here."""
         return "body"
 
     @property
     def signals(self) -> dict[str, Signal]:
+        """What the model says of the place, by the names that mechanisms read."""
         pairs = {"speed": self.speed, "position": self.position, "load": self.load}
         return {name: signal for name, signal in pairs.items() if signal is not None}
 
@@ -43,10 +45,12 @@ class Coupling:
 
     @property
     def kind(self) -> str:
+        """What a mechanism has to be made for to act here."""
         return "coupling"
 
     @property
     def signals(self) -> dict[str, Signal]:
+        """What the model says of the place, by the names that mechanisms read."""
         return {"deflection": self.deflection, "rate": self.rate}
 
 
@@ -59,10 +63,12 @@ class Balance:
 
     @property
     def kind(self) -> str:
+        """What a mechanism has to be made for to act here."""
         return "balance"
 
     @property
     def signals(self) -> dict[str, Signal]:
+        """What the model says of the place, by the names that mechanisms read."""
         return {"level": self.level}
 
 
@@ -75,10 +81,12 @@ class Actuator:
 
     @property
     def kind(self) -> str:
+        """What a mechanism has to be made for to act here."""
         return "actuator"
 
     @property
     def signals(self) -> dict[str, Signal]:
+        """What the model says of the place, by the names that mechanisms read."""
         name = self.input
         return {"input": lambda x, u, p: u[name]}
 
@@ -92,10 +100,12 @@ class Sensor:
 
     @property
     def kind(self) -> str:
+        """What a mechanism has to be made for to act here."""
         return "sensor"
 
     @property
     def signals(self) -> dict[str, Signal]:
+        """What the model says of the place, by the names that mechanisms read."""
         return {}
 
 

@@ -30,7 +30,11 @@ def plot_comparison(
 ) -> Figure:
     """One experiment: every output over the whole record, and in detail where the last model is worst; errors below.
 
-    ``simulated`` holds the outputs (N, n_y) by the model's name, ``legend`` what to say of each model.
+    Args:
+        recording: the experiment, with what was measured.
+        outputs: names and units of the n_y outputs.
+        simulated: the outputs (N, n_y), in these units, by the model's name.
+        legend: what to say of each model, by the same names.
     """
     return plot_comparisons([(recording, simulated, legend)], outputs)
 

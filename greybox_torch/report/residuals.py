@@ -17,6 +17,10 @@ def plot_residuals(rows: Sequence[Residuals], title: str) -> Figure:
     """A row for each output of each experiment; the band is what 99 % of the values keep within if nothing is missing.
 
     Of very many rows the figure shows the first, and says so.
+
+    Args:
+        rows: errors with their correlations, such as ``evaluate(data).residuals``.
+        title: of the figure.
     """
     columns = 2 + max(len(row.inputs) for row in rows)
     title += shown_of("rows", min(len(rows), MOST_PANELS // 3), len(rows))

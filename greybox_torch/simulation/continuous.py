@@ -136,7 +136,7 @@ def continuous(
 
 
 def sequential_starts(
-    simulator: Simulator, records: Records, links: Chain, p: np.ndarray, x0: np.ndarray, *, substeps: int = 1
+    simulator: Simulator, records: Records, links: Chain, p: np.ndarray, x0: np.ndarray
 ) -> np.ndarray:
     """Window start states (W, n_x) of the trajectory from ``x0`` (E, n_x), one window after another; not finite where it overflows."""
     windows = links.windows

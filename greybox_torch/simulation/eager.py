@@ -99,7 +99,7 @@ class EagerStepper:
         if k >= restarts.starts.shape[1]:
             return x
         kept = torch.as_tensor(restarts.kept, device=self.device)[:, None]
-        return torch.where(kept, torch.nan_to_num(x), self._tensor(restarts.starts[:, k].T))
+        return torch.where(kept, torch.where(x == x, x, 0.0), self._tensor(restarts.starts[:, k].T))
 
     def _pushed(
         self, function: Field, x: Vector, u: Vector, p: Vector, dx: Vector, dp: Vector

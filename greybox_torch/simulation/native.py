@@ -118,8 +118,8 @@ class NativeStepper:
             "weight": None if weights is None else _aligned(weights, real),
             "normal": None if weights is None else _zeros((groups, layout.size, lanes), real),
         }
-        threads = _threads(groups, windows.steps * substeps * (1 + n_d))
-        sizes = (groups, windows.steps, substeps, int(records.hold == "foh"), len(records.dt), n_d, threads)
+        worth = _threads(groups, windows.steps * substeps * (1 + n_d))
+        sizes = (groups, windows.steps, substeps, int(records.hold == "foh"), len(records.dt), n_d, worth)
         sparse = (layout.first, layout.close, layout.band)
         restarts = (1, 0) if asked.restarts is None else (asked.restarts.every, asked.restarts.starts.shape[1])
         pointers = [None if a is None else _address(a) for a in packed.values()]

@@ -39,8 +39,6 @@ class ParallelRun:
     estimated: np.ndarray
     states: np.ndarray
     links: Chain = field(init=False)
-    sequential: int = field(default=0, init=False)
-    """How many runs had to be made sequentially."""
     _known: _Known | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
@@ -158,7 +156,6 @@ class ParallelRun:
         found = continuous(self.simulator, records, self.links, p, x0, guess=guess, transitions=transitions)
         if found is not None:
             return found.starts
-        self.sequential += 1
         return sequential_starts(self.simulator, records, self.links, p, x0)
 
 

@@ -11,9 +11,10 @@ import threading
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import copy_context
-from functools import lru_cache, partial
+from functools import partial
 from typing import TypeVar
 
+from greybox_torch.cores import allowed_cores
 from greybox_torch.deadline import check_time, until
 
 Result = TypeVar("Result")
@@ -44,17 +45,11 @@ def threads() -> int:
 
 
 def cores() -> int:
-    """Cores that the present thread may use: one within :func:`side_by_side`, else all (or what OMP_NUM_THREADS says)."""
+    """Cores that the present thread may use: one within :func:`side_by_side`, else all of this process (or what OMP_NUM_THREADS says)."""
     if getattr(_here, "team", None) is not None:
         return 1
     first = os.environ.get("OMP_NUM_THREADS", "").split(",")[0].strip()  # of nested threads, the outer ones
-    return int(first) if first.isdecimal() and int(first) else _of_the_machine()
-
-
-@lru_cache(maxsize=1)
-def _of_the_machine() -> int:
-    """Asked once: the system takes as long to answer as a third of a short pass."""
-    return os.cpu_count() or 1
+    return int(first) if first.isdecimal() and int(first) else allowed_cores()
 
 
 def side_by_side(tasks: Iterable[Callable[[], Result]]) -> list[Result]:

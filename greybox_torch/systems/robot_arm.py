@@ -6,7 +6,6 @@ from typing import Any
 
 import torch
 
-from greybox_torch.errors import UserError
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
 
 
@@ -83,32 +82,6 @@ class RobotArm(GreyBoxModel):
 
     def admissible(self, p: Any) -> dict[str, Any]:
         return {"1 - a_m - a_g (the arm's share of the inertia)": 1 - p.a_m - p.a_g - 1e-4}
-
-    def with_gear_ratio(self, ratio: float) -> dict[str, float]:
-        """The parameters seen from the arm's side of a gear of this ratio (motor turns per arm turn).
-
-        Torques and stiffnesses grow with ratio², the friction levels with the ratio, and the speed-dependent shape parameters of the
-        friction α and β with the ratio too, as arm-side speeds are smaller by it. Inertia shares do not change.
-
-        Raises:
-            UserError: ``ratio`` is not positive.
-        """
-        if not ratio > 0:
-            raise UserError(f"with_gear_ratio: ratio is {ratio!r}, expected a positive number")
-        power = {
-            "F_v": 2,
-            "F_c": 1,
-            "F_cs": 1,
-            "alpha": 1,
-            "beta": 1,
-            "J": 2,
-            "k_g1": 2,
-            "k_g3": 4,
-            "d_g": 2,
-            "k_a": 2,
-            "d_a": 2,
-        }
-        return {name: value * ratio ** power.get(name, 0) for name, value in self.values().items()}
 
 
 def gear_spring_torque(x: Any, p: Any) -> Any:

@@ -14,6 +14,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.free_run import FreeRun
+from greybox_torch.estimate.metrics import final_prediction_error
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.surroundings import survey
 from greybox_torch.estimate.termination import Termination
@@ -54,13 +55,17 @@ def train_hybrid(
     """Estimate ``model`` on the experiments of role "estimation", attach a network, and train it.
 
     Args:
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
+        model: the physics, without a network.
         net: "friction" (a body's speed, and what else is asked for) or "residual" (any signals at any port), or "memory" (the
             same with hidden states).
         port: where; the driving body by default.
         signals: what it reads, by their names at the port.
         network: further arguments of :class:`FrictionNet`, :class:`ResidualNet` or :class:`MemoryNet`: units, seed, odd, dissipative,
             memories.
+        settings: of the training, its seed among them; by default ``TrainingSettings()``.
         physics: ``model`` as :func:`fit_physics` has estimated it before, so that several trainings share that; estimated here otherwise.
+        device: "cpu", "cuda" or "cuda:N".
         progress: is called with what is being done, and at the end of every epoch.
         snapshot: a file that the training can be taken up from; it is written at most every half a second.
         resume: take it up from there.
@@ -185,11 +190,10 @@ def _result(polished: Polished, simulator: Simulator) -> Estimation:
     run = FreeRun(problem, simulator)
     here = run.quadratic(run.start)
     mse = float("inf") if here is None else 2.0 * here.cost / problem.samples
-    share = len(run.start) / problem.samples
     return Estimation(
         problem=problem,
         mse=mse,
-        fpe=mse * (1 + share) / (1 - share),
+        fpe=final_prediction_error(mse, len(run.start), problem.samples),
         samples=problem.samples,
         iterations=0 if optimum is None else optimum.iterations,
         evaluations=0 if optimum is None else optimum.evaluations,

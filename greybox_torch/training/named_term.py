@@ -38,8 +38,7 @@ class NamedTerm:
     @property
     def parameters(self) -> dict[str, float]:
         """The law's own parameters, by the names that the law has for them, in their units."""
-        start, pairs = f"{self.attachment.prefix}.", zip(self.problem.names, self.problem.values, strict=True)
-        return {name.removeprefix(start): float(value) for name, value in pairs if name.startswith(start)}
+        return self.attachment.own(self.problem.values_by_name)
 
 
 def refitted_term(

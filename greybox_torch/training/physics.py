@@ -44,7 +44,11 @@ def fit_physics(
     """``model`` estimated on the experiments of role "estimation", for hybrids of several seeds or networks to share.
 
     Args:
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
+        model: the physics, without a network.
         values: parameter values that replace the start values, such as those of a diagnosis for its model.
+        settings: of the training that follows: its windows and its seed; by default ``TrainingSettings()``.
+        device: "cpu", "cuda" or "cuda:N".
 
     Raises:
         UserError: no estimation experiment, or records that are too short to train on.

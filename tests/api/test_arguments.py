@@ -6,9 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import greybox_torch as gt
+from greybox_torch.api.arguments import check_seconds, check_seed
 from tests.api.motor import Motor
 
 
@@ -44,6 +46,18 @@ def test_arguments_at_fault(data: gt.DataSet, call: Callable[[Any, Any], Any], m
     with pytest.raises(gt.UserError) as caught:
         call(Motor(), data)
     assert str(caught.value).startswith(message)
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    """Seen: ``time_limit=np.int64(60)`` refused with "expected a number above 0"."""
+    seconds, seed = check_seconds("time_limit", np.int64(60)), check_seed(np.int64(7))
+    assert (type(seconds), seconds, type(seed), seed) == (float, 60.0, int, 7)
+    assert check_seconds("time_limit", np.float32(0.5)) == 0.5
+    for wrong in (True, np.True_, "60", np.array([60])):
+        with pytest.raises(gt.UserError, match="time_limit: found"):
+            check_seconds("time_limit", wrong)
+        with pytest.raises(gt.UserError, match="seed: found"):
+            check_seed(wrong)
 
 
 @pytest.mark.parametrize(

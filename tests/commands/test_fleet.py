@@ -24,7 +24,8 @@ from greybox_torch.errors import NumericalError
 from greybox_torch.fleets import cluster
 from greybox_torch.fleets.job import Job
 from greybox_torch.fleets.row import Row
-from greybox_torch.fleets.store import RESULTS, store
+from greybox_torch.fleets.store import store
+from greybox_torch.result_names import OF_A_DIAGNOSIS
 
 Make = Callable[..., Path]
 CARD = """\
@@ -71,7 +72,7 @@ def done(client: Client, monkeypatch: pytest.MonkeyPatch) -> list[str]:
             sys.exit(3)
         told = replace(row, answer="nothing", seconds=1.0, fit_before=98.5, fit_after=98.5, confidence=0.9)
         told = replace(told, report=f"{job.name}/report.html", fingerprint=row.fingerprint)
-        store(job, told, {job.folder / name: name for name in RESULTS})
+        store(job, told, {job.folder / name: name for name in OF_A_DIAGNOSIS})
         return told
 
     monkeypatch.setattr(cluster, "_local", local)
@@ -114,7 +115,7 @@ def test_what_is_written_and_printed(plant: Path, done: list[str]) -> None:
     assert [row["dataset"] for row in table] == ["a/spring", "a/summer", "b"]
     assert table[0]["fit_after"] == 98.5 and table[0]["parameters"] == []
     assert 'href="a/spring/report.html"' in (out / "fleet.html").read_text()
-    assert sorted(path.name for path in (out / "a" / "spring").iterdir()) == sorted([*RESULTS, "fleet_row.json"])
+    assert sorted(path.name for path in (out / "a" / "spring").iterdir()) == sorted([*OF_A_DIAGNOSIS, "fleet_row.json"])
     assert "3 data sets: 3 nothing missing." in result.stderr
     assert "3 of 3 done" in result.stderr
 

@@ -120,6 +120,7 @@ def test_finite_numbers_whose_squares_are_none_overflow(motor_folder: Make, edit
     assert ", of 'More steps' at " in result.stderr
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
 def test_some_experiments_overflow(motor_folder: Make, edit: Edit) -> None:
     folder = motor_folder()
     edit(folder / "my_motor.py", "- p.b * x.speed", "+ 3.0 * x.speed")
@@ -128,7 +129,9 @@ def test_some_experiments_overflow(motor_folder: Make, edit: Edit) -> None:
     assert result.exit_code == 0, result.stderr
     assert "warning: the simulation of 'Steps' overflows at " in result.stdout and "it does not with" in result.stdout
     data = load_dataset(folder / "dataset.toml")
-    axes = simulate(load_model(str(data.model)), data).plot("Steps").axes
+    found = simulate(load_model(str(data.model)), data)
+    assert "overflows at" in found.warnings[0]
+    axes = found.plot("Steps").axes
     assert max(abs(limit) for one in axes for limit in one.get_ylim()) < 50.0
 
 

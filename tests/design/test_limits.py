@@ -45,6 +45,7 @@ def test_what_the_table_says(data, motor) -> None:
         40,
     )
     assert found.outputs["speed"].upper == 50.0
+    assert limits_of(data, motor, {"seconds": np.int64(5)}, "[limits]").seconds == 5.0
 
 
 @pytest.mark.parametrize(

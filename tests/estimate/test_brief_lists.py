@@ -3,7 +3,7 @@ from __future__ import annotations
 from greybox_torch.estimate.brief_lists import brief_pairs, brief_sentences
 from greybox_torch.estimate.identifiability import Unidentifiable
 from greybox_torch.estimate.identifiability_sentences import Direction, sentence
-from greybox_torch.estimate.name_lists import brief
+from greybox_torch.name_lists import brief
 
 
 def unmoved(name: str) -> Unidentifiable:

@@ -12,8 +12,8 @@ from greybox_torch.estimate import descent
 from greybox_torch.estimate.descent import DescentOptions, descend
 from greybox_torch.estimate.fit import fit_records
 from greybox_torch.estimate.free_run import FreeRun
-from greybox_torch.estimate.levenberg_marquardt import DEFAULT, Quadratic, Settings, minimise
-from greybox_torch.estimate.logarithmic import minimise_on_logarithms
+from greybox_torch.estimate.levenberg_marquardt import DEFAULT, Quadratic, Settings, answered, minimise
+from greybox_torch.estimate.logarithmic import descending_on_logarithms
 from greybox_torch.estimate.population import Members, Population, improve
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
@@ -164,7 +164,7 @@ def test_on_logarithms_a_bent_valley_is_straight() -> None:
     start, low, high = np.array([0.01, 90.0]), np.zeros(2), np.full(2, np.inf)
     limits = Settings(iterations=40, tolerance=1e-14)
     bent = minimise(bent_valley, start, low, high, settings=limits)
-    straight = minimise_on_logarithms(bent_valley, start, low, high, settings=limits, admissible=lambda point: True)
+    straight = answered(descending_on_logarithms(start, low, high, settings=limits), bent_valley, lambda point: True)
     assert bent is not None and straight is not None
     assert straight.point == pytest.approx([100.0, 0.01], rel=1e-4)
     assert straight.model.cost < 1e-3 * bent.model.cost
@@ -180,9 +180,8 @@ def test_on_logarithms_bounds_and_signs_are_kept() -> None:
         return Quadratic(0.5 * float(residual @ residual), residual, np.eye(3), None)
 
     low, high = np.array([-np.inf, 0.0, 1.0]), np.array([np.inf, np.inf, 5.0])
-    found = minimise_on_logarithms(
-        bowl, np.array([2.0, 0.0, 2.0]), low, high, settings=DEFAULT, admissible=lambda point: True
-    )
+    descent = descending_on_logarithms(np.array([2.0, 0.0, 2.0]), low, high, settings=DEFAULT)
+    found = answered(descent, bowl, lambda point: True)
     assert found is not None
     assert found.point == pytest.approx([-3.0, 0.5, 5.0], rel=1e-6)
 

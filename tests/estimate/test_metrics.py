@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greybox_torch.estimate.metrics import digits_between, fit_percent, root_mean_square
+from greybox_torch.estimate.metrics import digits_between, final_prediction_error, fit_percent, root_mean_square
 
 NAN, INF = float("nan"), float("inf")
 
@@ -25,6 +25,12 @@ def test_figures(measured: list[float], simulated: list[float], fit: float, rms:
     y, s = np.array(measured), np.array(simulated)
     assert fit_percent(y, s) == pytest.approx(fit)
     assert root_mean_square(y, s) == pytest.approx(rms)
+
+
+@pytest.mark.parametrize(("unknowns", "expected"), [(0, 2.0), (5, 6.0), (10, INF), (12, INF)])
+def test_final_prediction_error_of_ten_samples(unknowns: int, expected: float) -> None:
+    """Seen: a division by zero with as many unknowns as samples, and a negative error with more of them."""
+    assert final_prediction_error(2.0, unknowns, 10) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(

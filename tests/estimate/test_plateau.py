@@ -13,8 +13,8 @@ import pytest
 from greybox_torch.estimate.fit import fit_records
 from greybox_torch.estimate.free_run import FreeRun, simulate
 from greybox_torch.estimate.global_search import WIDE_SPREAD, _drawn
-from greybox_torch.estimate.levenberg_marquardt import Settings
-from greybox_torch.estimate.logarithmic import minimise_on_logarithms
+from greybox_torch.estimate.levenberg_marquardt import Settings, answered
+from greybox_torch.estimate.logarithmic import descending_on_logarithms
 from greybox_torch.estimate.logarithmic_members import LogarithmicMembers
 from greybox_torch.estimate.plateau import idle_at, off_the_plateau
 from greybox_torch.estimate.population import Members, Population, improve
@@ -116,9 +116,8 @@ def test_a_population_on_logarithms_descends_as_its_members_would(members: Membe
     found = improve(LogarithmicMembers.of(members, begun), begun, 40)
     for k in range(2):
         run = FreeRun(members.problem.with_values(values[k]), members.simulator)
-        alone = minimise_on_logarithms(
-            run.quadratic, run.start, *run.bounds, settings=SETTINGS, admissible=lambda point: True
-        )
+        descent = descending_on_logarithms(run.start, *run.bounds, settings=SETTINGS)
+        alone = answered(descent, run.quadratic, lambda point: True)
         assert alone is not None
         assert found.cost[k] == pytest.approx(alone.model.cost, rel=1e-6)
         assert found.values[k] == pytest.approx(alone.point, rel=1e-3)

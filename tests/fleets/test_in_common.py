@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from greybox_torch.fleets.in_common import groups
+from greybox_torch.fleets.in_common import groups, latest
 from greybox_torch.fleets.row import Row
 
 LEVELS = [0.30, 0.31, 0.29, 0.32, 0.28, 0.30, 0.31, 0.60]
@@ -27,6 +27,17 @@ def test_the_latest_recording_of_each_machine_counts(coulomb: Callable[..., Row]
     rows = [coulomb(f"p{k}", 0.3 + 0.01 * month, month=month) for k in range(5) for month in (3, 1, 2)]
     (group,) = groups(rows)
     assert [row.value for row in group.rows] == [pytest.approx(0.33)] * 5
+
+
+def test_the_latest_is_told_by_the_moment_and_not_by_how_it_is_written(coulomb: Callable[..., Row]) -> None:
+    """Seen: 23:00 in a zone one hour ahead taken as later than 22:30 UTC, half an hour after it."""
+    earlier, later = coulomb("p", 0.3, month=3), coulomb("p", 0.4, month=3)
+    rows = [
+        replace(later, recorded="2026-03-01T22:30:00+00:00"),
+        replace(earlier, recorded="2026-03-01T23:00:00+01:00"),
+    ]
+    assert [row.value for row in latest(rows)] == [later.value]
+    assert latest([rows[1], replace(later, recorded=None)]) == [rows[1]]
 
 
 def test_too_few_or_without_a_deviation(coulomb: Callable[..., Row]) -> None:

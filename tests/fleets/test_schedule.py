@@ -5,12 +5,15 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 from distributed import Client, LocalCluster
 
+from greybox_torch.api import fleet
 from greybox_torch.errors import ArgumentError, UserError
 from greybox_torch.fleets import cluster, schedule
 from greybox_torch.fleets.job import Job
@@ -98,6 +101,22 @@ def test_a_scheduler_elsewhere(threads: Client, tmp_path: Path, monkeypatch: pyt
         cluster.connected(address, 1, [tmp_path]),
     ):
         pass
+
+
+def test_workers_elsewhere_have_to_see_the_folder_of_every_card(monkeypatch: pytest.MonkeyPatch, job: Job) -> None:
+    """Seen: the folder of the first card alone, so that the data sets of others failed one by one."""
+    asked: list[Path] = []
+
+    @contextmanager
+    def connected(scheduler: str, workers: int, folders: list[Path]) -> Iterator[cluster.Workers]:
+        asked.extend(folders)
+        raise KeyboardInterrupt
+        yield
+
+    monkeypatch.setattr(cluster, "connected", connected)
+    others = [replace(job, card=Path(card)) for card in ("/x/a.toml", "/y/b.toml", "/x/c.toml")]
+    fleet._run(others, "tcp://there:1", None, Path("/out"), lambda row: None, lambda state, row, kept: state)
+    assert asked == [Path("/out"), Path("/x"), Path("/y")]
 
 
 def test_without_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,7 +13,8 @@ from greybox_torch.errors import UserError
 from greybox_torch.fleets.fingerprint import fingerprint
 from greybox_torch.fleets.job import Choices, Job
 from greybox_torch.fleets.row import Row
-from greybox_torch.fleets.store import RESULTS, ROW, store, store_failure, stored
+from greybox_torch.fleets.store import ROW, store, store_failure, stored
+from greybox_torch.result_names import OF_A_DIAGNOSIS
 
 
 def of(job: Job) -> str:
@@ -58,7 +59,7 @@ def test_a_file_that_is_not_there(job: Job) -> None:
 
 
 def results(job: Job) -> dict[Path, str | bytes]:
-    return {job.folder / name: name for name in RESULTS}
+    return {job.folder / name: name for name in OF_A_DIAGNOSIS}
 
 
 def test_what_is_done_is_found_again(job: Job) -> None:
@@ -69,7 +70,7 @@ def test_what_is_done_is_found_again(job: Job) -> None:
     assert stored(job, "other") is None
 
 
-@pytest.mark.parametrize("lost", [*RESULTS, ROW])
+@pytest.mark.parametrize("lost", [*OF_A_DIAGNOSIS, ROW])
 def test_nothing_is_done_where_a_file_is_gone(job: Job, lost: str) -> None:
     store(job, Row("pump", str(job.card), "nothing", fingerprint="abc"), results(job))
     (job.folder / lost).unlink()

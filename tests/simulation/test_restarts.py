@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
+from greybox_torch.model import GreyBoxModel, Input, Output, State
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.passes import Pass, Restarts
 from greybox_torch.simulation.stepper import Stepper
@@ -49,3 +52,27 @@ def test_a_kept_state_that_is_lost_goes_on_from_zero(stepper: Stepper) -> None:
     assert begun is not None
     np.testing.assert_array_equal(begun[0, 1], np.where(KEPT, 0.0, asked.starts[0, 1]))
     assert np.isfinite(begun[0, 2]).all()
+
+
+class Runaway(GreyBoxModel):
+    """x' = x², which leaves all numbers behind."""
+
+    states = [State("x", "rad")]
+    inputs = [Input("u", "rad/s")]
+    outputs = [Output("x", "rad")]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return {"x": x.x * x.x + u.u}
+
+    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+        return {"x": x.x}
+
+
+def test_a_kept_state_beyond_all_numbers_stays_there() -> None:
+    """Seen: torch operations went on from 1.8e308, compiled code from infinity."""
+    records, starts = arm_records((90,)), np.full((1, 3, 1), 1e200)
+    asked = Restarts(EVERY, np.array([True]), starts)
+    for stepper in (native(Runaway(), names=()), EagerStepper.of(Runaway(), (), "cpu", "double")):
+        begun = stepper.run(records, Pass(whole_records(records), np.zeros(0), starts[:, 0], restarts=asked)).begun
+        assert begun is not None
+        assert begun[0, :, 0].tolist() == [1e200, np.inf, np.inf]

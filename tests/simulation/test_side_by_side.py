@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import threading
 
 import numpy as np
 import pytest
 
+from greybox_torch.cores import allowed_cores
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.side_by_side import cores, side_by_side, threads
@@ -70,7 +70,7 @@ def test_any_words_of_openmp_give_a_number_of_cores(
     monkeypatch: pytest.MonkeyPatch, threads: str, expected: int | None
 ) -> None:
     monkeypatch.setenv("OMP_NUM_THREADS", threads)
-    assert cores() == (expected or os.cpu_count())
+    assert cores() == (expected or allowed_cores())
 
 
 def test_an_exception_goes_on_and_what_has_not_begun_is_left_undone(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from greybox_torch.data import DataSet, load_dataset
-from greybox_torch.errors import UserError
 from greybox_torch.estimate.comparison import compare
 from greybox_torch.estimate.fit import Estimation, fit_records
 from greybox_torch.estimate.problem import make_problem
@@ -83,22 +82,6 @@ def test_the_arm_keeps_a_share_of_the_inertia(a_m: float, a_g: float) -> None:
     arm = RobotArm()
     arm.set_values({"a_m": a_m, "a_g": a_g})
     assert all(q > 0 for q in arm.admissible(arm.physical()).values()) == (a_m + a_g < 1 - 1e-4)
-
-
-def test_gear_ratio() -> None:
-    """Seen from the other side of the gear the equations hold with torques times r, speeds and angles divided by r."""
-    ratio, arm = 7.0, RobotArm()
-    arm.set_values({"k_g3": 24.0})
-    seen = RobotArm()
-    low_side = arm.with_gear_ratio(ratio)
-    p = Signals("parameter", {k: torch.tensor(v, dtype=torch.float64) for k, v in low_side.items()})
-    x, u = torch.tensor([0.1, -0.2, 3.0, 2.0, -1.0], dtype=torch.float64), torch.tensor([1.5], dtype=torch.float64)
-    rates = arm.rates(x, u, arm.physical())
-    np.testing.assert_allclose(seen.rates(x / ratio, u * ratio, p).detach(), (rates / ratio).detach(), rtol=1e-10)
-    assert low_side["a_m"] == arm.values()["a_m"]
-    for wrong in (0.0, -2.0):
-        with pytest.raises(UserError, match=r"ratio is .*, expected a positive number"):
-            arm.with_gear_ratio(wrong)
 
 
 @cache

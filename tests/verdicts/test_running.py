@@ -116,7 +116,7 @@ def test_cases_side_by_side_share_the_cores(
         given.append(env["OMP_NUM_THREADS"])
         return subprocess.CompletedProcess(command, 2, "", "stopped here")
 
-    monkeypatch.setattr(running.os, "cpu_count", lambda: 4)
+    monkeypatch.setattr(running, "allowed_cores", lambda: 4)
     monkeypatch.setattr(running.subprocess, "run", run)
     cards = dict.fromkeys("ab", tmp_path / "dataset.toml")
     diagnose_all(cards, tmp_path / "out", workers=workers, time_limit=None, tell=lambda name, outcome: None)

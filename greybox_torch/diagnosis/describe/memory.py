@@ -109,13 +109,12 @@ def _own(
 ) -> tuple[dict[str, float], tuple[tuple[str, ...], tuple[np.ndarray, ...]]]:
     """The effect's parameters by their short names; those with a covariance, and the covariances (k, k), plain and sandwich."""
     start = f"{attachment.prefix}."
-    values = {n.removeprefix(start): v for n, v in final.values().items() if n.startswith(start)}
     known = final.deviations()
     at = [k for k, n in enumerate(known) if n.startswith(start) and np.isfinite(known[n])]
     names = tuple(list(known)[k].removeprefix(start) for k in at)
     found = final.uncertainty
     both = () if found is None else tuple(c[np.ix_(at, at)] for c in (found.plain, found.sandwich))
-    return values, (names, both)
+    return attachment.own(final.values()), (names, both)
 
 
 def _derivatives(

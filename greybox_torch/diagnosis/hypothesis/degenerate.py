@@ -31,11 +31,7 @@ def degenerate(
     """
     # What is not determined by itself (a phase beside a start angle) may be so together with others.
     finite = {n: d for n, d in (deviations or {}).items() if np.isfinite(d)}
-    start = f"{effect.prefix}."
-    own, known = (
-        {n.removeprefix(start): v for n, v in some.items() if n.startswith(start)} for some in (values, finite)
-    )
-    return effect.mechanism.degenerate(surroundings[effect.port], own, known)
+    return effect.mechanism.degenerate(surroundings[effect.port], effect.own(values), effect.own(finite))
 
 
 def grows_with_speed(

@@ -54,11 +54,6 @@ class Hypothesis:
         """Parameter values by name, from the longest windows."""
         return self.problem.values_by_name
 
-    def values_of(self, effect: Attachment) -> dict[str, float]:
-        """The values of an effect by the names that its law gives them."""
-        start = f"{effect.prefix}."
-        return {n.removeprefix(start): v for n, v in self.values().items() if n.startswith(start)}
-
     @property
     def problem(self) -> Problem:
         """The problem with the parameters of the longest windows."""

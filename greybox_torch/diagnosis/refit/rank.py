@@ -199,7 +199,7 @@ def _both(over_longer: list[list[Trial]], over_middle: list[list[Trial]]) -> lis
 def _elsewhere(study: Study, candidate: Candidate, trial: Hypothesis) -> list[dict[str, float]]:
     """Where the law says that a refit may begin once more after its trial."""
     effect, values = candidate.attachment, trial.values()
-    others = effect.mechanism.begun_elsewhere(study.surroundings[effect.port], trial.values_of(effect))
+    others = effect.mechanism.begun_elsewhere(study.surroundings[effect.port], effect.own(trial.values()))
     return [{**values, **{f"{effect.prefix}.{n}": v for n, v in other.items()}} for other in others]
 
 

@@ -23,9 +23,8 @@ def richer_forms(study: Study, port: str, laws: Iterable[tuple[Candidate, Hypoth
         if effect.port != port:
             continue
         there = {p.name.rpartition(".")[0] for p in fitted.model.declared_parameters} - {effect.prefix}
-        own = {n.removeprefix(start): v for n, v in fitted.values().items() if n.startswith(start)}
         others = {n: v for n, v in fitted.values().items() if not n.startswith(start)}
-        for mechanism, begun in effect.mechanism.richer(own):
+        for mechanism, begun in effect.mechanism.richer(effect.own(fitted.values())):
             law = replace(effect, mechanism=mechanism)
             values = {**others, **{f"{law.prefix}.{n}": v for n, v in begun.items()}}
             if law.prefix not in there and not study.beliefs.exclude(law) and possible_form(study, law):

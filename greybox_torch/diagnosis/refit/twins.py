@@ -58,7 +58,7 @@ def from_contained(
 def _as_contained(law: Attachment, contained: Attachment, fitted: Hypothesis) -> dict[str, float]:
     """Start values of a law as the one that it contains, fitted as it is; none where the law does not know how."""
     inside = f"{contained.prefix}."
-    own = {n.removeprefix(inside): v for n, v in fitted.values().items() if n.startswith(inside)}
+    own = contained.own(fitted.values())
     begun = {f"{law.prefix}.{n}": v for n, v in law.mechanism.begun_as(contained.mechanism.name, own).items()}
     rest = {n: v for n, v in fitted.values().items() if not n.startswith(inside)}
     return {**rest, **begun} if begun else {}

@@ -39,7 +39,7 @@ def two_in_its_place(study: Study, one: Hypothesis, law: Attachment) -> Hypothes
 
     None elsewhere, and where two have more parameters.
     """
-    parts = law.mechanism.as_two(one.values_of(law))
+    parts = law.mechanism.as_two(law.own(one.values()))
     laws = [replace(law, mechanism=mechanism) for mechanism, _ in parts]
     others = tuple(e for e in one.effects if e != law)
     there = {e.named for e in others}

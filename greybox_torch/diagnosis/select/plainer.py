@@ -22,7 +22,7 @@ from greybox_torch.mechanisms.attachment import Attachment
 def with_plainer_forms(study: Study, state: SearchState) -> SearchState:
     """The state with each of its laws in a plainer form, where that comes as far beside the others."""
     for effect in state.effects if len(state.effects) > 1 else ():
-        plainer = effect.mechanism.plainer(state.current.values_of(effect))
+        plainer = effect.mechanism.plainer(effect.own(state.current.values()))
         if plainer is not None:
             law = replace(effect, mechanism=plainer[0])
             begun = {f"{law.prefix}.{n}": v for n, v in plainer[1].items()}

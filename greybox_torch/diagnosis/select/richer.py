@@ -137,8 +137,7 @@ def _of_the_other(
     law: Attachment, start: Mapping[str, float], other: Attachment, after: SearchState
 ) -> dict[str, float]:
     """What ``law`` begins with and ``other`` has under the same name, as that one has it."""
-    values, own, theirs = after.current.values(), f"{law.prefix}.", f"{other.prefix}."
-    named = {f"{own}{n.removeprefix(theirs)}": v for n, v in values.items() if n.startswith(theirs)}
+    named = {f"{law.prefix}.{n}": v for n, v in other.own(after.current.values()).items()}
     return {n: v for n, v in named.items() if n in start}
 
 
@@ -166,9 +165,8 @@ def _forms(
     """
     given = {p.name.rpartition(".")[0] for p in state.plain.model.declared_parameters}
     start, values = f"{effect.prefix}.", begun or state.current.values()
-    own = {n.removeprefix(start): v for n, v in values.items() if n.startswith(start)}
     others = {n: v for n, v in values.items() if not n.startswith(start)}
-    for mechanism, own_start in effect.mechanism.richer(own):
+    for mechanism, own_start in effect.mechanism.richer(effect.own(values)):
         law = replace(effect, mechanism=mechanism)
         if law.prefix not in (state.prefixes | given) - {effect.prefix}:
             yield law, {**others, **{f"{law.prefix}.{n}": v for n, v in own_start.items()}}

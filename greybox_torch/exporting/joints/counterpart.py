@@ -63,16 +63,11 @@ def counterparts(model: GreyBoxModel, laws: Mapping[str, Law], language: str) ->
         if law is None:
             unsaid.append(Unsaid(a.prefix, _no_word(a, language)))
             continue
-        place = Place(base, ports[a.port], _values(model, a))
+        place = Place(base, ports[a.port], a.own(model.values()))
         said, left = law(place)
         found += said
         unsaid += [Unsaid(a.prefix, why) for why in left]
     return _together(found), unsaid
-
-
-def _values(model: GreyBoxModel, a: Attachment) -> dict[str, float]:
-    begin = f"{a.prefix}."
-    return {name.removeprefix(begin): value for name, value in model.values().items() if name.startswith(begin)}
 
 
 def _no_word(a: Attachment, language: str) -> str:

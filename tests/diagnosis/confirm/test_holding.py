@@ -11,6 +11,7 @@ from greybox_torch.diagnosis.confirm import holding
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.holding import WINDOWS_STAND, _empty
 from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import AdditionalMode, EndStop
 from greybox_torch.mechanisms.friction import StribeckFriction
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
@@ -31,7 +32,7 @@ def shares(monkeypatch: pytest.MonkeyPatch) -> dict[str, float]:
 def a_stop(stub: Any, found: Gain | None, law: Any = EndStop, over_windows: float = 0.5) -> Any:
     """What is known of a hard stop whose stiffness and damping trade for one another; both ``over_windows``, and 0.5 over whole records."""
     around = Surroundings({"position": Range(-1.0, 1.0, 0.5), "speed": Range(-2.0, 2.0, 1.0)}, {}, "N m", 1e-3)
-    effect = stub(prefix="link.law", port="link", mechanism=law())
+    effect = stub(prefix="link.law", port="link", mechanism=law(), own=lambda values: Attachment.own(effect, values))
     values = {p.name: p.value if p.fixed else 0.5 for p in law().parameters(around)}
     named = {f"link.law.{n}": v for n, v in values.items()}
     deviations = dict.fromkeys(named, 50.0)
