@@ -16,6 +16,7 @@ from greybox_torch.mechanisms.waves import (
     amplitudes,
     amplitudes_up_to,
     strongest_alone,
+    strongest_wave,
     wave_parameters,
     waves,
 )
@@ -71,7 +72,8 @@ class TorqueRipple(Mechanism):
         return self if order is None else TorqueRipple(order)
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        order = strongest_wave(values, self.harmonics)["order"]  # orders 2 and 3 are harmonics of the first, which weight would be
+        # Of orders 2 and 3, which are harmonics of the first, that may be next to nothing.
+        order = strongest_wave(values, self.harmonics)["order"]
         if is_angle(around) and abs(order - 1.0) < LIKE_WEIGHT:
             return f"order = {order:.4g}: once per turn is what weight does"
         return not_seen_to_repeat(order, around)

@@ -12,10 +12,12 @@ from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share, negligible
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.select.choice import least_gain
+from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
@@ -45,7 +47,7 @@ def sentences(
         + " (weighted output units).",
     ]
     lines += [_noise(study, state), *_negligible(study, state), *detection_sentences(detected, bool(effects))]
-    lines += [_step_sentence(done, study.settings) for done in state.steps]
+    lines += [_step_sentence(done, state.plain, study.settings) for done in state.steps]
     asked = state.memory_step
     lines += [] if asked is None or asked in state.steps else [_memory_sentence(asked)]
     lines += [ceiling_sentence(e) for e in effects if e.ceiling is not None]
@@ -92,8 +94,8 @@ def begun(sentence: str) -> str:
     return sentence[:1].upper() + sentence[1:]
 
 
-def _step_sentence(done: SelectionStep, settings: DiagnosisSettings) -> str:
-    """What a forward step took, or why it took nothing."""
+def _step_sentence(done: SelectionStep, plain: Hypothesis, settings: DiagnosisSettings) -> str:
+    """What a forward step took beside what was found on top of ``plain``, or why it took nothing."""
     if done.taken is not None:
         preferred = (
             ""
@@ -104,15 +106,25 @@ def _step_sentence(done: SelectionStep, settings: DiagnosisSettings) -> str:
             f"{_name(done.taken.candidate.attachment)} lowers the mean squared error by a factor {digits(np.exp(done.taken.gain), 3)}, "
             f"{done.taken.significance:.1f} standard errors away from chance.{preferred}"
         )
+    little = bool(done.parent.effects) and remaining_share(plain, done.parent, settings) < settings.least_size
     if not done.ranked:
+        if little:
+            return f"{_little(settings)}: no further candidate promised in the screen to leave noise alone."
         return "No further candidate promised enough in the screen to be refitted."
     best = done.ranked[0]
     if best.gain <= 0:
         return f"The best further candidate, {_name(best.candidate.attachment)}, would not lower it."
-    return (
+    lowers = (
         f"The best further candidate, {_name(best.candidate.attachment)}, would lower it by {100 * (1 - np.exp(-best.gain)):.2g} % "
-        f"({best.significance:.1f} standard errors); claimed is what exceeds {100 * least_gain(best.fitted, settings):.0f} % and chance."
+        f"({best.significance:.1f} standard errors)"
     )
+    if little:
+        return f"{lowers}. {_little(settings)}, of which only what leaves noise alone is claimed."
+    return f"{lowers}; claimed is what exceeds {100 * least_gain(best.fitted, settings):.0f} % and chance."
+
+
+def _little(settings: DiagnosisSettings) -> str:
+    return f"Less than {100 * settings.least_size:.2g} % of the mismatch was left"
 
 
 def _memory_sentence(done: SelectionStep) -> str:
