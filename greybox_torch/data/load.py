@@ -23,7 +23,7 @@ from greybox_torch.data.processing import at_times, decimated, derivative, even_
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.recording import Channel, Recording
 from greybox_torch.data.source import Read, Source, source_of
-from greybox_torch.data.steps import EVEN, unevenness, usual_step
+from greybox_torch.data.steps import EVEN, even_step, unevenness, usual_step
 from greybox_torch.data.units import conversion, slip
 from greybox_torch.errors import UserError
 from greybox_torch.files import absolute
@@ -199,6 +199,7 @@ def _processed(
         if unevenness(time, gaps=False) > EVEN:
             done.notes.append(
                 f"time stamps are uneven: steps between {steps.min():.6g} and {steps.max():.6g} s, median {sample_time:.6g} s"
+                + ("" if card.resample else f"; resample = {even_step(time)} at the top of the card makes them even")
             )
     if card.resample is not None:
         done.time, done.sample_time = even_grid(time, card.resample, place), card.resample
