@@ -30,10 +30,10 @@ _RANGES_OF_STEPS = 100.0
 """In ranges, where most samples lie between their neighbours exactly and there is no noise to measure with: an encoder at rest may flicker,
 an input in steps may have a single pulse. -9999 is that far away wherever a channel moves within less than 100 units."""
 _SMOOTH = 0.05
-"""Share of its range, both without the samples in question, up to which a channel moves in one sample where it is smooth, as a position is."""
+"""Share of its range up to which a channel moves in one sample where it is smooth, as a position is (both without the samples in doubt)."""
 _RANGES_OF_SMOOTH = 1.5
-"""In such ranges: what is smooth elsewhere does not go that far and come back at once, in 30 times its fastest step at least. Seen: an angle of
-360° where a knee moves within 123°."""
+"""In such ranges: what is smooth elsewhere does not go that far and come back at once, in 30 times its fastest step at least. Seen: an angle
+of 360° where a knee moves within 123°."""
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ def _lone(values: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.flo
 
 
 def _least_where_smooth(values: NDArray[np.float64], doubted: NDArray[np.bool_]) -> float:
-    """From how far away a sample is lone among values (N,) that are smooth without those ``doubted`` (N - 2,); infinite where they are not."""
+    """From how far away one is lone among values (N,) that are smooth without those ``doubted`` (N - 2,); infinite where they are not."""
     rest = np.delete(values, np.flatnonzero(doubted) + 1)
     extent = float(np.ptp(rest))
     smooth = 0.0 < float(np.abs(np.diff(rest)).max()) <= _SMOOTH * extent

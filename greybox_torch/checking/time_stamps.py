@@ -80,8 +80,8 @@ def _lost(recording: Recording, lost: tuple[Lost, ...]) -> OddTime:
     samples = "1 sample is" if total == 1 else f"{total} samples are"
     places = "1 place" if len(lost) == 1 else f"{len(lost)} places"
     return OddTime(
-        f'[[experiment]] "{recording.name}": {samples} missing in {places}, as where messages were lost: {where} (from the start); what drove '
-        "the machine there is not known, which under feedback may be much of a free run's error",
+        f'[[experiment]] "{recording.name}": {samples} missing in {places}, as where messages were lost: {where} (from the start); what '
+        "drove the machine there is not known, which under feedback may be much of a free run's error",
         f"resample = {even_step(recording.time)} at the top of the card, which fills them with straight lines; or an experiment for each "
         f"piece between them (pieces begin with the rows {first} of the file)",
     )

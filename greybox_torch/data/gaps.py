@@ -13,10 +13,10 @@ SAMPLES_LOST = 5
 """Samples that may be missing one after the other before that is a gap, for which an experiment has to be split."""
 
 _SOME = 0.05
-"""Share of the steps up to which those over lost samples are told, which are whole multiples of the usual one with even ones around them."""
+"""Share of the steps up to which those over lost samples are told, which are multiples of the usual one with usual ones around them."""
 
 _WHOLE = 0.25
-"""Of a step: how far a longer one may lie from several usual ones where samples were lost; what is late for another reason lies anywhere."""
+"""Of a step: how far a longer one may lie from several usual ones where samples were lost; what is late otherwise lies anywhere."""
 
 _BESIDE = 0.5
 """Of a step: how far those before and after may be from a usual one. Late samples are followed by short steps, or come several at once."""

@@ -37,7 +37,7 @@ def unevenness(time: NDArray[np.float64], *, gaps: bool = True) -> float:
 
 
 def even_step(time: NDArray[np.float64]) -> str:
-    """The step (s) of an even grid for increasing time stamps (N,), as one would write it: the mean one but for holes, rounded where near."""
+    """The step (s) of an even grid for increasing time stamps (N,), as one would write it: the mean but for holes, rounded where near."""
     steps = np.diff(time)
     mean = float(np.mean(steps[steps < 1.5 * np.median(steps)]))
     return f"{mean:.2g}" if abs(float(f"{mean:.2g}") / mean - 1.0) < EVEN else f"{mean:.4g}"

@@ -105,7 +105,7 @@ def test_lost_samples_are_told_with_places_and_what_to_write() -> None:
     )
     (odd,) = odd_time_stamps(DataSet([recorded("Steps", time)], held_out_by_default=False), {})
     assert '"Steps": 10 samples are missing in 4 places' in odd.found
-    assert ": 1 after 0.99" in odd.found and ", 3 after 1.49" in odd.found and ", 5 after 1.9" in odd.found
+    assert ": 1 after 0.9" in odd.found and ", 3 after 1.4" in odd.found and ", 5 after 1.9" in odd.found
     assert " and 1 more (from the start)" in odd.found
     assert odd.write.startswith("resample = 0.01 at the top of the card")
     assert "begin with the rows 100, 149, 196 and … of the file" in odd.write
