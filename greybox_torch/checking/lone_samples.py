@@ -32,8 +32,8 @@ an input in steps may have a single pulse. -9999 is that far away wherever a cha
 _SMOOTH = 0.05
 """Share of its range up to which a channel moves in one sample where it is smooth, as a position is (both without the samples in doubt)."""
 _RANGES_OF_SMOOTH = 1.5
-"""In such ranges: what is smooth elsewhere does not go that far and come back at once, in 30 times its fastest step at least. Seen: an angle
-of 360° where a knee moves within 123°."""
+"""In such ranges: what is smooth elsewhere does not go that far and come back at once, in 30 times its fastest step at least. Seen: an
+angle of 360° where a knee moves within 123°."""
 
 
 @dataclass(frozen=True)
