@@ -27,6 +27,14 @@ def notes(problem: Problem, unidentifiable: Sequence[Unidentifiable]) -> tuple[O
     return tuple(found)
 
 
+def told_at_bound(names: str) -> str:
+    """What a reader has to know of parameters at their bounds, one sentence and another, without a full stop."""
+    return (
+        f"At a bound: {names}; the standard deviations there mean little. Where physics does not end there, the model lacks something that "
+        "drives the parameter there, or the data hardly determine it beside those that it is correlated with"
+    )
+
+
 def at_bounds(problem: Problem) -> list[str]:
     """The free parameters whose value is one of their bounds, but for rounding."""
     bounds = zip(problem.names, problem.free, problem.values, problem.lower, problem.upper, strict=True)
