@@ -38,7 +38,9 @@ angle of 360° where a knee moves within 123°."""
 
 @dataclass(frozen=True)
 class LoneSample(InASentence):
-    """The farthest of ``count`` such samples of a channel in an experiment; ``place`` is its line and column where a file has it."""
+    """The farthest of ``count`` such samples of a channel in an experiment; ``place`` is its line and column where a file has it,
+    ``on_card`` whether the values are those of the file, as a card would name them.
+    """
 
     experiment: str
     channel: str
@@ -47,6 +49,7 @@ class LoneSample(InASentence):
     before: float
     after: float
     count: int
+    on_card: bool = False
 
     @property
     def found(self) -> str:
@@ -60,7 +63,8 @@ class LoneSample(InASentence):
     @property
     def write(self) -> str:
         """What to write instead."""
-        return "an empty cell or NaN in its place, which is a missing sample, unless it was measured"
+        marked = f" (or missing = {self.value:.12g} in the channel's line on the card)" if self.on_card else ""
+        return f"an empty cell or NaN in its place, which is a missing sample{marked}, unless it was measured"
 
 
 def lone_samples(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterator[LoneSample]:
@@ -86,6 +90,7 @@ def lone_samples(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterator[L
                     float(shown[before]),
                     float(shown[after]),
                     len(lone),
+                    own is not None or column is not None,
                 )
 
 

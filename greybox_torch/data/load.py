@@ -16,6 +16,7 @@ from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry, TimeEntry
 from greybox_torch.data.checks import check_finite, check_length, check_time
 from greybox_torch.data.dataset import DataSet
+from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.expression import Expression
 from greybox_torch.data.gaps import longest_gap, without_gaps
 from greybox_torch.data.missing import where_missing
@@ -63,7 +64,8 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     needed = [column for formula in formulas.values() for column in formula.columns]
     needed += [clock] if clock else []
     with asked_for(place, formulas, clock, alone=len(card.experiment) == 1):
-        source = source_of(files, experiment.join, list(dict.fromkeys(needed)), clock, read)
+        known = without_error_values(read, card.channels, formulas)
+        source = source_of(files, experiment.join, list(dict.fromkeys(needed)), clock, known)
     start, stop = _rows(place, source, experiment.rows)
     check_length(stop - start, place)
     time, sample_time = _time(place, path, card, source, clock, start, stop)
