@@ -10,6 +10,7 @@ from greybox_torch.checking.lone_samples import lone_samples
 from greybox_torch.checking.missing_inputs import missing_inputs
 from greybox_torch.checking.shared_rows import shared_rows
 from greybox_torch.checking.time_stamps import odd_time_stamps
+from greybox_torch.checking.wrapped_channels import wrapped_channels
 from greybox_torch.data import DataSet
 from greybox_torch.data.data_warning import DataWarning, InASentence
 from greybox_torch.drafting.contradicted import contradictions
@@ -44,5 +45,6 @@ def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning
         *shared_rows(data),
         *constant_channels(data, model),
         *lone_samples(data, joined),
+        *wrapped_channels(data),
         *(missing_inputs(data, model) if model is not None else ()),
     ]

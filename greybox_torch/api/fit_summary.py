@@ -11,6 +11,7 @@ from greybox_torch.api.estimated import EstimatedStart, estimated_parameters, es
 from greybox_torch.api.scores import print_substeps
 from greybox_torch.estimate.brief_lists import brief_pairs, brief_sentences
 from greybox_torch.estimate.fit import Estimation
+from greybox_torch.estimate.notes import told_at_bound
 from greybox_torch.estimate.profile import LEVEL, Profile
 from greybox_torch.estimate.termination import Termination
 from greybox_torch.name_lists import brief
@@ -94,21 +95,14 @@ def _print_correlations(console: Console, found: Estimation) -> None:
 def warnings(found: Estimation) -> list[str]:
     """What is doubtful about the estimate, in sentences."""
     lost = [name for name, deviation in found.parameter_deviations().items() if deviation == float("inf")]
-    lines = []
+    lines = [f"{told_at_bound(note.detail)}." for note in found.notes if note.kind is Termination.at_bound]
     if not found.problem.free.any():
         lines.append("All parameters are fixed, on the card or in the model: none is estimated.")
-    if lost:
+    if lost and all(one.kind != "numbers" for one in found.identifiability):
         lines.append(
             f"The data do not determine {brief(lost)}, alone or together: fix one of them, or excite the machine more."
         )
-    lines += [f"{told}." for told in brief_sentences(found.identifiability)]
-    for note in found.notes:
-        if note.kind is Termination.at_bound:
-            lines.append(
-                f"At a bound: {note.detail}; the standard deviations there mean little. Where physics does not end there, the model lacks "
-                "something that drives the parameter there, or the data hardly determine it beside those that it is correlated with."
-            )
-    return lines
+    return lines + [f"{told}." for told in brief_sentences(found.identifiability)]
 
 
 def beginnings(found: Estimation) -> list[str]:

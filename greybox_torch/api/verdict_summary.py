@@ -81,6 +81,7 @@ def _notes(effect: Effect) -> list[str]:
     head = spoken_at(effect.mechanism, effect.port)
     lines = [f"{head}: {effect.equation}"] if effect.equation else []
     lines += [f"{head}: {effect.where}"] if effect.where else []
+    lines += [f"{head}: {effect.bounded}"] if effect.bounded else []
     lines += [f"{head}: {effect.undetermined}"] if effect.undetermined else []
     advice = f"; to tell them apart: {effect.separating_experiment}" if effect.separating_experiment else ""
     together = () if effect.one_of is None else effect.one_of.members

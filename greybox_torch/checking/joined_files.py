@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ExperimentEntry
+from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.gaps import Gap, gap_steps
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.readers.table import Table
@@ -92,9 +93,11 @@ def _read_again(data: DataSet, card: Card, entry: ExperimentEntry, recording: Re
     if data.path is None or card.time is None:
         raise KeyError(TIME)
     clock = entry.columns.get(TIME, card.time.column)
-    columns = {name: card.channels[name].expression(entry.columns.get(name)).columns for name in recording.signals}
+    formulas = {name: card.channels[name].expression(entry.columns.get(name)) for name in recording.signals}
+    columns = {name: formula.columns for name, formula in formulas.items()}
     needed = dict.fromkeys([*(column for of in columns.values() for column in of), clock])
-    source = source_of([data.path.parent / file for file in entry.file], entry.join, list(needed), clock, read)
+    known = without_error_values(read, card.channels, formulas)
+    source = source_of([data.path.parent / file for file in entry.file], entry.join, list(needed), clock, known)
     start, stop = entry.rows or (0, len(source.columns[clock]))
     alone = {name: of[0] for name, of in columns.items() if len(of) == 1}
     return JoinedFiles(recording, source, (start, stop), alone, clock, card.time.seconds)

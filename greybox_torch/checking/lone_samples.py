@@ -29,11 +29,18 @@ channel that rests otherwise leaves its range far behind, but is seldom that far
 _RANGES_OF_STEPS = 100.0
 """In ranges, where most samples lie between their neighbours exactly and there is no noise to measure with: an encoder at rest may flicker,
 an input in steps may have a single pulse. -9999 is that far away wherever a channel moves within less than 100 units."""
+_SMOOTH = 0.05
+"""Share of its range up to which a channel moves in one sample where it is smooth, as a position is (both without the samples in doubt)."""
+_RANGES_OF_SMOOTH = 1.5
+"""In such ranges: what is smooth elsewhere does not go that far and come back at once, in 30 times its fastest step at least. Seen: an
+angle of 360° where a knee moves within 123°."""
 
 
 @dataclass(frozen=True)
 class LoneSample(InASentence):
-    """The farthest of ``count`` such samples of a channel in an experiment; ``place`` is its line and column where a file has it."""
+    """The farthest of ``count`` such samples of a channel in an experiment; ``place`` is its line and column where a file has it,
+    ``on_card`` whether the values are those of the file, as a card would name them.
+    """
 
     experiment: str
     channel: str
@@ -42,6 +49,7 @@ class LoneSample(InASentence):
     before: float
     after: float
     count: int
+    on_card: bool = False
 
     @property
     def found(self) -> str:
@@ -55,7 +63,8 @@ class LoneSample(InASentence):
     @property
     def write(self) -> str:
         """What to write instead."""
-        return "an empty cell or NaN in its place, which is a missing sample, unless it was measured"
+        marked = f" (or missing = {self.value:.12g} in the channel's line on the card)" if self.on_card else ""
+        return f"an empty cell or NaN in its place, which is a missing sample{marked}, unless it was measured"
 
 
 def lone_samples(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterator[LoneSample]:
@@ -81,6 +90,7 @@ def lone_samples(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterator[L
                     float(shown[before]),
                     float(shown[after]),
                     len(lone),
+                    own is not None or column is not None,
                 )
 
 
@@ -119,8 +129,17 @@ def _lone(values: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.flo
     usual = float(np.median(np.abs(left + right))) / 2.0  # every lone sample spoils three of them, a percentile soon
     least = max(_RANGES * (high - low), _SPREADS * usual) if usual > 0.0 else _RANGES_OF_STEPS * (high - low)
     nearer = np.where(left * right > 0.0, np.minimum(np.abs(left), np.abs(right)), 0.0)
+    least = min(least, _least_where_smooth(values, nearer > high - low))
     lone = np.flatnonzero(nearer > least) if high > low else np.empty(0, dtype=np.intp)
     return lone + 1, nearer[lone]
+
+
+def _least_where_smooth(values: NDArray[np.float64], doubted: NDArray[np.bool_]) -> float:
+    """From how far away one is lone among values (N,) that are smooth without those ``doubted`` (N - 2,); infinite where they are not."""
+    rest = np.delete(values, np.flatnonzero(doubted) + 1)
+    extent = float(np.ptp(rest))
+    smooth = 0.0 < float(np.abs(np.diff(rest)).max()) <= _SMOOTH * extent
+    return _RANGES_OF_SMOOTH * extent if smooth else math.inf
 
 
 def _read_again(data: DataSet, recording: Recording, name: str, sample: int) -> tuple[str, NDArray[np.float64] | None]:

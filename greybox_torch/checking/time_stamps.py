@@ -1,4 +1,4 @@
-"""Time stamps that lead astray: a gap, across which a simulation would have to run blind, and files in different units of time."""
+"""Time stamps that lead astray: gaps and lost samples, across which a simulation has to run blind, and files in different units of time."""
 
 from __future__ import annotations
 
@@ -10,9 +10,12 @@ import numpy as np
 from greybox_torch.checking.joined_files import JoinedFiles
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.data_warning import InASentence
-from greybox_torch.data.gaps import Gap, longest_gap, pieces_around
+from greybox_torch.data.gaps import Gap, Lost, longest_gap, lost_samples, pieces_around
 from greybox_torch.data.readers.table import Table
+from greybox_torch.data.steps import even_step
+from greybox_torch.estimate.name_lists import listed
 
+_SHOWN = 3  # places at which samples were lost
 _SAME = 0.01  # of a sample time: how far a ratio may lie from a power of 1000
 
 
@@ -25,13 +28,15 @@ class OddTime(InASentence):
 
 
 def odd_time_stamps(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterator[OddTime]:
-    """Gaps in the time stamps, also in those of files that are joined in time (``joined``, by recording), and experiments whose sample
-    times differ by a thousand, as seconds and milliseconds do.
+    """Gaps in the time stamps, also in those of files that are joined in time (``joined``, by recording), single samples that are missing,
+    and experiments whose sample times differ by a thousand, as seconds and milliseconds do.
     """
     for recording in data.recordings:
-        gap = longest_gap(recording.time)
+        gap, lost = longest_gap(recording.time), lost_samples(recording.time)
         if gap is not None:
             yield _gap(recording, gap, _rows_on_the_card(data, recording))
+        if lost:
+            yield _lost(recording, lost)
     for name, files in joined.items():
         held_out = joined.get(f"{name} (held out)") if data.held_out_by_default else None
         for table in files.source.joined:
@@ -63,6 +68,22 @@ def _gap(recording: Recording, gap: Gap, rows: tuple[int, int]) -> OddTime:
     return OddTime(
         f'[[experiment]] "{recording.name}": {gap}; a simulation across it would hold the last input for all that time',
         f"two experiments with the same file, one before the gap and one after it: rows = [{start}, {split}] and rows = [{split}, {stop}]",
+    )
+
+
+def _lost(recording: Recording, lost: tuple[Lost, ...]) -> OddTime:
+    """Up to a few places are told; what is written are samples of the file."""
+    total, shown = sum(one.count for one in lost), lost[:_SHOWN]
+    more = [f"{len(lost) - _SHOWN} more"] if len(lost) > _SHOWN else []
+    where = listed([*(f"{one.count} after {one.seconds:.6g} s" for one in shown), *more])
+    first = listed([*(str(recording.rows[0] + one.after + 1) for one in shown), *(["…"] * bool(more))])
+    samples = "1 sample is" if total == 1 else f"{total} samples are"
+    places = "1 place" if len(lost) == 1 else f"{len(lost)} places"
+    return OddTime(
+        f'[[experiment]] "{recording.name}": {samples} missing in {places}, as where messages were lost: {where} (from the start); what '
+        "drove the machine there is not known, which under feedback may be much of a free run's error",
+        f"resample = {even_step(recording.time)} at the top of the card, which fills them with straight lines; or an experiment for each "
+        f"piece between them (pieces begin with the rows {first} of the file)",
     )
 
 

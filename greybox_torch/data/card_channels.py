@@ -42,7 +42,7 @@ class ChannelEntry(Entry):
     """Where a channel stands in the files: file value × scale = value in `unit`, or converted from `file_unit`.
 
     `expr` computes it from several columns. `derivative` is the cut-off in Hz where the channel is the rate of change of what the file
-    holds.
+    holds. `missing` has the error values of the file, one or several: its samples that are such a number are missing.
     """
 
     column: Text | None = None
@@ -51,6 +51,7 @@ class ChannelEntry(Entry):
     scale: Finite = 1.0
     file_unit: Text | None = None
     derivative: Finite | None = None
+    missing: Finite | list[Finite] | None = None
 
     _position = field_validator("column", mode="before")(_column)
 
@@ -89,6 +90,13 @@ class ChannelEntry(Entry):
         if self.file_unit is not None and not self.unit:
             raise ValueError('"file_unit" is given without "unit"; expected both, to convert from one to the other')
         return self
+
+    @property
+    def error_values(self) -> tuple[float, ...]:
+        """Numbers of the file that stand for missing samples."""
+        if self.missing is None:
+            return ()
+        return tuple(self.missing) if isinstance(self.missing, list) else (self.missing,)
 
     def expression(self, column: str | None) -> Expression:
         """How the channel comes from columns; `column` stands in where an experiment names another."""

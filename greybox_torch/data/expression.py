@@ -1,4 +1,4 @@
-"""A channel as a small expression of columns: "0.5 * (i1 - i2)", "Kt * current", 'hypot(col("v x"), col("v y"))'.
+"""A channel as a small expression of columns: "0.5 * (i1 - i2)", "Kt * current", 'hypot(col("v x"), col("v y"))', "unwrap(counts, 4096)".
 
 Numbers, columns, + - * / **, and the functions below; nothing else is understood, and nothing is executed.
 """
@@ -16,6 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from greybox_torch.data.unwrapping import unwrapped
+
 LONGEST = 500
 _FUNCTIONS: dict[str, tuple[int, Callable[..., Any]]] = {
     **{
@@ -24,6 +26,7 @@ _FUNCTIONS: dict[str, tuple[int, Callable[..., Any]]] = {
     },
     **{name: (1, getattr(np, name)) for name in ("abs", "radians", "degrees", "tanh")},
     **{name: (2, getattr(np, name)) for name in ("arctan2", "hypot", "minimum", "maximum")},
+    "unwrap": (2, unwrapped),
 }
 _OPERATORS: dict[type, Callable[..., Any]] = {
     ast.Add: operator.add,
@@ -100,11 +103,24 @@ def _columns(tree: ast.expr) -> list[str]:
         case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in _FUNCTIONS:
             if len(arguments) != _FUNCTIONS[name][0]:
                 raise ValueError(f"{name} of {len(arguments)} values; expected {_FUNCTIONS[name][0]}")
-            return [column for argument in arguments for column in _columns(argument)]
+            columns = [column for argument in arguments for column in _columns(argument)]
+            if name == "unwrap":
+                _check_period(arguments[1])
+            return columns
     raise ValueError(
         f'"{ast.unparse(tree):.60}" is not understood; expected numbers, columns (those with other characters as col("…")), '
         f"+ - * / **, pi, and {', '.join(_FUNCTIONS)}"
     )
+
+
+def _check_period(tree: ast.expr) -> None:
+    """Raises ValueError where the second value of `unwrap` is not a number above zero."""
+    with np.errstate(all="ignore"):
+        usable = not _columns(tree) and 0.0 < float(_value(tree, {})) < np.inf
+    if not usable:
+        raise ValueError(
+            f"unwrap by {ast.unparse(tree):.60}; expected the period as a number above zero, such as 4096 or 2 * pi"
+        )
 
 
 def _dotted(tree: ast.expr) -> str:

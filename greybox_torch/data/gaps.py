@@ -10,7 +10,16 @@ from numpy.typing import NDArray
 from greybox_torch.data.checks import FEWEST_SAMPLES
 
 SAMPLES_LOST = 5
-"""Samples that may be missing one after the other before that is a gap: a lost message or two changes nothing."""
+"""Samples that may be missing one after the other before that is a gap, for which an experiment has to be split."""
+
+_SOME = 0.05
+"""Share of the steps up to which those over lost samples are told, which are multiples of the usual one with usual ones around them."""
+
+_WHOLE = 0.25
+"""Of a step: how far a longer one may lie from several usual ones where samples were lost; what is late otherwise lies anywhere."""
+
+_BESIDE = 0.5
+"""Of a step: how far those before and after may be from a usual one. Late samples are followed by short steps, or come several at once."""
 
 _FEW = 0.01
 """Share of the steps up to which long ones are gaps. Where more are long, the logger writes whenever something changes."""
@@ -50,6 +59,32 @@ class Gap:
     @property
     def _others(self) -> str:
         return f", the longest of {self.count} gaps" if self.count > 1 else ""
+
+
+@dataclass(frozen=True)
+class Lost:
+    """``count`` samples that are missing after sample ``after``, ``seconds`` after the start: fewer than make a gap."""
+
+    after: int
+    seconds: float
+    count: int
+
+
+def lost_samples(time: NDArray[np.float64]) -> tuple[Lost, ...]:
+    """Where single samples of increasing time stamps (N,), in s, are missing, up to :data:`SAMPLES_LOST` in one place."""
+    steps = np.diff(time)
+    if len(steps) < 3:
+        return ()
+    ratio = steps / np.median(steps)
+    long = ratio > 1.5
+    if long.sum() > max(1.0, _SOME * len(steps)):
+        return ()
+    usual = np.abs(ratio - 1.0) < _BESIDE
+    count = np.rint(ratio).astype(np.int64) - 1
+    lost = long & (count <= SAMPLES_LOST) & (np.abs(ratio - 1.0 - count) <= _WHOLE)
+    lost[1:-1] &= usual[:-2] & usual[2:]
+    lost[[0, -1]] = False
+    return tuple(Lost(int(k), float(time[k] - time[0]), int(count[k])) for k in np.flatnonzero(lost))
 
 
 def longest_gap(time: NDArray[np.float64]) -> Gap | None:

@@ -16,6 +16,7 @@ from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry, TimeEntry
 from greybox_torch.data.checks import check_finite, check_length, check_time
 from greybox_torch.data.dataset import DataSet
+from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.expression import Expression
 from greybox_torch.data.gaps import longest_gap, without_gaps
 from greybox_torch.data.missing import where_missing
@@ -23,7 +24,7 @@ from greybox_torch.data.processing import at_times, decimated, derivative, even_
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.recording import Channel, Recording
 from greybox_torch.data.source import Read, Source, source_of
-from greybox_torch.data.steps import EVEN, unevenness, usual_step
+from greybox_torch.data.steps import EVEN, even_step, unevenness, usual_step
 from greybox_torch.data.units import conversion, slip
 from greybox_torch.errors import UserError
 from greybox_torch.files import absolute
@@ -63,7 +64,8 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     needed = [column for formula in formulas.values() for column in formula.columns]
     needed += [clock] if clock else []
     with asked_for(place, formulas, clock, alone=len(card.experiment) == 1):
-        source = source_of(files, experiment.join, list(dict.fromkeys(needed)), clock, read)
+        known = without_error_values(read, card.channels, formulas)
+        source = source_of(files, experiment.join, list(dict.fromkeys(needed)), clock, known)
     start, stop = _rows(place, source, experiment.rows)
     check_length(stop - start, place)
     time, sample_time = _time(place, path, card, source, clock, start, stop)
@@ -199,6 +201,7 @@ def _processed(
         if unevenness(time, gaps=False) > EVEN:
             done.notes.append(
                 f"time stamps are uneven: steps between {steps.min():.6g} and {steps.max():.6g} s, median {sample_time:.6g} s"
+                + ("" if card.resample else f"; resample = {even_step(time)} at the top of the card makes them even")
             )
     if card.resample is not None:
         done.time, done.sample_time = even_grid(time, card.resample, place), card.resample

@@ -36,6 +36,13 @@ def unevenness(time: NDArray[np.float64], *, gaps: bool = True) -> float:
     return float(np.max(np.abs(counted - step)) / step)
 
 
+def even_step(time: NDArray[np.float64]) -> str:
+    """The step (s) of an even grid for increasing time stamps (N,), as one would write it: the mean but for holes, rounded where near."""
+    steps = np.diff(time)
+    mean = float(np.mean(steps[steps < 1.5 * np.median(steps)]))
+    return f"{mean:.2g}" if abs(float(f"{mean:.2g}") / mean - 1.0) < EVEN else f"{mean:.4g}"
+
+
 def _even(time: NDArray[np.float64]) -> float | None:
     """The mean step but for gaps, where floats round steps noticeably and all agree with it as far as they tell."""
     rounded, steps = _rounded(time), without_gaps(time)

@@ -10,6 +10,8 @@ import numpy as np
 
 from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken_at
+from greybox_torch.estimate.name_lists import listed
+from greybox_torch.estimate.notes import told_at_bound
 
 
 @dataclass(frozen=True)
@@ -120,6 +122,9 @@ class Effect:
     made_up_for: str = ""
     """Where the recordings do not show it, as the re-estimated model makes up for it: how that is known, in words."""
 
+    at_bounds: tuple[str, ...] = ()
+    """Which of its parameters ended at one of their bounds."""
+
     def __repr__(self) -> str:
         return f"<effect: {self.mechanism} at {self.port}, probability {self.probability:.2f}>"
 
@@ -156,6 +161,12 @@ class Effect:
             f"{', '.join(names)}: the standard deviation is larger than the value; {they} may be zero, or these recordings do not "
             f"determine {them} beside the other parameters"
         )
+
+    @property
+    def bounded(self) -> str:
+        """Which parameters of a law are at a bound, and what that means, as of any estimate; "" elsewhere."""
+        names = [name for name in self.at_bounds if name in self.shown_parameters and self.mechanism != "unknown"]
+        return told_at_bound(listed(names)) if names else ""
 
     @property
     def headline(self) -> str:

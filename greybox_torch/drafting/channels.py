@@ -8,12 +8,16 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from greybox_torch.data.units import slip
+from greybox_torch.data.unwrapping import turn_within, unwrapped
 from greybox_torch.drafting.clock import Clock
 from greybox_torch.drafting.column_units import unit_in, without_ending, without_unit
 from greybox_torch.drafting.magnitudes import slips
 from greybox_torch.drafting.matching import Wanted, matched, words
 from greybox_torch.drafting.recorded import Recorded
 from greybox_torch.model import Body, GreyBoxModel
+
+_SAME_TURN = 1e-6
+"""Of a turn: by how much two columns of one angle may differ, but for a constant."""
 
 
 @dataclass(frozen=True)
@@ -52,9 +56,21 @@ def drafted(file: Recorded, clock: Clock, model: GreyBoxModel | None) -> Drafted
     wanted = wanted_of(model)
     bare = _bare(columns)
     found = {channel: bare[name] for channel, name in matched(wanted, list(bare), _by(bare, units)).items()}
+    found |= {channel: other for channel, column in found.items() if (other := _counting_on(file, column, columns))}
     suspected = _suspected(file, clock, model, wanted, found)
     channels = tuple(_draft(channel, found, units, suspected, columns) for channel in wanted)
     return Drafted(channels, tuple(name for name in columns if name not in found.values()))
+
+
+def _counting_on(file: Recorded, column: str, columns: Sequence[str]) -> str | None:
+    """Where a column begins anew after a turn, another one of the file that has the turns added up, from wherever it counts."""
+    values = file.columns[column]
+    turn, jumps = turn_within(values, "") if np.isfinite(values).all() else (0.0, ())
+    if not len(jumps):
+        return None
+    added = unwrapped(values, turn)
+    apart = {name: np.ptp(file.columns[name] - added) for name in columns if len(file.columns[name]) == len(added)}
+    return next((name for name, difference in apart.items() if difference < _SAME_TURN * turn), None)
 
 
 def _bare(columns: Sequence[str]) -> dict[str, str]:

@@ -33,7 +33,8 @@ class Unidentifiable:
     """What the data do not determine.
 
     ``kind`` is "unmoved" (nothing the parameter does shows in the outputs), "together" (only a combination shows), "start" (either of
-    these, but only because of where the unknowns are) or "weak" (the standard deviation exceeds the value). ``parameters`` are those
+    these, but only because of where the unknowns are), "weak" (the standard deviation exceeds the value) or "numbers" (nothing can be
+    told, as the derivatives have grown without bound). ``parameters`` are those
     involved, start states among them as "motor_speed at the start of 'Steps'"; ``direction`` their changes that leave the outputs as they
     are: relative to their value where that is not zero, else in their unit, the largest being 1.
     """
@@ -60,6 +61,8 @@ def identifiability(run: FreeRun, z: np.ndarray, here: Quadratic[None] | None = 
         return ()
     view = Information(run, z, here.hessian)
     unmoved, flat = view.unmoved(), view.flat_directions()
+    if len(flat) and view.exploded():
+        return (_failed(view),)
     nearby = _nearby(view, here) if len(unmoved) or len(flat) else None
     found = [_unmoved(view, i, nearby, here) for i in unmoved if i < run.n_parameters]
     found += [_together(view, step, nearby, here) for step in flat]
@@ -91,6 +94,18 @@ def _nearby(view: Information, here: Quadratic[None], only: int | None = None) -
             return replace(view, z=point, hessian=there.hessian)
         away = 0.5 * away
     return None
+
+
+def _failed(view: Information) -> Unidentifiable:
+    """Derivatives that have grown without bound are alike but for rounding, as if nothing could be told apart."""
+    names = view.run.problem.free_names
+    told = (
+        f"No standard deviation is known, and not what the data determine: the derivatives have grown to {view.exploded():.0e} "
+        "times the outputs, so it is the numbers that failed there, and not the data. Something in the model is too fast for the steps of "
+        "its integration, as dry friction is whose speed v_0 is very small: hold what makes it so at a slower value (fixed), or raise its "
+        "lower bound"
+    )
+    return Unidentifiable("numbers", tuple(names), (), told)
 
 
 def _unmoved(view: Information, index: int, nearby: Information | None, here: Quadratic[None]) -> Unidentifiable:

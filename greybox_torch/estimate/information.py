@@ -15,6 +15,9 @@ FLAT = {"double": 1e-11, "single": 1e-5}
 UNSEEN = {"double": 1e-16, "single": 1e-11}
 """Share of the outputs' energy, moved by a change of a parameter by its own size, that counts as none."""
 
+EXPLODED = {"double": 1e16, "single": 1e10}
+"""Times the outputs' energy, moved by a change of an unknown by its own size, from which derivatives are grown rounding errors."""
+
 NEGLIGIBLE = 1e-5
 """Part of a direction's largest contribution to the outputs below which an unknown takes no part in it."""
 
@@ -40,6 +43,12 @@ class Information:
         """Unknowns per unit of contribution to the outputs (d,), zero where there is none."""
         diagonal = np.diag(self.hessian)
         return np.where(diagonal > 0, 1.0 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)), 0.0)
+
+    def exploded(self) -> float:
+        """The most by which an unknown, changed by its own size, moves the outputs, relative to them; zero where that is possible."""
+        moved = self.z**2 * np.diag(self.hessian)
+        share = float(moved.max(initial=0.0)) / max(energy_of(self.run), 1e-300)
+        return float(np.sqrt(share)) if share > EXPLODED[self.precision] else 0.0
 
     def unmoved(self) -> list[int]:
         """The unknowns that, changed by their own size, do not change the outputs."""

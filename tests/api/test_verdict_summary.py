@@ -8,6 +8,8 @@ import pytest
 
 from greybox_torch.api.verdict_summary import SIZE, effect_table, notes
 from greybox_torch.diagnosis.verdict import MOST_NAMED, STOPPED, NotTried
+from greybox_torch.estimate.notes import told_at_bound
+from greybox_torch.report.sections.effects import Effects
 from tests.diagnosis.test_verdict import BACKLASH, verdict
 
 CUT = NotTried(("searching",), (("rotor", "quadratic_drag"), ("rotor", "constant_bias")))
@@ -48,6 +50,17 @@ def test_parameters_that_are_not_determined_are_told() -> None:
     assert replace(BACKLASH, parameters=fixed).undetermined.startswith(
         "no standard deviations are known: whole records were not fitted"
     )
+
+
+def test_a_parameter_of_a_law_at_its_bound_is_told_as_fit_tells_it() -> None:
+    """Seen: a sharpness of 1 ± 0.088 with the bounds [0, 1] in the table, without a word."""
+    entry = {"value": 1.0, "std": 0.088, "unit": "", "description": ""}
+    effect = replace(BACKLASH, parameters={"sharpness": entry}, at_bounds=("sharpness",))
+    (told,) = [line for line in notes(verdict(effect)) if "bound" in line]
+    assert told == f"backlash at gear_spring: {told_at_bound('sharpness')}"
+    shown = Effects.of(verdict(effect))
+    assert shown is not None and shown.cards[0].bounded == told_at_bound("sharpness")
+    assert not [line for line in notes(verdict(replace(effect, mechanism="unknown"))) if "At a bound" in line]
 
 
 def test_an_experiment_that_no_longer_judges_is_told_first() -> None:

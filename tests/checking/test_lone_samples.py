@@ -50,11 +50,24 @@ def test_in_short_recordings_and_many_of_them(samples: int, errors: int) -> None
     assert errors < 3 or f"(and {errors - 1} more such samples)" in one
 
 
+@pytest.mark.parametrize("decimals", [3, 1])  # noise between the samples, or an encoder's counts
+def test_an_error_value_within_a_few_ranges_of_a_smooth_channel(decimals: int) -> None:
+    """Seen: 359.978 of a damaged frame in an angle that moves within 123 degrees, 2.4 ranges away, was not told."""
+    angle = np.round(30.0 + 60.0 * np.sin(2.0 * TIME) + 0.1 * NOISE, decimals)
+    assert told(angle) == []
+    (one,) = told(changed(angle, [150], 359.978))
+    assert "sample 150 (the first is 0): found 359.978 between" in one
+    (both,) = told(changed(angle, [150, 260], 359.978))
+    assert "(and 1 more such sample), as" in both
+
+
 @pytest.mark.parametrize(
     "values",
     [
         np.sin(TIME) + NOISE,
         STEPS,
+        changed(np.repeat([0.0, 2.0, -1.0, 1.0], 100) + 0.01 * NOISE, [150], 8.0),  # an input in steps with one pulse
+        changed(NOISE, [150], 4.0),  # a blow to what rests
         changed(0 * TIME, [150], 1.0),  # an impulse
         changed(NOISE, [150, 151], 50.0),  # a spike of two samples
         changed(np.sin(TIME), [150], 3.0),

@@ -87,3 +87,33 @@ def test_any_text_is_an_expression_or_a_value_error(text: str) -> None:
     except ValueError:
         return
     assert found.of({column: np.ones(3) for column in found.columns}).shape == (3,)
+
+
+@given(
+    st.lists(st.floats(-0.49, 0.49), min_size=1, max_size=60),
+    st.sampled_from([1.0, 360.0, 2.0 * np.pi, 16384.0]),
+    st.sets(st.integers(0, 60)),
+    st.floats(-3.0, 3.0),
+)
+def test_unwrapping_undoes_a_counter_that_begins_anew(
+    steps: list[float], period: float, missing: set[int], begin: float
+) -> None:
+    turned = period * (begin + np.concatenate([[0.0], np.cumsum(steps)]))
+    wrapped = np.mod(turned, period)
+    gone = np.array(sorted(k for k in missing if k < len(turned)), dtype=int)
+    found = parse_expression(f"unwrap(a, {period!r})").of({"a": wrapped})
+    np.testing.assert_allclose(found - turned, wrapped[0] - turned[0], atol=1e-6 * period)
+    wrapped[gone] = np.nan
+    again = parse_expression(f"unwrap(a, {period!r})").of({"a": wrapped})
+    assert np.array_equal(np.isnan(again), np.isnan(wrapped))
+    known = again[~np.isnan(again)]
+    assert np.all(np.abs(np.diff(known)) <= 0.5 * period * (1 + 1e-9))
+    np.testing.assert_allclose(np.mod(known - wrapped[~np.isnan(wrapped)] + 0.5 * period, period), 0.5 * period)
+
+
+@pytest.mark.parametrize(
+    "text", ["unwrap(a)", "unwrap(a, b)", "unwrap(a, 0)", "unwrap(a, -1)", "unwrap(a, 1/0)", "unwrap(a, 9**9**9)"]
+)
+def test_a_period_is_a_number_above_zero(text: str) -> None:
+    with pytest.raises(ValueError, match="unwrap"):
+        parse_expression(text)

@@ -138,7 +138,9 @@ def test_uneven_time_stamps_are_told_and_resampled_where_asked(load: Load) -> No
     files = {"a": {"t": t, "u": 2 * t, "y": Y}}
     (as_it_is,) = load('time = "t"', TWO, **files).recordings
     np.testing.assert_array_equal(as_it_is.time, t)
-    assert as_it_is.notes == ("time stamps are uneven: steps between 0.008 and 0.012 s, median 0.012 s",)
+    assert as_it_is.notes == (
+        "time stamps are uneven: steps between 0.008 and 0.012 s, median 0.012 s; resample = 0.01 at the top of the card makes them even",
+    )
     (even,) = load('time = "t"\nresample = 0.01', TWO, **files).recordings
     np.testing.assert_allclose(np.diff(even.time), 0.01)
     np.testing.assert_allclose(even.signals["u"], 2 * even.time, atol=1e-12)

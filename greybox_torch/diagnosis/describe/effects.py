@@ -22,6 +22,7 @@ from greybox_torch.diagnosis.select.posterior import LeftInFreeRuns, by_comparis
 from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.estimate.notes import at_bounds
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
@@ -103,7 +104,7 @@ def _effect(
     mechanism, around = attachment.mechanism, study.surroundings[attachment.port]
     curve = settled_curve(attachment, around, final) or over_data(study, state.current, attachment, final.problem)
     members = None if taken is None else one_of(model.base, taken, probability, study.settings, study.beliefs)
-    parameters = _parameters(model, attachment, final)
+    parameters, own = _parameters(model, attachment, final), f"{attachment.prefix}."
     named = partial(signal_name, model.base, site)
     return Effect(
         port=attachment.port,
@@ -125,6 +126,7 @@ def _effect(
         one_of=members,
         law=mechanism.name,
         equation=equation(attachment, site, around, named, list(parameters)),
+        at_bounds=tuple(n.removeprefix(own) for n in at_bounds(final.problem) if n.startswith(own)),
         form=mechanism.nature if mechanism.free else "",
     )
 

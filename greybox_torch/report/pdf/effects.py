@@ -37,8 +37,8 @@ def _card(sheets: Sheets, card: Card) -> None:
     if rows:
         draw_table(sheets, [("Parameter of its law", ""), ("± one standard deviation", "")], rows, [0.5, 0.5])
         sheets.gap(6.0)
-    if card.undetermined:
-        sheets.text(f"{card.undetermined}.", 8.0, colour=QUIET)
+    for told in filter(None, (card.bounded, card.undetermined)):
+        sheets.text(f"{told}.", 8.0, colour=QUIET)
         sheets.gap(4.0)
     facts = [("Law", card.equation)] if card.equation else []
     facts += (

@@ -61,6 +61,7 @@ class Card:
     explained: str
     ceiling: str
     parameters: tuple[ParameterRow, ...]
+    bounded: str
     undetermined: str
     shares: tuple[Share, ...]
     experiment: str
@@ -101,6 +102,7 @@ def _card(effect: Effect, shown: Responses | None, alone: bool) -> Card:
         explained=text.percent(effect.explained) if alone else "",
         ceiling="" if effect.ceiling is None else text.percent(effect.ceiling),
         parameters=_parameters(effect),
+        bounded=effect.bounded,
         undetermined=effect.undetermined,
         shares=_shares(effect),
         experiment=effect.separating_experiment,

@@ -1,0 +1,79 @@
+"""Encoders that begin anew after a turn: within one sample, the channel jumps by nearly all of its range while the machine moves on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.data import DataSet
+from greybox_torch.data.card import read_card
+from greybox_torch.data.data_warning import InASentence
+from greybox_torch.data.units import conversion
+from greybox_torch.data.unwrapping import TURNS, turn_within
+from greybox_torch.errors import UserError
+
+
+@dataclass(frozen=True)
+class WrappedChannel(InASentence):
+    """``count`` jumps of a channel in an experiment, the first ``seconds`` after its start; ``period`` and ``unit`` are the channel's."""
+
+    experiment: str
+    channel: str
+    period: float
+    unit: str
+    count: int
+    seconds: float
+    write: str
+
+    @property
+    def found(self) -> str:
+        """What is there, in a sentence."""
+        times = "once" if self.count == 1 else f"{self.count} times"
+        turn = f"{self.period:.6g} {self.unit}".rstrip()
+        return (
+            f'[[experiment]] "{self.experiment}", channel "{self.channel}": jumps by nearly {turn} within one sample {times}, first '
+            f"{self.seconds:.6g} s after the start, as an encoder does that begins anew after a turn; no machine moves so"
+        )
+
+
+def wrapped_channels(data: DataSet) -> Iterator[WrappedChannel]:
+    """Of every experiment the channels that jump by a whole turn."""
+    for recording in data.recordings:
+        for name, values in recording.signals.items():
+            unit = data.channels[name].unit
+            known = np.flatnonzero(~np.isnan(values))
+            period, jumps = turn_within(values[known], unit)
+            if len(jumps):
+                seconds = float(recording.time[known[jumps[0] + 1]] - recording.time[0])
+                write = _write(data, name, period)
+                yield WrappedChannel(recording.name, name, period, unit, len(jumps), seconds, write)
+
+
+def _write(data: DataSet, name: str, period: float) -> str:
+    """What to write on the card, as far as there is one; else what to do with the array."""
+    try:
+        entry = None if data.path is None else read_card(data.path).channels.get(name)
+        if entry is None or entry.derivative is not None:
+            return f"the turns added up: numpy.unwrap(values, period={_number(period)})"
+        factor = entry.scale if entry.file_unit is None else conversion(entry.file_unit, entry.unit, "")[0]
+    except UserError:  # the card was replaced meanwhile
+        return "the turns added up: expr = 'unwrap(column, period)'"
+    column = str(entry.column)
+    source = entry.expr or (column if column.isidentifier() else f'col("{column}")')
+    call, turn = f"unwrap({source}, {_number(period / abs(factor))})", TURNS.get(entry.unit, 0.0)
+    if (
+        turn and factor == 1.0 and not math.isclose(turn, period, rel_tol=1e-6)
+    ):  # counts, or another unit, were taken for angles
+        call += f" * {_number(turn)} / {_number(period)}"
+    return f"{name} = {{ expr = '{call}', … }}, which adds up the turns, with the rest of the line as it is"
+
+
+def _number(period: float) -> str:
+    """A period as one would write it."""
+    if math.isclose(period, 2.0 * math.pi, rel_tol=1e-6):
+        return "2 * pi"
+    near = round(period)
+    return str(near) if near and math.isclose(period, near, rel_tol=1e-6) else f"{period:.10g}"

@@ -1,0 +1,84 @@
+"""An encoder that begins anew after a turn is told with what to write; switches, steps and motion within a turn are not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from greybox_torch.api.data_warnings import data_warnings
+from greybox_torch.checking.wrapped_channels import wrapped_channels
+from greybox_torch.data import DataSet, Recording, load_dataset
+
+TIME: np.ndarray = 0.001 * np.arange(4000)
+ANGLE: np.ndarray = 9.0 * np.sin(2.0 * TIME)
+COUNTS: np.ndarray = np.floor(ANGLE / (2.0 * np.pi) * 16384) % 16384
+
+
+def told(values: np.ndarray, unit: str) -> list[str]:
+    run = Recording.from_arrays("run", {"q": values}, sample_time=0.001, units={"q": unit})
+    return [str(one) for one in wrapped_channels(DataSet([run], held_out_by_default=False))]
+
+
+@pytest.mark.parametrize(
+    ("values", "unit", "turn"),
+    [
+        (COUNTS, "rad", "16384 rad"),  # as a first card has it where nothing says that these are counts
+        (COUNTS, "", "16384 within"),
+        (COUNTS * 360.0 / 16384, "deg", "360 deg"),
+        (np.arctan2(np.sin(ANGLE), np.cos(ANGLE)), "rad", "6.28319 rad"),
+    ],
+)
+def test_an_encoder_that_begins_anew(values: np.ndarray, unit: str, turn: str) -> None:
+    gone = values.copy()
+    gone[[100, 2000]] = np.nan
+    for each in (values, gone):
+        (one,) = told(each, unit)
+        assert f"jumps by nearly {turn}" in one and " times, first 0." in one and "numpy.unwrap(values, period=" in one
+
+
+@pytest.mark.parametrize(
+    ("values", "unit"),
+    [
+        (ANGLE, "rad"),
+        (np.where(np.sin(40.0 * TIME) > 0.0, 255.0, 0.0), "V"),  # a switch
+        (np.where(np.sin(40.0 * TIME) > 0.0, 180.0, -180.0), "deg"),
+        (np.round(127.5 + 127.5 * np.sin(40.0 * TIME)), ""),
+        (np.random.default_rng(0).integers(0, 4096, 4000).astype(float), ""),  # noise of a converter
+        (np.repeat(np.linspace(0.0, 360.0, 10), 400), "deg"),  # steps
+        (np.mod(100.0 * TIME, 10.0), "V"),  # a sawtooth
+        (np.mod(100.0 * TIME, 10.0), "rad"),
+        (np.zeros(4000), "rad"),
+    ],
+)
+def test_nothing_is_told(values: np.ndarray, unit: str) -> None:
+    assert told(values, unit) == []
+
+
+@pytest.mark.parametrize(
+    ("entry", "written"),
+    [
+        (
+            'column = "raw 14", unit = "rad", scale = 0.0003834951969714103',
+            "expr = 'unwrap(col(\"raw 14\"), 16384)', …",
+        ),
+        ('column = "deg", unit = "rad", file_unit = "deg"', "expr = 'unwrap(deg, 360)', …"),
+        ('column = "raw 14", unit = "rad"', "expr = 'unwrap(col(\"raw 14\"), 16384) * 2 * pi / 16384', …"),
+        ('column = "deg", unit = "rad", scale = 1.0', "expr = 'unwrap(deg, 360) * 2 * pi / 360', …"),
+        ('expr = "radians(deg)", unit = "rad"', "expr = 'unwrap(radians(deg), 2 * pi)', …"),
+    ],
+)
+def test_what_to_write_mends_it(tmp_path: Path, entry: str, written: str) -> None:
+    rows = "\n".join(f"{count:g},{count * 360 / 16384!r}" for count in COUNTS.tolist())
+    (tmp_path / "run.csv").write_text(f"raw 14,deg\n{rows}\n")
+    card, rest = tmp_path / "dataset.toml", '[[experiment]]\nname = "run"\nfile = "run.csv"\nrole = "estimation"\n'
+    card.write_text(f"sample_time = 0.001\n[channels]\nq = {{ {entry} }}\n{rest}")
+    found = [one for one in data_warnings(load_dataset(card), None) if "turn" in one.found]
+    assert found and all(written in one.write for one in found)
+    whole, _, others = entry.partition(", ")
+    card.write_text(f"sample_time = 0.001\n[channels]\nq = {{ {written.removesuffix(', …')}, {others} }}\n{rest}")
+    mended = load_dataset(card)
+    assert whole and not [one for one in data_warnings(mended, None) if "turn" in one.found]
+    first = mended.recordings[0].signals["q"]
+    np.testing.assert_allclose(first - first[0], (ANGLE - ANGLE[0])[: len(first)], atol=1e-3)
