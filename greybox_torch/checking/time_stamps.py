@@ -13,7 +13,7 @@ from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.gaps import Gap, Lost, longest_gap, lost_samples, pieces_around
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.steps import even_step
-from greybox_torch.estimate.name_lists import listed
+from greybox_torch.name_lists import listed
 
 _SHOWN = 3  # places at which samples were lost
 _SAME = 0.01  # of a sample time: how far a ratio may lie from a power of 1000

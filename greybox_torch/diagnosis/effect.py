@@ -10,8 +10,8 @@ import numpy as np
 
 from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken_at
-from greybox_torch.estimate.name_lists import listed
 from greybox_torch.estimate.notes import told_at_bound
+from greybox_torch.name_lists import listed
 
 
 @dataclass(frozen=True)
