@@ -17,7 +17,7 @@ from rich.console import Console
 from greybox_torch import __version__
 from greybox_torch.api.estimated import ByName
 from greybox_torch.api.free_runs import plot_simulated
-from greybox_torch.api.hypotheses import MODEL, hypothesis_files, kept_hypotheses
+from greybox_torch.api.hypotheses import MODEL, VERDICT, hypothesis_files, kept_hypotheses
 from greybox_torch.api.result import Result
 from greybox_torch.api.scores import score_rows, score_table
 from greybox_torch.api.verdict_summary import effect_table, notes, print_verdict, verdict_scores
@@ -38,7 +38,7 @@ from greybox_torch.systems import model_reference
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-VERDICT, REPORT, PRINTED = "verdict.json", "report.html", "report.pdf"
+REPORT, PRINTED = "report.html", "report.pdf"
 
 
 @dataclass(frozen=True)

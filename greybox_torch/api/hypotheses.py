@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from greybox_torch.diagnosis.describe.rivals import Rival
 
 SCHEMA = "greybox-hypotheses/1"
-FILE, FOLDER, MODEL = "hypotheses.json", "hypotheses", "model"
+FILE, FOLDER, MODEL, VERDICT = "hypotheses.json", "hypotheses", "model", "verdict.json"
 _OF_A_HYPOTHESIS = re.compile(r"\d+-.+\.(json|safetensors)")
 Starts = Mapping[str, Mapping[str, float]]
 
@@ -47,8 +47,8 @@ class Kept:
 
 @dataclass(frozen=True)
 class Hypotheses:
-    """The ``recommended`` model, for each finding the hypotheses of which it is one, the finding first, and whether the search that they
-    are of ran to its end.
+    """The ``recommended`` model, for each finding the hypotheses of which it is one, the finding first, whether the search that they are of
+    ran to its end, and the verdict's sentence of what is ``left`` of the mismatch ("" where it has none).
     """
 
     data: DataSet
@@ -56,6 +56,7 @@ class Hypotheses:
     recommended: Kept
     findings: tuple[tuple[Kept, ...], ...]
     complete: bool = True
+    left: str = ""
 
 
 def hypotheses_of(result: DiagnosisResult) -> Hypotheses:
@@ -67,7 +68,8 @@ def hypotheses_of(result: DiagnosisResult) -> Hypotheses:
         found.setdefault(r.finding, []).append(one)
     recommended = Kept("the recommended model", 1.0, result.model, result.initial)
     groups = tuple(tuple(group) for group in found.values())
-    return Hypotheses(result.data, model_reference(result.given), recommended, groups, result.verdict.complete)
+    left = "" if result.verdict.left is None else result.verdict.left.sentence
+    return Hypotheses(result.data, model_reference(result.given), recommended, groups, result.verdict.complete, left)
 
 
 def _in_verdict(result: DiagnosisResult, rival: Rival) -> float | None:
@@ -144,7 +146,17 @@ def read_hypotheses(folder: Path, model: str | None = None) -> Hypotheses:
         ) from None
     recommended, data = load_beside(folder / MODEL, own, data)
     found = Kept("the recommended model", 1.0, recommended, starts)
-    return Hypotheses(data, name, found, tuple(tuple(group) for group in groups), bool(content.get("complete", True)))
+    whole = bool(content.get("complete", True))
+    return Hypotheses(data, name, found, tuple(tuple(group) for group in groups), whole, _left(folder / VERDICT))
+
+
+def _left(verdict: Path) -> str:
+    """What the verdict beside hypotheses says of the rest; "" where it says nothing, or is not there any more."""
+    if not verdict.is_file():
+        return ""
+    content = read_json(verdict, "results of greybox diagnose")
+    left = content.get("left") if isinstance(content, dict) else None
+    return str(left.get("sentence", "")) if isinstance(left, dict) else ""
 
 
 def _content(path: Path) -> dict[str, Any]:
