@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from greybox_torch.api.expected import NOTHING
+from greybox_torch.api.expected import AS_IN_A_DIAGNOSIS, NOTHING
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.diagnosis.one_of import spoken_at
@@ -48,7 +48,7 @@ class Kept:
 @dataclass(frozen=True)
 class Hypotheses:
     """The ``recommended`` model, for each finding the hypotheses of which it is one, the finding first, whether the search that they are of
-    ran to its end, and the verdict's sentence of what is ``left`` of the mismatch ("" where it has none).
+    ran to its end, and the verdict's sentence of what is ``left`` of the mismatch ("" where that is not far above the noise).
     """
 
     data: DataSet
@@ -68,7 +68,8 @@ def hypotheses_of(result: DiagnosisResult) -> Hypotheses:
         found.setdefault(r.finding, []).append(one)
     recommended = Kept("the recommended model", 1.0, result.model, result.initial)
     groups = tuple(tuple(group) for group in found.values())
-    left = "" if result.verdict.left is None else result.verdict.left.sentence
+    rest = result.verdict.left
+    left = "" if rest is None else _if_large(rest.times_noise, rest.sentence)
     return Hypotheses(result.data, model_reference(result.given), recommended, groups, result.verdict.complete, left)
 
 
@@ -151,12 +152,18 @@ def read_hypotheses(folder: Path, model: str | None = None) -> Hypotheses:
 
 
 def _left(verdict: Path) -> str:
-    """What the verdict beside hypotheses says of the rest; "" where it says nothing, or is not there any more."""
+    """What the verdict beside hypotheses says of the rest; "" where that is little, or the verdict is not there any more."""
     if not verdict.is_file():
         return ""
     content = read_json(verdict, "results of greybox diagnose")
     left = content.get("left") if isinstance(content, dict) else None
-    return str(left.get("sentence", "")) if isinstance(left, dict) else ""
+    return _if_large(left.get("times_noise"), str(left.get("sentence", ""))) if isinstance(left, dict) else ""
+
+
+def _if_large(times_noise: Any, sentence: str) -> str:
+    """The sentence where it speaks of more than laws that tell the whole story leave."""
+    large = isinstance(times_noise, int | float) and times_noise >= AS_IN_A_DIAGNOSIS.far_above_noise
+    return sentence if large else ""
 
 
 def _content(path: Path) -> dict[str, Any]:

@@ -99,6 +99,9 @@ def test_what_is_left_all_the_same_is_told(two_found, tmp_path) -> None:
     (tmp_path / "verdict.json").write_text(json.dumps(sure.content(tmp_path)))
     assert _left(tmp_path / "verdict.json") == left.sentence
     assert _left(tmp_path / "another.json") == ""
+    little = replace(sure, found=replace(sure.found, verdict=replace(verdict, left=replace(left, times_noise=0.9))))
+    with pytest.raises(UserError, match=r"each rival less than 0\.005; expected"):
+        gt.design(little)
 
 
 @pytest.mark.parametrize(
