@@ -220,4 +220,6 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_HOME_OF})
+    """The public names, and those of a module's own; not what this file imports for itself."""
+    own = {name for name in globals() if name.startswith("__") and name.endswith("__")}
+    return sorted(own | set(__all__))

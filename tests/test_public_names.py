@@ -21,6 +21,11 @@ def test_every_public_name_is_there(name: str) -> None:
     assert name in dir(greybox_torch)
 
 
+def test_only_public_names_are_offered() -> None:
+    offered = [name for name in dir(greybox_torch) if not name.startswith("__")]
+    assert offered == sorted(greybox_torch.__all__) and "__version__" in dir(greybox_torch)
+
+
 def test_unknown_name() -> None:
     with pytest.raises(AttributeError, match="has no attribute 'Motor'"):
         _ = greybox_torch.Motor  # type: ignore[attr-defined]

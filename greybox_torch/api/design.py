@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +13,14 @@ from greybox_torch.api.arguments import check_seconds, check_seed
 from greybox_torch.api.design_loops import entries_of, loops_for
 from greybox_torch.api.design_result import DesignResult
 from greybox_torch.api.diagnosis_result import DiagnosisResult
-from greybox_torch.api.expected import NOTHING, WANTED, Expected, decided
+from greybox_torch.api.expected import Expected
 from greybox_torch.api.hypotheses import Hypotheses, Kept, hypotheses_of, left_out_told, read_hypotheses, to_tell_apart
+from greybox_torch.api.nothing_open import group_in_question
 from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
 from greybox_torch.estimate.problem import with_card
 from greybox_torch.experiment_design.aim import Aim, Trial
+from greybox_torch.experiment_design.approach import begun_there
+from greybox_torch.experiment_design.beginning import Beginning, beginning_of
 from greybox_torch.experiment_design.contender import Contender, contender
 from greybox_torch.experiment_design.controller import Loop
 from greybox_torch.experiment_design.excitation import Excitation
@@ -24,10 +28,9 @@ from greybox_torch.experiment_design.imitation import THOROUGH
 from greybox_torch.experiment_design.judged import judged_at_estimates
 from greybox_torch.experiment_design.limits import Limits, limits_of
 from greybox_torch.experiment_design.search import MOST_SAMPLES, frequencies, sampled, search
-from greybox_torch.experiment_design.simulated import predictions, within
+from greybox_torch.experiment_design.simulated import input_records, predictions, within
 from greybox_torch.linear_algebra import on_one_thread
 
-_OR_A_PARAMETER = "or a parameter whose standard deviation is to shrink: --precision PARAMETER (in Python: precision=)"
 RANDOM = 5
 """Random multisines of the same power that the best input (or set point) is compared with."""
 
@@ -48,7 +51,8 @@ def design(
 
     The input is searched among multisines, steps, chirps and slow reversals around operating points, so that the evidence that it is
     expected to give between the leading hypotheses is largest: what a rival cannot imitate with other parameters and start states
-    (T-optimality, Atkinson & Fedorov 1975). The experiment begins as the first recording did. Where a controller drives an input, its set
+    (T-optimality, Atkinson & Fedorov 1975). The experiment begins as the first recording did; where that is in motion, as the first one
+    did that is at rest, if any is. Where a controller drives an input, its set
     point is designed, and the machine is simulated under feedback; else the experiment is open loop.
 
     Args:
@@ -78,20 +82,21 @@ def design(
     own = limits_of(held.data, plain, given, place, {name: loop.measured for name, loop in entries.items()})
     progress("reading what the recordings say of each hypothesis")
     step = held.data.recordings[0].sample_time
-    aim = _aim(held, precision, loops_for(entries, plain, own, step))
+    aim, begins = _begun(_aim(held, precision, loops_for(entries, plain, own, step)), own)
+    own = replace(own, begin=_where_outputs_stand(aim.contenders[0], own, step))
     time = step * np.arange(int(np.clip(round(own.seconds / step), 16, MOST_SAMPLES)))
     best = search(aim, own, time, check_seed(seed), progress)
     if not best:
         raise UserError(
             f"{place} no input was found under which every hypothesis keeps outputs and states within their limits, open loop, "
-            "from the start of the first recording; expected wider limits or fewer seconds"
+            f"from {_told(begins)}; expected wider limits, fewer seconds or another start"
             if not entries
             else f"{place} no set point of {' and '.join(e.measured for e in entries.values())} was found under which every hypothesis "
-            "keeps inputs, outputs and states within their limits, under feedback, from the start of the first recording; "
-            "expected wider limits, fewer seconds, or a controller that holds the machine"
+            f"keeps inputs, outputs and states within their limits, under feedback, from {_told(begins)}; "
+            "expected wider limits, fewer seconds, another start, or a controller that holds the machine"
         )
     progress("judging the best input")
-    return _result(held, aim, own, time, best[0], precision, seed, {n: e.measured for n, e in entries.items()})
+    return _result(held, aim, own, time, best[0], precision, seed, {n: e.measured for n, e in entries.items()}, begins)
 
 
 def _hypotheses(found: Any, model: str | None) -> Hypotheses:
@@ -110,32 +115,29 @@ def _aim(held: Hypotheses, precision: str | None, loops: Sequence[Loop]) -> Aim:
             hint = did_you_mean(precision, free)
             raise ArgumentError("precision", precision, f"expected a free parameter{hint}: {', '.join(free)}")
         return Aim((one,), free.index(precision))
-    group, left_out = to_tell_apart(held)
-    told = "".join(f". {sentence.rstrip('.')}" for sentence in left_out_told(left_out))
-    if len(group) < 2:
-        raise UserError(
-            f"the diagnosis left no rivals to tell apart; expected a finding with named alternatives, {_OR_A_PARAMETER}{told}"
-        )
-    if decided([kept.probability for kept in group]):
-        best = max(group, key=lambda kept: kept.probability)
-        raise UserError(
-            f"already decided, there is nothing to record: {_decided(best, held.complete)}; expected a finding that is open, "
-            f"{_OR_A_PARAMETER}{told}"
-        )
-    return Aim(tuple(_contender(kept, held, loops) for kept in group))
+    return Aim(tuple(_contender(kept, held, loops) for kept in group_in_question(held)))
 
 
-def _decided(best: Kept, complete: bool) -> str:
-    """How sure the hypothesis is that has no rival, and why the verdict is less sure of it where that is so."""
-    alone = f"each rival less than {NOTHING:g}"
-    if best.in_verdict is None or best.in_verdict >= WANTED:
-        return f"{best.name} has a probability of {best.probability:.2f}, {alone}"
-    why = (
-        "it is no surer as more than noise is left beside it, which no recording that tells rivals apart changes"
-        if complete
-        else "it is no surer as the search was stopped before all was tried: diagnose once more without a time limit"
-    )
-    return f"{best.name} has a probability of {best.in_verdict:.2f}, {alone}; {why}"
+def _begun(aim: Aim, limits: Limits) -> tuple[Aim, Beginning]:
+    """The aim with all hypotheses begun alike, as suits the likeliest, and how that is."""
+    begins = beginning_of(aim.contenders[0], limits.start)
+    return replace(aim, contenders=tuple(c.beginning(begins.like, begins.given) for c in aim.contenders)), begins
+
+
+def _told(begins: Beginning) -> str:
+    return f"the start of {begins.like}" + (", but for the states that are asked for" if begins.given else "")
+
+
+def _where_outputs_stand(one: Contender, limits: Limits, step: float) -> dict[str, float]:
+    """By input that a loop drives, the output that follows the set point, as the recording begins."""
+    if not one.loops:
+        return {}
+    inputs = np.array([[own.middle] for own in limits.inputs.values()])
+    for loop in one.loops:
+        inputs[loop.driven] = loop.rest
+    records = input_records(one, [np.repeat(inputs, 2, axis=1)], step * np.arange(2))
+    y, names = one.predicted(records, tangents=False).y[0, 0], list(limits.inputs)
+    return {names[loop.driven]: float(y[loop.measured]) for loop in one.loops}
 
 
 def _contender(kept: Kept, held: Hypotheses, loops: Sequence[Loop] = ()) -> Contender:
@@ -151,6 +153,7 @@ def _result(
     precision: str | None,
     seed: int,
     follows: Mapping[str, str],
+    begins: Beginning,
 ) -> DesignResult:
     along = predictions(aim.contenders, [best.commands], time)
     names = list(limits.inputs)
@@ -180,7 +183,7 @@ def _result(
         level=aim.contenders[0].level,
         memory=aim.contenders[0].memory,
         expected=Expected(shares, nats, random),
-        begins_like=aim.contenders[0].problem.records.names[0],
+        begins_like=begins.like,
         start=aim.contenders[0].start,
         parameter=precision,
         unit=next((p.unit for p in with_card(held.data, held.recommended.model) if p.name == precision), ""),
@@ -192,6 +195,7 @@ def _result(
         driven=tuple({name: u[names.index(name)] for name in follows} for u in reached),
         on_one_input=tuple(p.y[0] for p in along[0]),
         left_out=left_out,
+        moving=begins.moving,
     )
 
 
@@ -209,7 +213,7 @@ def _by_random_inputs(aim: Aim, limits: Limits, time: np.ndarray, best: Trial, s
         centre = commands.mean(axis=1, keepdims=True)
         commands = centre + (commands - centre) * wanted / np.maximum(power, 1e-300)
         low, high = (np.array([[getattr(r, end)] for r in limits.commanded.values()]) for end in ("lower", "upper"))
-        tried.append(np.clip(commands, low, high))
+        tried.append(begun_there(np.clip(commands, low, high), time, limits))
     kept = [u for u, fine in zip(tried, within(aim.contenders, limits, tried, time), strict=True) if fine]
     if not kept:
         return None

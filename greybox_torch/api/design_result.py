@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,13 +11,14 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.api.design_files import CARD, FIGURE, INPUT, RECORDED, card_text, columns_of, csv_text
+from greybox_torch.api.design_files import CARD, FIGURE, INPUT, card_text, columns_of, csv_text
+from greybox_torch.api.design_notes import design_notes
 from greybox_torch.api.expected import WANTED, Expected
 from greybox_torch.api.result import Result
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.experiment_design.excitation import Excitation
-from greybox_torch.experiment_design.limits import EVERY_INPUT, Limits
+from greybox_torch.experiment_design.limits import Limits
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
@@ -43,7 +44,8 @@ class DesignResult(Result):
     Where a controller drives inputs, ``follows`` names the output that each of them follows, ``set_points`` (N,) by output are what is
     designed, and ``driven`` (N,) by input what that makes of them under each hypothesis; ``inputs`` are then those under the first one.
     ``on_one_input`` (N, n_y) is what each hypothesis predicts on these.
-    ``left_out`` says which rivals are not among the hypotheses.
+    ``left_out`` says which rivals are not among the hypotheses. ``moving``: the
+    speeds that it begins with, where it does not begin at rest.
     """
 
     data: DataSet
@@ -70,6 +72,7 @@ class DesignResult(Result):
     driven: tuple[Mapping[str, np.ndarray], ...] = ()
     on_one_input: tuple[np.ndarray, ...] = ()
     left_out: tuple[str, ...] = ()
+    moving: tuple[str, ...] = ()
 
     @property
     def seconds(self) -> float:
@@ -91,13 +94,13 @@ class DesignResult(Result):
     @property
     def sentence(self) -> str:
         """What the recording is expected to do, in a sentence."""
-        kinds = " and ".join(dict.fromkeys(e.kind for e in self.excitations)) + self._as_set_points
+        kinds = " and ".join(dict.fromkeys(e.kind for e in self.excitations)) + self.as_set_points
         if self.parameter is not None:
             change = f"from {self.before:.2g} to {self.after:.2g} {self.unit}".rstrip()
             return f"{digits(self.seconds, 4)} s of {kinds} are expected to bring the standard deviation of {self.parameter} {change}."
         if not self.expected.decides:
             return (
-                f"No {self._what} within the limits was found that tells these hypotheses apart, whichever is right: "
+                f"No {self.what} within the limits was found that tells these hypotheses apart, whichever is right: "
                 f"{', '.join(self.names[k] for k in self.expected.in_question)}."
             )
         told = (
@@ -156,42 +159,7 @@ class DesignResult(Result):
     @property
     def notes(self) -> list[str]:
         """What else a reader has to know."""
-        lines = [*self.left_out, *self._told_apart]
-        if self.limits.seconds > 1.001 * self.seconds:
-            lines.append(
-                f"Designed for the first {digits(self.seconds, 4)} of {digits(self.limits.seconds, 4)} s; "
-                "repeated, it says more in proportion to the time."
-            )
-        if len(self.inputs) > 1:
-            lines.append(EVERY_INPUT)
-        if self.parameter is None and not self.expected.decides:
-            return [
-                *lines,
-                f"{INPUT} holds the best that was found; it is not worth recording. Wider limits or more seconds may help.",
-            ]
-        for name, output in self.follows.items():
-            lines.append(
-                f"Simulated under feedback: the controller drives {name}, so that {output} follows its set point, which {INPUT} holds. "
-                f"Record the {name} that reaches the machine; a diagnosis takes that."
-            )
-        began = ", ".join(f"{name} = {value:.3g}" for name, value in self.start.items())
-        lines.append(f"Begin as {self.begins_like} began: {began}.")
-        lines.append(
-            f"Record it, save it as {RECORDED} beside {CARD}, and diagnose the old recordings together with it."
-        )
-        return lines
-
-    @property
-    def _told_apart(self) -> Iterator[str]:
-        """Which hypotheses stay alike where others are told apart, and what a random input would do."""
-        if self.parameter is not None or not self.expected.decides:
-            return
-        for a, b in self.alike:
-            yield f"No {self._what} within the limits was found that tells {a} from {b} in {digits(self.seconds, 4)} s, whichever is right."
-        if self.alike:
-            yield "Those count as one in the probability that is expected."
-        if self.expected.random is not None:
-            yield f"A random multisine of the same power{self._as_set_points}: {self.expected.random:.2f}."
+        return design_notes(self)
 
     def files(self, folder: Path) -> dict[Path, str | bytes]:
         """The input as CSV, a figure, and a card for the new recording."""
@@ -224,12 +192,13 @@ class DesignResult(Result):
         return plot_design(title, self.time, set_ones, outputs, units, level, feedback)
 
     @property
-    def _what(self) -> str:
+    def what(self) -> str:
+        """What is designed, in a word or two."""
         return "set point" if self.follows else "input"
 
     @property
-    def _as_set_points(self) -> str:
-        """What is designed, where that is not the inputs."""
+    def as_set_points(self) -> str:
+        """What is designed, where that is not the inputs; "" elsewhere."""
         return f" as the set point of {' and '.join(self.set_points)}" if self.follows else ""
 
     def _repr_html_(self) -> str:

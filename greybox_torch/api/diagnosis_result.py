@@ -20,7 +20,7 @@ from greybox_torch.api.free_runs import plot_simulated
 from greybox_torch.api.hypotheses import hypothesis_files, kept_hypotheses
 from greybox_torch.api.result import Result
 from greybox_torch.api.scores import score_rows, score_table
-from greybox_torch.api.verdict_summary import effect_table, notes, print_verdict, verdict_scores
+from greybox_torch.api.verdict_summary import MOVED, effect_table, moved_table, notes, print_verdict, verdict_scores
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.effect import Effect
@@ -181,11 +181,14 @@ class DiagnosisResult(Result):
 
     def _repr_html_(self) -> str:
         effects = [notebook.table(*effect_table(self.verdict))] if self.effects else []
+        columns, rows = moved_table(self.verdict)
+        moved = [notebook.sentence(MOVED), notebook.table(columns, rows)] if rows else []
         return notebook.page(
             f"{self.data.name}: {self.given.title}",
             notebook.sentence(self.sentence, "found"),
             *effects,
             *(notebook.sentence(line) for line in notes(self.verdict)),
+            *moved,
             notebook.table(*score_table(self.data, verdict_scores(self.verdict))),
             notebook.picture(self.plot(), "outputs over time, measured and simulated by each model"),
         )

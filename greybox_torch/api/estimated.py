@@ -13,8 +13,11 @@ Entry = TypeVar("Entry")
 
 @dataclass(frozen=True)
 class EstimatedStart:
-    """A start state of one experiment, in ``unit``. ``std`` is its standard deviation, infinite where the data do not determine it and zero
-    where it is ``fixed``; ``std_sandwich`` allows for coloured residuals.
+    """A start state of one experiment, in ``unit``.
+
+    ``std`` is its standard deviation where residuals are white, "std" on the console. ``std_sandwich`` is right where they are correlated
+    in time too, "std (coloured)": while the model lacks something it is the one to trust, and often several times as large. Both are
+    infinite where the data do not determine the number, and zero where it is ``fixed``.
     """
 
     value: float
@@ -26,7 +29,12 @@ class EstimatedStart:
 
 @dataclass(frozen=True)
 class EstimatedParameter(EstimatedStart):
-    """A parameter, with the bounds that it was estimated within; the other fields are as those of :class:`EstimatedStart`."""
+    """A parameter in ``unit``, with the bounds ``lower`` and ``upper`` that it was estimated within.
+
+    ``std`` is its standard deviation where residuals are white, "std" on the console. ``std_sandwich`` is right where they are correlated
+    in time too, "std (coloured)": while the model lacks something it is the one to trust, and often several times as large. Both are
+    infinite where the data do not determine the parameter, and zero where it is ``fixed``.
+    """
 
     lower: float
     upper: float

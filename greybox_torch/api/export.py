@@ -9,7 +9,7 @@ from greybox_torch.api.arguments import check_model
 from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.export_result import ExportResult, SnippetResult
 from greybox_torch.data import DataSet
-from greybox_torch.errors import ArgumentError, did_you_mean
+from greybox_torch.errors import ArgumentError, UserError, did_you_mean
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.exporting.c_source import c_files
@@ -19,6 +19,7 @@ from greybox_torch.exporting.joints.mjcf import mjcf
 from greybox_torch.exporting.joints.snippet import Snippet
 from greybox_torch.exporting.joints.urdf import urdf
 from greybox_torch.exporting.torch_module import torch_files
+from greybox_torch.mechanisms.attached import attached
 from greybox_torch.model import GreyBoxModel
 
 WRITERS: dict[str, Callable[[ExportedModel], Mapping[str, str | bytes]]] = {
@@ -81,7 +82,8 @@ def export(
         step: largest integration step in seconds; by default what ``data`` need, else the sample time that effects were found with.
 
     Raises:
-        UserError: equations that have no compiled form, a dead time without a longest value, or an argument is at fault.
+        UserError: equations that have no compiled form, a dead time without a longest value, "mjcf" or "urdf" of a model without effects,
+            or an argument is at fault.
 
     Examples:
         ``export(found, to="c", data=data).save("motor_in_c")``
@@ -92,6 +94,11 @@ def export(
         if step is not None:
             raise ArgumentError(
                 "step", step, f"{to} has attributes alone, the steps are its simulator's; expected none"
+            )
+        if not attached(given)[1]:
+            raise UserError(
+                f"{given.title} has no effects, so there is nothing to write as {to}, which is for effects alone; expected the results of "
+                f"greybox diagnose that found some, or --to {', '.join(WRITERS)} for the model itself (in Python: to=)"
             )
         return SnippetResult(given, to, SNIPPETS[to](given, identifier_of(given, name)))
     hold = "zoh"

@@ -66,7 +66,10 @@ class FitResult(EstimatedModel):
 
     @cached_property
     def parameters(self) -> dict[str, EstimatedParameter]:
-        """By name: value, standard deviation, unit, bounds, and whether it was fixed."""
+        """By name: ``value``, ``unit``, bounds ``lower`` and ``upper``, whether it was ``fixed``, and two standard deviations: ``std``,
+        right where residuals are white, and ``std_sandwich``, right where they are correlated in time too ("std (coloured)" on the
+        console), as they are while the model lacks something.
+        """
         return estimated_parameters(self.estimation)
 
     @cached_property

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from greybox_torch.api.expected import NOTHING
+from greybox_torch.api.expected import AS_IN_A_DIAGNOSIS, NOTHING
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.diagnosis.one_of import spoken_at
@@ -20,7 +20,7 @@ from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
 from greybox_torch.reading import read_json
 from greybox_torch.restored import load_beside
-from greybox_torch.result_names import HYPOTHESES, MODEL, RIVALS
+from greybox_torch.result_names import HYPOTHESES, MODEL, RIVALS, VERDICT
 from greybox_torch.systems import load_model, model_reference
 
 if TYPE_CHECKING:
@@ -47,8 +47,8 @@ class Kept:
 
 @dataclass(frozen=True)
 class Hypotheses:
-    """The ``recommended`` model, for each finding the hypotheses of which it is one, the finding first, and whether the search that they
-    are of ran to its end.
+    """The ``recommended`` model, for each finding the hypotheses of which it is one, the finding first, whether the search that they are of
+    ran to its end, and the verdict's sentence of what is ``left`` of the mismatch ("" where that is not far above the noise).
     """
 
     data: DataSet
@@ -56,6 +56,7 @@ class Hypotheses:
     recommended: Kept
     findings: tuple[tuple[Kept, ...], ...]
     complete: bool = True
+    left: str = ""
 
 
 def hypotheses_of(result: DiagnosisResult) -> Hypotheses:
@@ -67,7 +68,9 @@ def hypotheses_of(result: DiagnosisResult) -> Hypotheses:
         found.setdefault(r.finding, []).append(one)
     recommended = Kept("the recommended model", 1.0, result.model, result.initial)
     groups = tuple(tuple(group) for group in found.values())
-    return Hypotheses(result.data, model_reference(result.given), recommended, groups, result.verdict.complete)
+    rest = result.verdict.left
+    left = "" if rest is None else _if_large(rest.times_noise, rest.sentence)
+    return Hypotheses(result.data, model_reference(result.given), recommended, groups, result.verdict.complete, left)
 
 
 def _in_verdict(result: DiagnosisResult, rival: Rival) -> float | None:
@@ -144,7 +147,23 @@ def read_hypotheses(folder: Path, model: str | None = None) -> Hypotheses:
         ) from None
     recommended, data = load_beside(folder / MODEL, own, data)
     found = Kept("the recommended model", 1.0, recommended, starts)
-    return Hypotheses(data, name, found, tuple(tuple(group) for group in groups), bool(content.get("complete", True)))
+    whole = bool(content.get("complete", True))
+    return Hypotheses(data, name, found, tuple(tuple(group) for group in groups), whole, _left(folder / VERDICT))
+
+
+def _left(verdict: Path) -> str:
+    """What the verdict beside hypotheses says of the rest; "" where that is little, or the verdict is not there any more."""
+    if not verdict.is_file():
+        return ""
+    content = read_json(verdict, "results of greybox diagnose")
+    left = content.get("left") if isinstance(content, dict) else None
+    return _if_large(left.get("times_noise"), str(left.get("sentence", ""))) if isinstance(left, dict) else ""
+
+
+def _if_large(times_noise: Any, sentence: str) -> str:
+    """The sentence where it speaks of more than laws that tell the whole story leave."""
+    large = isinstance(times_noise, int | float) and times_noise >= AS_IN_A_DIAGNOSIS.far_above_noise
+    return sentence if large else ""
 
 
 def _content(path: Path) -> dict[str, Any]:

@@ -15,8 +15,8 @@ WORSE = 0.01
 
 
 def train_advice(scores: Scores) -> list[str]:
-    """Sentences where the hybrid, or the model with a law in the network's place, simulates the validation experiments worse than the
-    physics alone; none where there are no such experiments.
+    """Sentences where the hybrid, or the model with a law in the network's place, simulates the validation experiments, or one output of
+    them, worse than the physics alone; none where there are no such experiments.
     """
     fits = _fits(scores)
     whose = {HYBRID: "the hybrid simulates", NAMED: "the model with the law in the network's place simulates"}
@@ -25,7 +25,22 @@ def train_advice(scores: Scores) -> list[str]:
     return [
         f"{_told(whose[name], fits[name], fits[PHYSICS])}what was learned does not carry over to them. {use}"
         for name in worse
-    ]
+    ] + [line for name in whose if name not in worse for line in _outputs_told(whose[name], scores, name)]
+
+
+def _outputs_told(who: str, scores: Scores, name: str) -> list[str]:
+    """A sentence for every output that a model simulates worse, though it is no worse in the mean of all."""
+    if name not in scores:
+        return []
+    found = []
+    for output in dict.fromkeys(s.output for s in scores[name]):
+        fits = _fits({model: [s for s in own if s.output == output] for model, own in scores.items()})
+        if _is_worse(fits, name):
+            found.append(
+                f"On the validation experiments {who} {output} worse than the physics alone ({_numbers(fits[name], fits[PHYSICS])}), "
+                "though all outputs together no worse: where that output is what counts, use the physics alone."
+            )
+    return found
 
 
 def explained_sentence(explained: Explanation, scores: Scores) -> str:
@@ -50,9 +65,12 @@ _USE_LAW = "Use the model with the law in the network's place (`named`)."
 
 
 def _told(who: str, fit: float, alone: float) -> str:
-    found = (
+    return f"On the validation experiments {who} worse than the physics alone ({_numbers(fit, alone)}): "
+
+
+def _numbers(fit: float, alone: float) -> str:
+    return (
         f"mean fit {fit:.4g} % for {alone:.4g} %"
         if np.isfinite(fit)
         else f"it overflows; mean fit {alone:.4g} % without"
     )
-    return f"On the validation experiments {who} worse than the physics alone ({found}): "

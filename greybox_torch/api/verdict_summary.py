@@ -22,6 +22,14 @@ _COLUMNS = ["port", "mechanism", "probability", "size [%]", "parameter", "value"
 SIZE = "size: the part of the error of the model without effects that leaving the effect out brings back; the parts need not add up"
 
 
+MOVED_BY = 0.1
+"""Share of its start value by which a parameter of the model has to move to be listed."""
+MOVED = (
+    "The model's own parameters that moved by more than 10 %, and by more than their standard deviation (refit: re-estimated without the "
+    "effects; all of them are in the report):"
+)
+
+
 def print_verdict(console: Console, data: DataSet, title: str, verdict: Verdict) -> None:
     """The verdict in one sentence, the effects with their parameters, fit and error before and after."""
     console.print(Text(f"{data.name}: {title}", style="bold"))
@@ -30,6 +38,10 @@ def print_verdict(console: Console, data: DataSet, title: str, verdict: Verdict)
         print_table(console, *effect_table(verdict))
     for line in notes(verdict):
         console.print(Text(line if verdict.effects else f"- {line}"), soft_wrap=True)
+    columns, rows = moved_table(verdict)
+    if rows:
+        console.print(Text(f"\n{MOVED}"), soft_wrap=True)
+        print_table(console, columns, rows)
     console.print()
     print_scores(console, data, verdict_scores(verdict))
     console.print(Text(f"{verdict.seconds:.1f} s, seed {verdict.seed}"))
@@ -38,6 +50,20 @@ def print_verdict(console: Console, data: DataSet, title: str, verdict: Verdict)
 def effect_table(verdict: Verdict) -> tuple[list[str], list[list[str | float]]]:
     """Headings and rows of the effects and their parameters."""
     return _COLUMNS, [row for effect in verdict.effects for row in _rows(effect)]
+
+
+def moved_table(verdict: Verdict) -> tuple[list[str], list[list[str | float]]]:
+    """Headings and rows of the model's own parameters that have other values with the effects; no rows where there are none."""
+    columns = ["parameter", "start", "refit", "with the\neffects", "std", "unit"]
+    rows: list[list[str | float]] = []
+    for one in verdict.parameters:
+        if one.augmented is None:
+            continue
+        value, deviation = one.augmented
+        moved = abs(value - one.start)
+        if moved > max(MOVED_BY * abs(one.start), deviation or 0.0):
+            rows.append([one.name, one.start, one.refit[0], value, _deviation(deviation), one.unit])
+    return columns, rows
 
 
 def notes(verdict: Verdict) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -29,7 +29,8 @@ class Contender:
 
     ``information`` (n_p, n_p) is what they say of the free parameters: [J]ᵀ[J] of the outputs in units of the errors, over the number of
     samples that errors are correlated for. ``level`` (n_y,) are the root mean square errors, ``memory`` is that number. ``loops``: the
-    controller that a new recording runs under.
+    controller that a new recording runs under. ``reach`` (n_x,): the largest size of each state along the recordings. ``begins``: which of
+    these a next recording begins as, but for the states ``begun_with``.
     """
 
     name: str
@@ -40,6 +41,9 @@ class Contender:
     level: np.ndarray
     memory: float
     loops: tuple[Loop, ...] = ()
+    reach: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    begins: int = 0
+    begun_with: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def free(self) -> np.ndarray:
@@ -50,7 +54,25 @@ class Contender:
     def start(self) -> dict[str, float]:
         """The states of the machine itself, without the memory of effects, that a next recording begins with."""
         names = [s.name for s in self.problem.model.plain.states]
-        return {name: float(value) for name, value in zip(names, self.problem.initial[0], strict=False)}
+        return {name: float(value) for name, value in zip(names, self.first, strict=False)}
+
+    @property
+    def first(self) -> np.ndarray:
+        """All states (n_x,) that a next recording begins with, before effects' memory has begun as its input says."""
+        names, first = [s.name for s in self.problem.model.states], self.problem.initial[self.begins].copy()
+        for name, value in self.begun_with.items():
+            first[names.index(name)] = value
+        return first
+
+    @property
+    def begun(self) -> Problem:
+        """Its problem with what a next recording begins with in the place of the first start states."""
+        return replace(self.problem, initial=np.concatenate([self.first[None], self.problem.initial[1:]]))
+
+    def beginning(self, like: str, given: Mapping[str, float]) -> Contender:
+        """The same where a next recording begins as the recording ``like``, if it was estimated from that, but for states ``given``."""
+        names = self.problem.records.names
+        return replace(self, begins=names.index(like) if like in names else 0, begun_with=given)
 
     def predicted(
         self,
@@ -60,7 +82,7 @@ class Contender:
         start: np.ndarray | None = None,
         values: np.ndarray | None = None,
     ) -> Prediction:
-        """Its free runs of C records with as many samples each, begun as the first of its own recordings began.
+        """Its free runs of C records with as many samples each, begun as a next recording is to begin.
 
         Args:
             start: other states (n_x,) or (C, n_x) to begin with, those of the effects' memory among them; by default these begin as the
@@ -96,7 +118,7 @@ class Contender:
         rows = np.atleast_2d(self.problem.values if values is None else values)
         rows = np.broadcast_to(rows, (count, rows.shape[1]))
         driven = prepared_each(model, records, rows)
-        first = np.broadcast_to(self.problem.initial[0] if start is None else start, (count, len(model.states)))
+        first = np.broadcast_to(self.first if start is None else start, (count, len(model.states)))
         if start is None:
             first = begun_each(model, first, driven, records.first, rows)
         problem = self.problem if values is None else replace(self.problem, values=rows)
@@ -134,7 +156,7 @@ def driven_under(machines: Sequence[Contender], commands: Sequence[np.ndarray], 
     if not first.loops:
         return list(commands)
     values = np.array([one.problem.values for one in machines])
-    return under_feedback(first.problem, first.simulator, first.loops, values, commands, step)
+    return under_feedback(first.begun, first.simulator, first.loops, values, commands, step)
 
 
 @dataclass(frozen=True)
@@ -181,7 +203,10 @@ def contender(
         raise NumericalError(
             f"{name}: its simulation of {', '.join(r.name for r in used)} overflows; nothing can be designed with it"
         )
-    return Contender(name, probability, problem, simulator, information, level, memory, tuple(loops))
+    assert run.states is not None
+    along = np.concatenate([run.states[e, :length] for e, length in enumerate(problem.records.lengths)])
+    reach = np.abs(along).max(axis=0)
+    return Contender(name, probability, problem, simulator, information, level, memory, tuple(loops), reach)
 
 
 def _pass(problem: Problem, records: Records, starts: np.ndarray, tangents: bool) -> Pass:

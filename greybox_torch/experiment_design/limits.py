@@ -14,7 +14,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.model import GreyBoxModel
 
-SECONDS = "seconds"
+SECONDS, START = "seconds", "start"
 WIDENED = 0.1
 """Share of what was recorded by which outputs may go beyond it, each way, where no limit is given: noise ends no recording."""
 
@@ -46,7 +46,8 @@ class Range:
 class Limits:
     """``inputs`` has a range for every input; ``outputs`` and ``states`` for those that are limited. ``seconds``: how long it may be.
 
-    ``set_points`` has the range of the set point for every input that a loop drives.
+    ``set_points`` has the range of the set point for every input that a loop drives, and ``begin`` where that begins, by input, in the
+    output's unit. ``start``: states that the recording is to begin with.
     """
 
     seconds: float
@@ -54,6 +55,8 @@ class Limits:
     outputs: Mapping[str, Range]
     states: Mapping[str, Range]
     set_points: Mapping[str, Range] = field(default_factory=dict)
+    start: Mapping[str, float] = field(default_factory=dict)
+    begin: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def commanded(self) -> dict[str, Range]:
@@ -71,7 +74,8 @@ def limits_of(
     """The limits that are ``given`` by signal; where none are, what was recorded: its range, and the length of the longest recording.
 
     Args:
-        given: as the card's table [limits] has them: ``seconds``, and by input, output or state ``{ lower, upper, rate }``.
+        given: as the card's table [limits] has them: ``seconds``, ``start`` by state, and by input, output or state
+            ``{ lower, upper, rate }``.
         place: how a message begins.
         follows: the output that each input follows which a loop drives. Set points have the range that the output is given, else what
             was recorded, and its rate.
@@ -82,7 +86,8 @@ def limits_of(
     own = {s.name for s in model.plain.states}
     inputs, outputs = [s.name for s in model.inputs], [s.name for s in model.outputs]
     # an output may be called as the state that it shows
-    known = list(dict.fromkeys([*inputs, *outputs, *sorted(own), SECONDS]))
+    signals = list(dict.fromkeys([*inputs, *outputs, *sorted(own)]))
+    known = list(dict.fromkeys([*signals, SECONDS, START]))
     for name in given:
         if name not in known:
             raise UserError(
@@ -96,7 +101,19 @@ def limits_of(
         {n: _range(given.get(n), f"{place} {n}", _recorded(data, n, WIDENED)) for n in outputs},
         {n: _range(entry, f"{place} {n}", None) for n, entry in given.items() if n in own and n not in outputs},
         {n: _range(given.get(o), f"{place} {o}", _recorded(data, o, 0.0)) for n, o in (follows or {}).items()},
+        {} if START in signals else _start(given.get(START, {}), sorted(own), f"{place} {START}"),
     )
+
+
+def _start(entry: Any, states: list[str], place: str) -> dict[str, float]:
+    if not isinstance(entry, Mapping):
+        raise UserError(f"{place}: found {entry!r}, expected states and their values, {{ {states[0]} = 0.0 }}")
+    for name in entry:
+        if name not in states:
+            raise UserError(
+                f"{place}: no state is named {name}{did_you_mean(name, states)}; expected some of {', '.join(states)}"
+            )
+    return {name: _number(value, f"{place}, {name}") for name, value in entry.items()}
 
 
 def _recorded(data: DataSet, name: str, widened: float) -> Range:

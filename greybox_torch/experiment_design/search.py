@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from greybox_torch.experiment_design.aim import Aim, Candidate, Trial
+from greybox_torch.experiment_design.approach import begun_there
 from greybox_torch.experiment_design.excitation import drawn, varied
 from greybox_torch.experiment_design.imitation import THOROUGH
 from greybox_torch.experiment_design.judged import Draws, draws_of, judged
@@ -17,6 +18,8 @@ MOST_SAMPLES = 20_000
 """A longer recording is designed for so many samples: what it tells grows in proportion to its length."""
 
 DRAWN, KEPT, VARIED, GENERATIONS = 96, 6, 24, 3
+SHORTEST = 1000
+"""Samples of the shortest recording whose best inputs a longer one begins with; the next is twice as long."""
 SMALLER = (1.0, 0.5, 0.25, 0.1, 0.03)
 """Factors on the amplitude that are tried until a candidate stays within the limits."""
 
@@ -32,18 +35,46 @@ MOST_WORK = 300_000
 def search(aim: Aim, limits: Limits, time: np.ndarray, seed: int, progress: Callable[[str], None]) -> list[Trial]:
     """The best inputs found, the best first; empty where none stays within the limits.
 
+    Where a parameter is to be sharpened, the best of shorter recordings, continued, are among the inputs that a longer one begins with:
+    fewer are tried of a longer one, and more time would promise less.
+
     Args:
         time: of the samples (N,), s.
         progress: is told what is being done.
     """
+    begun: list[Candidate] = []
+    if aim.parameter is not None:
+        for samples in shorter(len(time)):
+            begun = [trial.candidate for trial in _searched(aim, limits, time[:samples], seed, progress, begun)]
+    return _searched(aim, limits, time, seed, progress, begun)
+
+
+def shorter(samples: int) -> list[int]:
+    """The lengths that are searched before one of so many ``samples``: the same ones for all, so that any two have them in common."""
+    found, length = [], SHORTEST
+    while length < samples:
+        found.append(length)
+        length *= 2
+    return found
+
+
+def _searched(
+    aim: Aim,
+    limits: Limits,
+    time: np.ndarray,
+    seed: int,
+    progress: Callable[[str], None],
+    begun: Sequence[Candidate],
+) -> list[Trial]:
+    """The best inputs of one length, the best first, of those ``begun`` with and others drawn."""
     rng = np.random.default_rng(seed)
     slowest, fastest = frequencies(time)
     count = len(limits.commanded)
     tried, again = tries(len(time))
-    begun = [tuple(drawn(rng, slowest, fastest) for _ in range(count)) for _ in range(tried)]
-    progress(f"simulating {tried} inputs")
+    first = [*begun, *(tuple(drawn(rng, slowest, fastest) for _ in range(count)) for _ in range(tried))]
+    progress(f"simulating {len(first)} inputs of {time[-1] - time[0] + time[1] - time[0]:.3g} s")
     draws = draws_of(aim, seed) if aim.parameter is None else None
-    best = _best(aim, limits, time, _tried(aim, limits, time, begun), draws)
+    best = _best(aim, limits, time, _tried(aim, limits, time, first), draws)
     for generation in range(GENERATIONS if best else 0):
         progress(f"refining the best inputs, {generation + 1} of {GENERATIONS}")
         of = [best[k % len(best)].candidate for k in range(again)]
@@ -111,7 +142,9 @@ def _tried(aim: Aim, limits: Limits, time: np.ndarray, candidates: Sequence[Cand
 
 def sampled(candidate: Candidate, time: np.ndarray, limits: Limits) -> np.ndarray:
     """What is commanded with a candidate, (n_u, N)."""
-    return np.array([e.sampled(time, w) for e, w in zip(candidate, limits.commanded.values(), strict=True)])
+    return begun_there(
+        np.array([e.sampled(time, w) for e, w in zip(candidate, limits.commanded.values(), strict=True)]), time, limits
+    )
 
 
 def _scores(aim: Aim, commands: Sequence[np.ndarray], time: np.ndarray) -> list[float]:

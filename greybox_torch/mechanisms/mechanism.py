@@ -50,6 +50,8 @@ class Mechanism:
     reads: tuple[str, ...] = ()
     """Signals from elsewhere that a law sees at whatever port: inputs of the model, ``input@NAME``, and what
     :func:`~greybox_torch.model.signals_elsewhere.signals_elsewhere` lists, ``position@BODY`` and ``level@BALANCE``."""
+    drawn_over: ClassVar[str] = ""
+    """The signal of ``needs`` that its figure is over, where that is not the first."""
     by_rate: bool = False
     """Whether it reads ``rate@PORT``, which the forces of all other laws belong to."""
     kinematic: bool = False

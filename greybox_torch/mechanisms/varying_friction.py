@@ -22,6 +22,7 @@ class LoadDependentFriction(DryLaw):
     name = "load_dependent_friction"
     kinds = ("body",)
     needs = ("speed", "load")
+    drawn_over = "load"
     nature = "dry friction"
     explanation = "Friction grows with the load carried (gear meshes, bearings under force)."
     source = "P. Hamon, M. Gautier, P. Garrec, IEEE/RSJ IROS, 2010; A. C. Bittencourt, S. Gunnarsson, J. Dyn. Sys. Meas. Control 134, 2012"

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from greybox_torch.api.verdict_summary import SIZE, effect_table, notes
-from greybox_torch.diagnosis.verdict import MOST_NAMED, STOPPED, NotTried
+from greybox_torch.api.verdict_summary import SIZE, effect_table, moved_table, notes
+from greybox_torch.diagnosis.verdict import MOST_NAMED, STOPPED, Estimate, NotTried
 from greybox_torch.estimate.notes import told_at_bound
 from greybox_torch.report.sections.effects import Effects
 from tests.diagnosis.test_verdict import BACKLASH, verdict
@@ -87,3 +87,17 @@ def test_of_many_candidates_their_number_is_told() -> None:
     (told,) = NotTried((), many).sentences()
     assert told == "Not tried any more: 13 mechanisms at ports, which verdict.json lists (not_tried)."
     assert len(NotTried((), many).as_json()["candidates"]) == 13
+
+
+def test_the_models_own_parameters_that_moved_are_listed() -> None:
+    """Seen: values that came back to those of the machine, the best evidence, in the report alone."""
+    stiff = Estimate("k", "N m/rad", 150.0, (193.0, 0.1), (178.7, 0.4))
+    same = Estimate("mgl", "N m", 4.2, (4.1, 0.01), (4.201, 0.0001))
+    vague = Estimate("b", "N m s/rad", 0.1, (0.1, None), (0.2, 0.5))
+    unknown = Estimate("d", "N m s/rad", 0.2, (0.7, None), (0.25, None))
+    found = replace(verdict(BACKLASH), parameters=(stiff, same, vague, unknown))
+    assert moved_table(found)[1] == [
+        ["k", 150.0, 193.0, 178.7, 0.4, "N m/rad"],
+        ["d", 0.2, 0.7, 0.25, "", "N m s/rad"],
+    ]
+    assert moved_table(replace(found, parameters=(replace(stiff, augmented=None),)))[1] == []

@@ -83,6 +83,9 @@ def test_precision(undecided) -> None:
     assert long.sentence.startswith("3600 s of ")  # seen: 3.6e+03 s
     two = replace(found, inputs={**found.inputs, "room": found.inputs["voltage"]})
     assert EVERY_INPUT in two.notes
+    correlated = replace(found, memory=510.0)
+    assert any("correlated over up to 510 samples, and so many count as one" in line for line in correlated.notes)
+    assert not any("count as one" in line for line in replace(found, memory=1.0).notes)
     told = found.to_dict()
     assert told["deviation"]["after"] == found.after and "hypotheses" not in told
 

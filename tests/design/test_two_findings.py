@@ -13,8 +13,9 @@ import greybox_torch as gt
 from greybox_torch.api.design_result import DesignResult
 from greybox_torch.api.diagnosis_result import DiagnosisResult
 from greybox_torch.api.expected import Expected, decided
-from greybox_torch.api.hypotheses import hypotheses_of, hypothesis_files, left_out_told, to_tell_apart
+from greybox_torch.api.hypotheses import _left, hypotheses_of, hypothesis_files, left_out_told, to_tell_apart
 from greybox_torch.diagnosis.describe.rivals import Rival
+from greybox_torch.diagnosis.verdict import Left
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
@@ -81,6 +82,26 @@ def test_what_is_decided_is_not_recorded(two_found, tmp_path, in_verdict: float,
     files = hypothesis_files(tmp_path, sure, sure._checkpoint())
     kept = json.loads(files[tmp_path / "hypotheses.json"])
     assert [one["in_verdict"] for one in kept["findings"][0]] == [in_verdict, None] and kept["complete"] is complete
+
+
+def test_what_is_left_all_the_same_is_told(two_found, tmp_path) -> None:
+    """Seen: "there is nothing to record", where the verdict says that 51 times the noise is left, and repeatable."""
+    *_, final, other = two_found.found.rivals
+    left = Left(0.06, 51.0, "6 % of the mismatch remains: 51 times the noise.")
+    verdict = replace(two_found.verdict, left=left)
+    rivals = (replace(final, probability=0.97), replace(other, probability=1e-5))
+    sure = replace(two_found, found=replace(two_found.found, verdict=verdict, rivals=rivals))
+    with pytest.raises(
+        UserError,
+        match=r"leaves some error all the same\. 6 % of the mismatch remains: 51 times the noise\. No hypo",
+    ):
+        gt.design(sure)
+    (tmp_path / "verdict.json").write_text(json.dumps(sure.content(tmp_path)))
+    assert _left(tmp_path / "verdict.json") == left.sentence
+    assert _left(tmp_path / "another.json") == ""
+    little = replace(sure, found=replace(sure.found, verdict=replace(verdict, left=replace(left, times_noise=0.9))))
+    with pytest.raises(UserError, match=r"each rival less than 0\.005; expected"):
+        gt.design(little)
 
 
 @pytest.mark.parametrize(

@@ -180,6 +180,13 @@ def test_steps_are_those_of_the_simulator(machines: Path) -> None:
         gt.export(rotor(machines, {("rotor", "viscous_friction"): {"c": 0.1}}), to="mjcf", step=1e-3)
 
 
+@pytest.mark.parametrize("to", ["mjcf", "urdf"])
+def test_without_effects_there_is_nothing_to_write(to: str, machines: Path) -> None:
+    """Seen: a file with nothing but its comments, and not a word."""
+    with pytest.raises(gt.UserError, match=f"no effects, so there is nothing to write as {to}"):
+        gt.export(gt.load_model(f"{machines / 'small.py'}:Tank"), to=to)
+
+
 def test_a_tank_has_no_joints(machines: Path) -> None:
     around = Surroundings({"level": Range(0.0, 1.0, 0.5)}, {"level": "m"}, "m^3/s", 1.0)
     plain = gt.load_model(f"{machines / 'small.py'}:Tank")

@@ -10,8 +10,8 @@ import pytest
 import torch
 from scipy.integrate import solve_ivp
 
-from greybox_torch.diagnosis.describe.effects import as_named, signal_name
 from greybox_torch.diagnosis.describe.profiles import law_curve
+from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name
 from greybox_torch.diagnosis.screen.candidates import candidates
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel

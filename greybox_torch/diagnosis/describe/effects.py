@@ -14,8 +14,16 @@ from greybox_torch.diagnosis.describe.equation import equation
 from greybox_torch.diagnosis.describe.indistinguishable import one_of
 from greybox_torch.diagnosis.describe.law_over_data import over_data
 from greybox_torch.diagnosis.describe.memory import remembered, settled_curve
-from greybox_torch.diagnosis.describe.profiles import explained_energy, local_signals, most_of, profile, with_samples
-from greybox_torch.diagnosis.effect import Curve, Effect, Profile, Timeline
+from greybox_torch.diagnosis.describe.profiles import (
+    explained_energy,
+    local_signals,
+    most_of,
+    profile,
+    unit_at,
+    with_samples,
+)
+from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name
+from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.one_of import Alternative
 from greybox_torch.diagnosis.select.posterior import LeftInFreeRuns, by_comparison, for_all_that_is_left, shared
@@ -25,14 +33,8 @@ from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.notes import at_bounds
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.unknown import INPUT, Unknown
-from greybox_torch.model import Coupling, GreyBoxModel
-from greybox_torch.model.along_motion import ALONG, DIRECTION
-from greybox_torch.model.own_rate import RATE, balanced_state
-from greybox_torch.model.ports import Actuator, Port, driving_body
-from greybox_torch.model.signals_elsewhere import ABOVE, DIFFERENCE
-from greybox_torch.model.states_at_no_port import STATE
-from greybox_torch.model.within_turn import TURN, TURN_OF
+from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.model.ports import Port
 
 NEARLY_ALL = 0.75
 """Share of a signal's range from which an interval within it says nothing of where an effect is."""
@@ -115,7 +117,7 @@ def _effect(
         parameters=parameters,
         explained=round(explained, 4),
         alternatives=alternatives,
-        curve=as_named(with_samples(curve, local), model.base, site),
+        curve=as_named(with_samples(curve, local), model.base, site, mechanism.signals()[:1]),
         memory=remembered(attachment, around, final, named(mechanism.signals()[0])) if mechanism.free else None,
         profiles=profiles,
         explanation=mechanism.explanation,
@@ -160,48 +162,6 @@ def ceiling_share(done: SelectionStep, memory: SelectionStep | None = None) -> f
     return round(done.taken.gain / max(done.taken.gain, *gains), 4)
 
 
-def as_named(curve: Curve | None, model: GreyBoxModel, site: Port) -> Curve | None:
-    """A curve over a turn or a signal of another port by the model's own name of it; own signals keep their names at a port."""
-    return (
-        curve
-        if curve is None or not (curve.signal == TURN or "@" in curve.signal)
-        else replace(curve, signal=signal_name(model, site, curve.signal))
-    )
-
-
-def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:
-    """The model's own name of a port's signal, where it has one."""
-    given: Any = site.signals.get(signal)
-    if isinstance(given, str):
-        return given
-    if signal in ("input", "output"):
-        return str(getattr(site, signal, signal))
-    if signal.startswith((INPUT, STATE)):
-        return signal.partition("@")[2]
-    if signal.startswith(DIFFERENCE):
-        other = next(q for q in model.all_ports if q.name == signal.removeprefix(DIFFERENCE))
-        return f"{signal_name(model, site, 'level')} - {signal_name(model, other, 'level')}"
-    if signal.startswith(ABOVE):
-        return f"{signal_name(model, site, 'level')} - {signal.removeprefix(ABOVE)}"
-    if signal.startswith(TURN_OF):
-        return signal_name(model, next(q for q in model.all_ports if q.name == signal.removeprefix(TURN_OF)), TURN)
-    if signal == TURN:
-        return f"{signal_name(model, site, 'position')} within a turn"
-    if signal.startswith(ALONG):
-        return f"{signal.removeprefix(ALONG)} along the motion"
-    if signal.startswith(DIRECTION):
-        return f"direction of {signal_name(model, site, 'speed')}"
-    if signal.startswith(RATE):
-        return f"d {balanced_state(model, site)}/dt"
-    if "@" in signal:
-        kind, _, elsewhere = signal.partition("@")
-        return signal_name(model, next(q for q in model.all_ports if q.name == elsewhere), kind)
-    body = driving_body(model.all_ports)
-    if signal in ("speed", "position") and isinstance(site, Actuator | Coupling) and body is not None:
-        return signal_name(model, body, signal)
-    return signal if signal == "time" else f"{site.name}.{signal}"
-
-
 def _parameters(model: AugmentedModel, attachment: Attachment, final: Final) -> dict[str, dict[str, Any]]:
     values, deviations = final.values(), final.deviations()
     start = f"{attachment.prefix}."
@@ -219,10 +179,10 @@ def _profiles(
     study: Study, state: SearchState, model: AugmentedModel, attachment: Attachment, site: Port, local: dict[str, Any]
 ) -> tuple[Profile, ...]:
     energy = explained_energy(state.without.get(attachment.prefix, state.plain), state.current)
-    units = study.surroundings[attachment.port].units
+    around = study.surroundings[attachment.port]
     wanted = attachment.mechanism.signals() or tuple(site.signals)[:1]
     return tuple(
-        profile(signal_name(model.base, site, name), units.get(name, ""), local[name], energy)
+        profile(signal_name(model.base, site, name), unit_at(around, name), local[name], energy)
         for name in wanted
         if name in local and np.ptp(local[name]) > 0
     )

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import torch
 
+from greybox_torch.diagnosis.describe.hysteresis import hysteresis_loop
 from greybox_torch.diagnosis.describe.profiles import POINTS
 from greybox_torch.diagnosis.effect import Curve
 from greybox_torch.diagnosis.hypothesis.final import Final
@@ -15,6 +16,7 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.input_follower import InputFollower
 from greybox_torch.mechanisms.matching import law_force
 from greybox_torch.mechanisms.surroundings import Surroundings
+from greybox_torch.mechanisms.transmission import HystereticSpring
 from greybox_torch.mechanisms.unknown_fading import UnknownFading
 from greybox_torch.mechanisms.unknown_map import UnknownMap
 from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
@@ -73,9 +75,11 @@ def remembered(attachment: Attachment, around: Surroundings, final: Final, signa
 def settled_curve(attachment: Attachment, around: Surroundings, final: Final) -> Curve | None:
     """The force over the signal once all has settled, as the entry `curve` of a free response or of a gain that fades.
 
-    Of play the loop that it draws, of a limit of the rate what that lacks over the rate of the input. None for any other effect.
+    Of play and of a hysteretic spring the loop, of a limit of the rate what that lacks over the rate of the input. None for others.
     """
     mechanism = attachment.mechanism
+    if isinstance(mechanism, HystereticSpring):
+        return hysteresis_loop(mechanism, around, _own(attachment, final)[0])
     if isinstance(mechanism, InputFollower):
         return Curve(*mechanism.drawn(around, _own(attachment, final)[0], POINTS))
     if isinstance(mechanism, UnknownMap):

@@ -65,14 +65,16 @@ def most_of(found: Profile, share: float = 0.8) -> tuple[float, float, float]:
 
 
 def law_curve(model: AugmentedModel, attachment: Attachment, around: Surroundings, problem: Problem) -> Curve | None:
-    """The effect's own law over its first signal, the others held at their root mean square; None for laws with memory.
+    """The effect's own law over its first signal, or the one that it is drawn over, the others held at their root mean square; None for
+    laws with memory.
 
     Of a curve that multiplies a rate what it takes of that rate: speeds are zero.
     """
     signals = attachment.mechanism.signals()
     if attachment.mechanism.states(around) or not signals or signals[0] not in around.ranges:
         return None
-    name, grid = signals[0], _grid(attachment.mechanism, around)
+    name = _over(attachment.mechanism, around)
+    grid = _grid(attachment.mechanism, around, name)
     if "delayed" in attachment.mechanism.needs or attachment.mechanism.links:
         return None
     still = [n for n in around.ranges if n.startswith("speed")] if attachment.mechanism.by_rate else ()
@@ -80,12 +82,21 @@ def law_curve(model: AugmentedModel, attachment: Attachment, around: Surrounding
     force = model.curve(attachment, {**held, name: grid}, problem.parameter_tensors)
     unit = around.units.get("deflection", "") if attachment.mechanism.kinematic else around.force_unit
     values = np.broadcast_to(np.asarray(force, dtype=float), grid.shape)
-    return Curve(name, around.units.get(name, ""), grid.numpy(), values, unit)
+    return Curve(name, unit_at(around, name), grid.numpy(), values, unit)
 
 
-def _grid(mechanism: Mechanism, around: Surroundings) -> torch.Tensor:
-    """Values of the first signal that a law is drawn over, within its range: more of them where a free curve is over a part of that."""
-    span = around.ranges[mechanism.signals()[0]]
+def _over(mechanism: Mechanism, around: Surroundings) -> str:
+    return mechanism.drawn_over if mechanism.drawn_over in around.ranges else mechanism.signals()[0]
+
+
+def unit_at(around: Surroundings, signal: str) -> str:
+    """The unit of a signal at a port; what a body carries has that of the forces there."""
+    return around.units.get(signal, around.force_unit if signal == "load" and "speed" in around.units else "")
+
+
+def _grid(mechanism: Mechanism, around: Surroundings, signal: str) -> torch.Tensor:
+    """Values of the signal that a law is drawn over, within its range: more of them where a free curve is over a part of that."""
+    span = around.ranges[signal]
     if isinstance(mechanism, Unknown):
         grid = mechanism.grid(around, POINTS)
         return grid[(grid >= span.low) & (grid <= span.high)]

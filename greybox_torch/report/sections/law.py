@@ -116,6 +116,7 @@ def _legend(effect: Effect, curve: Curve) -> tuple[Key, ...]:
 
 def _caption(effect: Effect, curve: Curve) -> str:
     settled = "" if effect.memory is None else ", once all has settled"
+    settled += ", as that goes up and down once" if bool((np.diff(curve.values) < 0.0).any()) else ""
     over = f"what it adds at {effect.port} over {text.words(_over(effect, curve))}{settled}"
     if curve.free is None:
         spread = "" if curve.spread is None else ", with two standard deviations on either side"

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.confirm.held_out import timelines
-from greybox_torch.diagnosis.describe.effects import as_named, signal_name, where
+from greybox_torch.diagnosis.describe.effects import where
+from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name
 from greybox_torch.diagnosis.effect import Curve, Profile, Timeline
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.windows import cut

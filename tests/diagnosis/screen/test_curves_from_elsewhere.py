@@ -9,7 +9,7 @@ import pytest
 import torch
 
 import greybox_torch as gt
-from greybox_torch.diagnosis.describe.effects import signal_name
+from greybox_torch.diagnosis.describe.signal_names import signal_name
 from greybox_torch.diagnosis.screen import further_curves
 from greybox_torch.diagnosis.screen.candidates import candidates
 from greybox_torch.estimate.problem import make_problem

@@ -1,0 +1,75 @@
+"""What a reader of a designed recording has to know beside what it is expected to say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from greybox_torch.api.design_files import CARD, INPUT, RECORDED
+from greybox_torch.diagnosis.digits import digits
+from greybox_torch.experiment_design.limits import EVERY_INPUT
+
+if TYPE_CHECKING:
+    from greybox_torch.api.design_result import DesignResult
+
+
+def design_notes(found: DesignResult) -> list[str]:
+    """Sentences for below the table, one a line."""
+    lines = [*found.left_out, *_told_apart(found), *_deviations(found)]
+    if found.limits.seconds > 1.001 * found.seconds:
+        lines.append(
+            f"Designed for the first {digits(found.seconds, 4)} of {digits(found.limits.seconds, 4)} s; "
+            "repeated, it says more in proportion to the time."
+        )
+    if len(found.inputs) > 1:
+        lines.append(EVERY_INPUT)
+    if found.parameter is None and not found.expected.decides:
+        return [
+            *lines,
+            f"{INPUT} holds the best that was found; it is not worth recording. Wider limits or more seconds may help.",
+        ]
+    for name, output in found.follows.items():
+        lines.append(
+            f"Simulated under feedback: the controller drives {name}, so that {output} follows its set point, which {INPUT} holds. "
+            f"Record the {name} that reaches the machine; a diagnosis takes that."
+        )
+    lines += _beginning(found)
+    lines.append(f"Record it, save it as {RECORDED} beside {CARD}, and diagnose the old recordings together with it.")
+    return lines
+
+
+def _beginning(found: DesignResult) -> Iterator[str]:
+    """How it begins; where that is in motion, how to ask for a start at rest."""
+    began = ", ".join(f"{name} = {value:.3g}" for name, value in found.start.items())
+    if found.limits.start:
+        yield f"Begin with {began}: {', '.join(found.limits.start)} as asked for, all else as {found.begins_like} began."
+    else:
+        yield f"Begin as {found.begins_like} began: {began}."
+    if found.moving:
+        zero = ", ".join(f"{name} = 0" for name in found.moving)
+        yield (
+            f"That is in motion ({', '.join(found.moving)}). To begin at rest, give the start under [limits] on the card, "
+            f"start = {{ {zero} }} (in Python limits=); a position at which the machine rests can be given there as well."
+        )
+
+
+def _deviations(found: DesignResult) -> Iterator[str]:
+    """Why the deviation before the recording is not the one that a fit tells."""
+    if found.parameter is not None and found.memory > 1.5:
+        yield (
+            f"Both deviations are cautious: errors so far are correlated over up to {digits(found.memory)} samples, and so many count as "
+            "one. The report's ± and greybox fit take the correlation as it is and tell less; compare before and after with each other."
+        )
+
+
+def _told_apart(found: DesignResult) -> Iterator[str]:
+    """Which hypotheses stay alike where others are told apart, and what a random input would do."""
+    if found.parameter is not None or not found.expected.decides:
+        return
+    what, as_set_points = found.what, found.as_set_points
+    for a, b in found.alike:
+        yield f"No {what} within the limits was found that tells {a} from {b} in {digits(found.seconds, 4)} s, whichever is right."
+    if found.alike:
+        yield "Those count as one in the probability that is expected."
+    if found.expected.random is not None:
+        yield f"A random multisine of the same power{as_set_points}: {found.expected.random:.2f}."

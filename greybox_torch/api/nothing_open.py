@@ -1,0 +1,56 @@
+"""What is said where a diagnosis has left nothing that a recording could decide."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from greybox_torch.api.expected import NOTHING, WANTED, decided
+from greybox_torch.api.hypotheses import Hypotheses, Kept, left_out_told, to_tell_apart
+from greybox_torch.errors import UserError
+
+_OR_A_PARAMETER = "or a parameter whose standard deviation is to shrink: --precision PARAMETER (in Python: precision=)"
+
+
+def group_in_question(held: Hypotheses) -> Sequence[Kept]:
+    """The hypotheses that a recording is to tell apart.
+
+    Raises:
+        UserError: there are no rivals, or one hypothesis is decided.
+    """
+    group, left_out = to_tell_apart(held)
+    told = "".join(f". {sentence.rstrip('.')}" for sentence in left_out_told(left_out))
+    if len(group) < 2:
+        raise UserError(
+            f"the diagnosis left no rivals to tell apart{_all_the_same(held)}; expected a finding with named alternatives, "
+            f"{_OR_A_PARAMETER}{told}"
+        )
+    if decided([kept.probability for kept in group]):
+        best = max(group, key=lambda kept: kept.probability)
+        raise UserError(
+            f"between the named hypotheses all is already decided, so that no recording is needed for it: {_decided(best, held.complete)}"
+            f"{_all_the_same(held)}; expected a finding that is open, {_OR_A_PARAMETER}{told}"
+        )
+    return group
+
+
+def _all_the_same(held: Hypotheses) -> str:
+    """What the verdict leaves beside its findings, and why no input is designed for that; "" where it says nothing of it."""
+    if not held.left:
+        return ""
+    return (
+        f". The verdict leaves some error all the same. {held.left.rstrip('.')}. No hypothesis says what that is, so no input can be "
+        "designed for it; greybox residuals draws it over time, with the inputs that it is correlated with"
+    )
+
+
+def _decided(best: Kept, complete: bool) -> str:
+    """How sure the hypothesis is that has no rival, and why the verdict is less sure of it where that is so."""
+    alone = f"each rival less than {NOTHING:g}"
+    if best.in_verdict is None or best.in_verdict >= WANTED:
+        return f"{best.name} has a probability of {best.probability:.2f}, {alone}"
+    why = (
+        "it is no surer as more than noise is left beside it, which no recording that tells rivals apart changes"
+        if complete
+        else "it is no surer as the search was stopped before all was tried: diagnose once more without a time limit"
+    )
+    return f"{best.name} has a probability of {best.in_verdict:.2f}, {alone}; {why}"

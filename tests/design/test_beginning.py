@@ -1,0 +1,86 @@
+"""How a designed recording begins: at rest where an earlier one did, as asked for, and with the set point where its output stands."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import greybox_torch as gt
+from greybox_torch.api.design import _where_outputs_stand
+from greybox_torch.errors import UserError
+from greybox_torch.experiment_design.approach import begun_there
+from greybox_torch.experiment_design.beginning import beginning_of
+from greybox_torch.experiment_design.contender import Contender, contender
+from greybox_torch.experiment_design.controller import Loop
+from greybox_torch.experiment_design.limits import Limits, Range
+
+RANGE = Range(-5.0, 5.0, 10.0)
+
+
+def two(undecided, first: float, second: float) -> Contender:
+    """The motor's hypothesis of dry friction on two recordings that begin at these speeds."""
+    starts = {"steps": {"speed": first}, "more": {"speed": second}}
+    return contender("friction", 0.5, undecided.model, undecided.data, starts)
+
+
+@pytest.mark.parametrize(
+    ("speeds", "like", "moving"),
+    [
+        ((2.0, 0.0), "more", ()),
+        ((0.0, 0.0), "steps", ()),
+        ((2.0, 1.0), "steps", ("speed",)),
+        ((0.01, 0.0), "steps", ()),
+    ],
+)
+def test_a_recording_that_begins_at_rest_is_preferred(undecided, speeds, like: str, moving: tuple[str, ...]) -> None:
+    """Seen: a design that began in mid-swing, as the first of the recordings did."""
+    one = two(undecided, *speeds)
+    begins = beginning_of(one, {})
+    assert (begins.like, begins.moving) == (like, moving)
+    assert one.beginning(like, {}).start["speed"] == speeds[like == "more"]
+
+
+def test_a_start_that_is_asked_for(undecided) -> None:
+    moving = gt.design(undecided, precision="J", seconds=0.5)
+    assert moving.moving == ("speed",) and moving.start == {"speed": 2.0}
+    assert any("start = { speed = 0 }" in line for line in moving.notes)
+    limits = {**undecided.data.limits, "start": {"speed": 0.0}}
+    rest = gt.design(undecided, precision="J", seconds=0.5, limits=limits)
+    assert rest.start == {"speed": 0.0} and rest.moving == () and abs(rest.outputs[0][0, 0]) < 1e-12
+    assert "Begin with speed = 0: speed as asked for, all else as steps began." in rest.notes
+
+
+@pytest.mark.parametrize(
+    ("start", "message"),
+    [
+        ({"sped": 0.0}, "start: no state is named sped"),
+        (3, "start: found 3, expected states"),
+        ({"speed": "fast"}, "start, speed: found 'fast', expected a number"),
+    ],
+)
+def test_starts_at_fault(undecided, start: Any, message: str) -> None:
+    with pytest.raises(UserError, match=message):
+        gt.design(undecided, precision="J", limits={**undecided.data.limits, "start": start})
+
+
+def test_a_set_point_begins_where_its_output_stands() -> None:
+    """Seen: at 12.5 rad, with the motor at 23.8 rad, so that the first sample commanded the limit."""
+    time = 0.01 * np.arange(400)
+    limits = Limits(4.0, {"u": Range(-1.0, 1.0)}, {}, {}, {"u": RANGE}, begin={"u": 4.0})
+    asked = -2.0 + np.sin(3.0 * time)
+    (found,) = begun_there(asked[None], time, limits)
+    assert found[0] == 4.0 and np.abs(np.diff(found)).max() <= 10.0 * 0.01 * (1 + 1e-9)
+    met = int(np.argmax(found == asked))
+    assert 40 < met < 80 and (found[met:] == asked[met:]).all()
+    np.testing.assert_array_equal(
+        begun_there(asked[None], time, Limits(4.0, limits.inputs, {}, {}, {"u": RANGE}))[0], asked
+    )
+
+
+def test_where_the_output_stands(undecided) -> None:
+    loop = Loop(driven=0, measured=0, lower=-3.0, upper=3.0, step=0.01, gain=1.0)
+    one = contender("friction", 0.5, undecided.model, undecided.data, {"steps": {"speed": 2.0}}, [loop])
+    limits = Limits(1.0, {"voltage": Range(-3.0, 3.0)}, {}, {}, {"voltage": Range(-7.0, 7.0)})
+    assert _where_outputs_stand(one, limits, 0.01) == {"voltage": pytest.approx(2.0)}
