@@ -72,8 +72,7 @@ class TorqueRipple(Mechanism):
         return self if order is None else TorqueRipple(order)
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        # Of orders 2 and 3, which are harmonics of the first, that may be next to nothing.
-        order = strongest_wave(values, self.harmonics)["order"]
-        if is_angle(around) and abs(order - 1.0) < LIKE_WEIGHT:
-            return f"order = {order:.4g}: once per turn is what weight does"
-        return not_seen_to_repeat(order, around)
+        strongest = strongest_wave(values, self.harmonics)["order"]  # of orders 2 and 3, not the first
+        if is_angle(around) and abs(strongest - 1.0) < LIKE_WEIGHT:
+            return f"order = {strongest:.4g}: once per turn is what weight does"
+        return not_seen_to_repeat(values["order"], around)

@@ -25,7 +25,7 @@ def by_hand(monkeypatch: pytest.MonkeyPatch) -> Callable[[], list[str]]:
             (folder / name / "dataset.toml").write_text(f'name = "{name} {seed}"\n')
         return ANSWERS
 
-    def diagnose(card: Path, out: Path, time_limit: float) -> Outcome:
+    def diagnose(card: Path, out: Path, time_limit: float, *, threads: int) -> Outcome:
         name = card.parent.name
         asked.append(name)
         out.mkdir(parents=True, exist_ok=True)

@@ -77,7 +77,7 @@ def test_a_verdict_changed_after_opening_is_refused(tmp_path: Path, by_hand):
 
 def test_a_verdict_produced_after_opening_is_refused(tmp_path: Path, by_hand, monkeypatch: pytest.MonkeyPatch):
     failed = Outcome(1.0, "no verdict after 1 s", "no verdict after 1 s")
-    monkeypatch.setattr(running, "diagnose", lambda card, out, limit: failed)
+    monkeypatch.setattr(running, "diagnose", lambda card, out, limit, *, threads: failed)
     proof = sealed_and_frozen(tmp_path)
     proof.open()
     late = tmp_path / "verdicts" / "c001" / "verdict.json"
@@ -143,10 +143,10 @@ def test_an_interrupted_proof_goes_on_where_it_was(tmp_path: Path, by_hand, monk
     asked = running.diagnose
     left = 3
 
-    def killed(card: Path, out: Path, limit: float) -> Outcome:
+    def killed(card: Path, out: Path, limit: float, *, threads: int) -> Outcome:
         nonlocal left
         left -= 1
-        outcome = asked(card, out, limit)
+        outcome = asked(card, out, limit, threads=threads)
         if left < 0:
             raise KeyboardInterrupt  # the verdict is written, and not yet on the record
         return outcome
