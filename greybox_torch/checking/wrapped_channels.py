@@ -64,9 +64,8 @@ def _write(data: DataSet, name: str, period: float) -> str:
     column = str(entry.column)
     source = entry.expr or (column if column.isidentifier() else f'col("{column}")')
     call, turn = f"unwrap({source}, {_number(period / abs(factor))})", TURNS.get(entry.unit, 0.0)
-    if (
-        turn and factor == 1.0 and not math.isclose(turn, period, rel_tol=1e-6)
-    ):  # counts, or another unit, were taken for angles
+    # Counts, or another unit, were taken for angles.
+    if turn and factor == 1.0 and not math.isclose(turn, period, rel_tol=1e-6):
         call += f" * {_number(turn)} / {_number(period)}"
     return f"{name} = {{ expr = '{call}', … }}, which adds up the turns, with the rest of the line as it is"
 
