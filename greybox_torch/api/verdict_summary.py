@@ -25,8 +25,8 @@ SIZE = "size: the part of the error of the model without effects that leaving th
 MOVED_BY = 0.1
 """Share of its start value by which a parameter of the model has to move to be listed."""
 MOVED = (
-    "The model's own parameters that moved by more than 10 %, and by more than their standard deviation (refit: re-estimated without the "
-    "effects; all of them are in the report):"
+    f"The model's own parameters that moved by more than {100 * MOVED_BY:.0f} %, and by more than their standard deviation (refit: "
+    "re-estimated without the effects; all of them are in the report):"
 )
 
 

@@ -17,7 +17,7 @@ from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share, negligib
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.select.choice import least_gain
-from greybox_torch.diagnosis.select.remaining import remaining_share
+from greybox_torch.diagnosis.select.remaining import leaves_little
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
@@ -47,7 +47,7 @@ def sentences(
         + " (weighted output units).",
     ]
     lines += [_noise(study, state), *_negligible(study, state), *detection_sentences(detected, bool(effects))]
-    lines += [_step_sentence(done, state.plain, study.settings) for done in state.steps]
+    lines += [_step_sentence(done, study, state.plain) for done in state.steps]
     asked = state.memory_step
     lines += [] if asked is None or asked in state.steps else [_memory_sentence(asked)]
     lines += [ceiling_sentence(e) for e in effects if e.ceiling is not None]
@@ -95,7 +95,7 @@ def begun(sentence: str) -> str:
     return sentence[:1].upper() + sentence[1:]
 
 
-def _step_sentence(done: SelectionStep, plain: Hypothesis, settings: DiagnosisSettings) -> str:
+def _step_sentence(done: SelectionStep, study: Study, plain: Hypothesis) -> str:
     """What a forward step took beside what was found on top of ``plain``, or why it took nothing."""
     if done.taken is not None:
         preferred = (
@@ -107,7 +107,8 @@ def _step_sentence(done: SelectionStep, plain: Hypothesis, settings: DiagnosisSe
             f"{_name(done.taken.candidate.attachment)} lowers the mean squared error by a factor {digits(np.exp(done.taken.gain), 3)}, "
             f"{done.taken.significance:.1f} standard errors away from chance.{preferred}"
         )
-    little = bool(done.parent.effects) and remaining_share(plain, done.parent, settings) < settings.least_size
+    settings = study.settings
+    little = bool(done.parent.effects) and leaves_little(study, plain, done.parent)
     if not done.ranked:
         if little:
             return f"{_little(settings)}: no further candidate promised in the screen to leave noise alone."

@@ -23,7 +23,7 @@ from greybox_torch.diagnosis.select.found_before import with_found_before
 from greybox_torch.diagnosis.select.its_best_values import tellable
 from greybox_torch.diagnosis.select.offered import Screened, from_card, from_motion, screen_scores
 from greybox_torch.diagnosis.select.posterior import believed
-from greybox_torch.diagnosis.select.remaining import completes, left_to_complete, remaining_share
+from greybox_torch.diagnosis.select.remaining import completes, leaves_little, left_to_complete
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import Stage
@@ -121,10 +121,7 @@ def _sure(cost_before: Callable[[], float], ranked: RankedCandidate, settings: D
 
 def little_is_left(study: Study, state: SearchState) -> bool:
     """Whether what the effects so far leave of the mismatch is less than a finding is."""
-    settings = study.settings
-    if not state.effects or study.more_is_missing:
-        return False
-    return remaining_share(state.plain, state.current, settings) < settings.least_size
+    return bool(state.effects) and leaves_little(study, state.plain, state.current)
 
 
 def with_better_fit(state: SearchState, fitted: Hypothesis) -> SearchState:

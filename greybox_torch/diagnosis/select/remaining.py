@@ -30,6 +30,11 @@ def remaining_share(plain: Hypothesis, fitted: Hypothesis, settings: DiagnosisSe
     return max(shares, default=1.0)
 
 
+def leaves_little(study: Study, plain: Hypothesis, fitted: Hypothesis) -> bool:
+    """Whether what a hypothesis leaves of the mismatch of ``plain`` is less than a finding is; not where free runs show more."""
+    return not study.more_is_missing and remaining_share(plain, fitted, study.settings) < study.settings.least_size
+
+
 def completes(fitted: Hypothesis, settings: DiagnosisSettings) -> bool:
     """Whether a hypothesis leaves hardly more than noise at every window length (an upper bound, where part of the floor is motion)."""
     most = settings.above_noise**2

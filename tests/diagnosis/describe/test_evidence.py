@@ -9,6 +9,7 @@ from greybox_torch.diagnosis.describe import evidence
 from greybox_torch.diagnosis.describe.effects import ceiling_share
 from greybox_torch.diagnosis.describe.evidence import _held_out, _step_sentence, ceiling_sentence, detection_sentences
 from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest, Remains
+from greybox_torch.diagnosis.select import remaining
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 WHITE = Remains(Largest(0.01, 0.03), Largest(0.02, 0.05))
@@ -101,19 +102,19 @@ def test_an_interval_of_a_hundred_percent_is_not_told() -> None:
 )
 def test_what_was_not_claimed_and_why(stub, monkeypatch: pytest.MonkeyPatch, share: float, claimed: str) -> None:
     """Seen: "would lower it by 68 % (12.8 standard errors); claimed is what exceeds 5 % and chance", and was not claimed."""
-    monkeypatch.setattr(evidence, "remaining_share", lambda plain, parent, settings: share)
+    monkeypatch.setattr(remaining, "remaining_share", lambda plain, parent, settings: share)
     monkeypatch.setattr(evidence, "least_gain", lambda fitted, settings: 0.05)
     monkeypatch.setattr(evidence, "_name", lambda attachment: "torque ripple at rotor")
     best = stub(gain=1.14, significance=12.8, candidate=stub(attachment=None), fitted=None)
     step = stub(taken=None, ranked=(best,), parent=stub(effects=("friction",)))
-    said = _step_sentence(step, stub(), DiagnosisSettings())
+    said = _step_sentence(step, stub(settings=DiagnosisSettings(), more_is_missing=False), stub())
     assert said == f"The best further candidate, torque ripple at rotor, would lower it by 68 % {claimed}"
 
 
 def test_none_was_refitted_where_little_was_left(stub, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(evidence, "remaining_share", lambda plain, parent, settings: 0.008)
+    monkeypatch.setattr(remaining, "remaining_share", lambda plain, parent, settings: 0.008)
     step = stub(taken=None, ranked=(), parent=stub(effects=("friction",)))
-    said = _step_sentence(step, stub(), DiagnosisSettings())
+    said = _step_sentence(step, stub(settings=DiagnosisSettings(), more_is_missing=False), stub())
     assert (
         said
         == "Less than 2 % of the mismatch was left: no further candidate promised in the screen to leave noise alone."
