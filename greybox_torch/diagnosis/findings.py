@@ -44,6 +44,15 @@ class Findings(Selection):
     judged: Judgement
     by_parameters: Effect | None = None
 
+    @property
+    def sums(self) -> tuple[float, float]:
+        """Mean squared errors without the effects and with them, summed over experiments; over the longest windows if those alone
+        judge."""
+        if not self.judged.by_windows_alone:
+            return self.judged.sums
+        state, experiments = self.state, len(self.study.problem.records.first)
+        return experiments * state.plain.fits[-1].mean_square, experiments * state.current.fits[-1].mean_square
+
 
 def judge(selection: Selection, clock: Stopwatch) -> Findings:
     """Fit the model as it stands and the one with effects to whole records, and take back what free runs do not bear out."""

@@ -207,7 +207,12 @@ def _as_found(
         left=None
         if effects and judged.by_windows_alone
         else what_is_left(
-            judged, detected, bool(effects), study.settings.above_noise, shown=found.by_parameters is None
+            judged,
+            detected,
+            bool(effects),
+            study.settings.above_noise,
+            shown=found.by_parameters is None,
+            over_windows=times_noise(study.problem, state.current, study.settings),
         ),
         unstable=unstable,
         settings=study.settings,
@@ -229,7 +234,7 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
         return (found.by_parameters,), ()
     study, state, judged = found.study, found.state, found.judged
     by_effect = sizes(study, state, found.gains)
-    told = describe(study, state, judged.augmented, _sums(found), found.gains, by_effect, judged.missed)
+    told = describe(study, state, judged.augmented, found.sums, found.gains, by_effect, judged.missed)
     if not found.complete:
         told = of_a_stopped_search(told, study.settings)
     small = refinements(study, state, found.others, found.gains, by_effect)
@@ -240,11 +245,3 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
         tuple(e for attached, e in both if attached.prefix not in small),
         tuple(e for attached, e in both if attached.prefix in small),
     )
-
-
-def _sums(found: Findings) -> tuple[float, float]:
-    """Mean squared errors without the effects and with them, summed over experiments; of the longest windows where those alone judge."""
-    if not found.judged.by_windows_alone:
-        return found.judged.sums
-    state, experiments = found.state, len(found.study.problem.records.first)
-    return experiments * state.plain.fits[-1].mean_square, experiments * state.current.fits[-1].mean_square

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from greybox_torch.diagnosis.confirm.curves_for_names import curves_for_names
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.take_back import held_out_gains, take_back_weakest
@@ -27,7 +28,8 @@ Standing = tuple[SearchState, Mapping[str, Gain], Judgement]
 def far_better(
     study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], judged: Judgement
 ) -> Standing | None:
-    """Names in the place of a free curve, or what is left without the weakest of several effects, where free runs leave far less with it.
+    """Names in the place of a free curve, curves in that of several names, or what is left without the weakest of several effects, where
+    free runs leave far less with it.
 
     None where neither does, or where too little is left to ask.
     """
@@ -40,6 +42,10 @@ def far_better(
         found = _standing(study, result_of(drop_superfluous(study, names)), state, others, judged)
         if found is not None:
             return found
+    curves = curves_for_names(study, state, judged)
+    found = None if curves is None else _standing(study, curves, state, others, judged)
+    if found is not None:
+        return found
     if len(state.effects) < 2 or not left > settings.left_to_doubt_of_several:
         return None
     if not state.compared_without:

@@ -13,20 +13,30 @@ from greybox_torch.diagnosis.verdict import NOISE_SHOWN, Left
 
 
 def what_is_left(
-    judged: Judgement, detected: Sequence[Detection], effects: bool, noise: float, *, shown: bool = True
+    judged: Judgement,
+    detected: Sequence[Detection],
+    effects: bool,
+    noise: float,
+    *,
+    shown: bool = True,
+    over_windows: float = np.inf,
 ) -> Left:
     """What remains on the validation experiments, and whether it is repeatable.
 
     Args:
         noise: the error, in units of the noise, up to which its kind is not told: it would read as if something were missing after all.
         shown: whether the recordings show the effects; where parameters made up for them, the re-estimated model leaves as much.
+        over_windows: the error over windows of the estimation experiments, whose start states are estimated, in units of the noise.
     """
     share, times, worst = judged.left(effects)
+    parts = over_windows <= noise < times and _parts(judged, effects, worst)
     beyond = any(d.final.past.beyond for d in detected)
     coloured = any(d.final.colour.beyond for d in detected)
     how = (
         "the error is not white: steps of a sensor, the timing of samples and start states leave as much"
         if times < noise and (beyond or coloured)
+        else "windows whose start states are estimated leave hardly more than noise: nothing else is missing that they show"
+        if parts
         else "the error is correlated with past inputs, so that part of it is repeatable"
         if beyond
         else "the error is not white, and past inputs do not explain it linearly: look at it over time (greybox residuals) for what is not "
@@ -39,8 +49,19 @@ def what_is_left(
         if np.isfinite(times)
         else "how much of its error is noise does not show"
     )
+    if parts:
+        size += (
+            ", as no free run follows it: a second one, whose start differs by less than the sensors show, departs from the first by "
+            f"{100 * judged.settings.least_parted:.0f} % of that error or more"
+        )
     whole = "The model as it stands is recommended"
     if effects:
         part = "Less than 0.01" if share < 1e-4 else digits(100 * share)
         whole = f"{part} % of the mismatch remains" if shown else "As much remains as without it"
     return Left(share, times, f"{whole}: {size}. On the experiments that it was estimated from, {how}.")
+
+
+def _parts(judged: Judgement, effects: bool, experiment: str) -> bool:
+    """Whether free runs of an experiment that begin next to one another part."""
+    final, runs = (judged.augmented, judged.with_effects) if effects else (judged.plain, judged.refit)
+    return judged.free_runs.parted(final, runs, {experiment})[experiment] >= judged.settings.least_parted

@@ -43,8 +43,11 @@ def compare(
     pairs = zip(front, polish, strict=True)
     polish = side_by_side(partial(_from_there, study, r, fitted, best, parent.problem.names) for r, fitted in pairs)
     best = min(polish, key=lambda fitted: fitted.score)
-    again = _polished(study, parent, [best.values(), {**best.values(), **study.card}], best)
-    parent = again if again.score < parent.score else parent
+    others = [fitted.values() for fitted in polish if fitted is not best]
+    again = _polished(study, parent, [best.values(), {**best.values(), **study.card}, *others], best)
+    if again.score < parent.score:
+        parent, pairs = again, zip(front, polish, strict=True)
+        polish = side_by_side(partial(_from_better_parent, study, r, fitted, parent) for r, fitted in pairs)
     rest = [r for r in ranked if all(r is not one for one in front)]
     fitted = [*polish, *(r.fitted for r in rest)]
     both = zip([*front, *rest], fitted, strict=True)
@@ -68,6 +71,15 @@ def _from_there(
         return fitted
     values = best.values()
     return _polished(study, fitted, [{**fitted.values(), **{n: values[n] for n in names}}])
+
+
+def _from_better_parent(study: Study, ranked: RankedCandidate, fitted: Hypothesis, parent: Hypothesis) -> Hypothesis:
+    """A front runner that its improved parent has left behind, polished from where that has the parameters: it contains the parent, so
+    that less is a local minimum."""
+    behind = fitted.score > parent.score - study.settings.score_tie
+    if not behind or ranked.unknown:
+        return fitted
+    return _polished(study, fitted, [{**fitted.values(), **parent.values()}], parent)
 
 
 def _polished(

@@ -18,6 +18,7 @@ def study(stub, monkeypatch):
     monkeypatch.setattr(module, "held_out_gains", lambda state, others: {"friction": SURE})
     monkeypatch.setattr(module, "finish", lambda hypothesis, *rest: hypothesis)
     monkeypatch.setattr(module, "removes_too_little", lambda *args: False)
+    monkeypatch.setattr(module, "curves_for_names", lambda *args: None)
     return stub(settings=DiagnosisSettings(), budget=None, recorded=None)
 
 

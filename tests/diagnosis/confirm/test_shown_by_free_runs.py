@@ -84,10 +84,16 @@ def test_asked_where_nothing_else_is_a_finding(monkeypatch, small) -> None:
     state = SimpleNamespace(effects=(FRICTION, BIAS), prefixes={FRICTION.prefix, BIAS.prefix})
     judged = SimpleNamespace(augmented=None, missed=None)
     found: Any = SimpleNamespace(
-        by_parameters=None, study=None, state=state, judged=judged, gains={}, others=None, complete=True
+        by_parameters=None,
+        study=None,
+        state=state,
+        judged=judged,
+        gains={},
+        others=None,
+        complete=True,
+        sums=(1.0, 0.5),
     )
     monkeypatch.setattr(pipeline, "sizes", lambda *_: {})
-    monkeypatch.setattr(pipeline, "_sums", lambda *_: (1.0, 0.5))
     monkeypatch.setattr(pipeline, "describe", lambda *_: ("friction", "bias"))
     monkeypatch.setattr(pipeline, "refinements", lambda *_: set(small))
     monkeypatch.setattr(pipeline, "shown_by_free_runs", lambda *_: {FRICTION.prefix})

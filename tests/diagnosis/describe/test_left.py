@@ -72,3 +72,20 @@ def test_hardly_more_than_noise_is_not_told_as_something_repeatable(stub, times:
     kind = stub(final=stub(past=stub(beyond=coloured), colour=stub(beyond=coloured)))
     left = what_is_left(stub(left=lambda effects: (1.0, times, "Validation 1")), [kind], False, 1.3)
     assert left.sentence.endswith(f"the error is {words}")
+
+
+@pytest.mark.parametrize(("over_windows", "share", "told"), [(1.1, 0.4, True), (1.1, 0.01, False), (2.0, 0.4, False)])
+def test_free_runs_that_nothing_could_follow_are_said_to_be_so(stub, over_windows, share, told) -> None:
+    """Seen: a stage that slips into another well of its cogging, sent to look for "what is not recorded, such as a load"."""
+    runs = stub(parted=lambda final, comparison, asked: dict.fromkeys(asked, share))
+    judged = stub(
+        left=lambda effects: (0.4, 275009.9, "Run 3"),
+        free_runs=runs,
+        augmented=None,
+        with_effects=None,
+        settings=stub(least_parted=0.1),
+    )
+    found = [stub(final=stub(past=stub(beyond=False), colour=stub(beyond=True)))]
+    sentence = what_is_left(judged, found, True, 1.3, over_windows=over_windows).sentence
+    assert ("no free run follows it" in sentence) is told
+    assert ("not recorded, such as a load" in sentence) is not told
