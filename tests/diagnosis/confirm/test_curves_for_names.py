@@ -101,7 +101,7 @@ def test_what_radiates_at_several_zones_is_a_curve_at_each(told, stub) -> None:
 
 def test_only_where_much_is_left_and_curves_outdo_names_at_several_ports(told, stub) -> None:
     search, state = told
-    (first, second), (leak, other) = state.steps, state.effects
+    first, (leak, other) = state.steps[0], state.effects
     asked = partial(curves_for_names, search.study)
     assert asked(state, free_runs(stub, share=0.01)) is None
     assert asked(state, free_runs(stub, times=2.0)) is None
