@@ -9,6 +9,7 @@ from greybox_torch.checking.joined_files import joined_files
 from greybox_torch.checking.lone_samples import lone_samples
 from greybox_torch.checking.missing_inputs import missing_inputs
 from greybox_torch.checking.shared_rows import shared_rows
+from greybox_torch.checking.short_records import short_records
 from greybox_torch.checking.time_stamps import odd_time_stamps
 from greybox_torch.checking.wrapped_channels import wrapped_channels
 from greybox_torch.data import DataSet
@@ -47,4 +48,5 @@ def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning
         *lone_samples(data, joined),
         *wrapped_channels(data),
         *(missing_inputs(data, model) if model is not None else ()),
+        *(short_records(data, model) if model is not None else ()),
     ]

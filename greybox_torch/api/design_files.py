@@ -32,9 +32,17 @@ def columns_of(
     return set_ones | points | {f"{name}_expected": inputs[name] for name in follows}
 
 
-def csv_text(time: np.ndarray, columns: Mapping[str, np.ndarray]) -> str:
-    """The columns (N,) over time (N,) in s."""
-    lines = [",".join(["time", *columns])]
+def units_of(data: DataSet, follows: Mapping[str, str]) -> dict[str, str]:
+    """The unit of each of :func:`columns_of`; empty for a number."""
+    units = {name: channel.unit for name, channel in data.channels.items()}
+    points = {f"{output}_set_point": units[output] for output in follows.values()}
+    return units | points | {f"{name}_expected": units[name] for name in follows}
+
+
+def csv_text(time: np.ndarray, columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> str:
+    """The columns (N,) over time (N,) in s, with their units in the header where ``units``, by column, has one."""
+    headings = [f"{name} [{unit}]" if (unit := units.get(name)) else name for name in columns]
+    lines = [",".join(["time [s]", *headings])]
     for k, t in enumerate(time):
         lines.append(",".join(f"{v:.9g}" for v in (t, *(u[k] for u in columns.values()))))
     return "\n".join(lines) + "\n"

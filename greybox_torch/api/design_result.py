@@ -11,7 +11,7 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.api.design_files import CARD, FIGURE, INPUT, card_text, columns_of, csv_text
+from greybox_torch.api.design_files import CARD, FIGURE, INPUT, card_text, columns_of, csv_text, units_of
 from greybox_torch.api.design_notes import design_notes
 from greybox_torch.api.expected import WANTED, Expected
 from greybox_torch.api.result import Result
@@ -164,7 +164,9 @@ class DesignResult(Result):
     def files(self, folder: Path) -> dict[Path, str | bytes]:
         """The input as CSV, a figure, and a card for the new recording."""
         return {
-            folder / INPUT: csv_text(self.time, columns_of(self.inputs, self.set_points, self.follows)),
+            folder / INPUT: csv_text(
+                self.time, columns_of(self.inputs, self.set_points, self.follows), units_of(self.data, self.follows)
+            ),
             folder / FIGURE: notebook.png(self.plot()),
             folder / CARD: card_text(self.data, self.time, self.reference, folder),
         }

@@ -8,6 +8,7 @@ from typing import Any
 
 from greybox_torch.api.estimated import estimated_parameters, estimated_starts
 from greybox_torch.api.scores import Scores, scores_side_by_side
+from greybox_torch.estimate.far_starts import far_starts
 from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.identifiability import Unidentifiable
 from greybox_torch.estimate.profile import LEVEL, THRESHOLD, Profile
@@ -22,6 +23,7 @@ def estimation_json(found: Estimation, scores: Scores, seconds: float) -> dict[s
         "seconds": seconds,
         "parameters": parameters_json(found),
         "initial": {name: initial_json(found, e) for e, name in enumerate(problem.records.names)},
+        **({"far_starts": far} if (far := far_starts(problem)) else {}),
         "fit": scores_side_by_side(scores),
         "statistics": {
             "mse": found.mse,

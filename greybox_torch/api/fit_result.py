@@ -43,7 +43,8 @@ class FitResult(EstimatedModel):
 
     ``estimation`` says how it was obtained; ``comparisons`` are the free runs on all experiments with the values
     before ("start") and after ("refit"); ``profiles`` the profile likelihoods that were asked for, ``undetermined``
-    what the data leave open as far as the start values told; ``seconds`` how long it took.
+    what the data leave open as far as the start values told; ``seconds`` how long it took; ``question`` asks whether channels are
+    exchanged or of the other sign, where the fit is poor and would be far better with that.
     """
 
     stage: ClassVar[str] = "refit"
@@ -56,6 +57,7 @@ class FitResult(EstimatedModel):
     undetermined: tuple[Unidentifiable, ...]
     precision: str
     seconds: float
+    question: str | None = None
 
     @cached_property
     def model(self) -> GreyBoxModel:
@@ -91,6 +93,7 @@ class FitResult(EstimatedModel):
             "identifiability": identifiability_json(self.undetermined, self.estimation.identifiability),
             "profiles": {name: profile_json(one) for name, one in self.profiles.items()},
             "precision": self.precision,
+            **({"question": self.question} if self.question is not None else {}),
             "dataset": self.data.name,
             "model": model_reference(self.estimation.problem.model),
             "held_out_by_default": self.data.held_out_by_default,
@@ -137,9 +140,10 @@ class FitResult(EstimatedModel):
 
     @property
     def _advice(self) -> list[str]:
-        """What the free runs say about the model itself: a sentence, or none."""
+        """What the free runs say about the model itself: up to two sentences."""
         said = fit_advice(self._scores, begun_with(self.estimation.problem, self.data))
-        return [] if said is None else [said]
+        asked = None if self.question is None else f"{self.question}."
+        return [line for line in (said, asked) if line is not None]
 
     @property
     def _title(self) -> str:

@@ -10,6 +10,7 @@ from rich.text import Text
 from greybox_torch.api.estimated import EstimatedStart, estimated_parameters, estimated_starts
 from greybox_torch.api.scores import print_substeps
 from greybox_torch.estimate.brief_lists import brief_pairs, brief_sentences
+from greybox_torch.estimate.far_starts import far_starts, told_far
 from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.notes import told_at_bound
 from greybox_torch.estimate.profile import LEVEL, Profile
@@ -102,7 +103,9 @@ def warnings(found: Estimation) -> list[str]:
         lines.append(
             f"The data do not determine {brief(lost)}, alone or together: fix one of them, or excite the machine more."
         )
-    return lines + [f"{told}." for told in brief_sentences(found.identifiability)]
+    lines += [f"{told}." for told in brief_sentences(found.identifiability)]
+    far = far_starts(found.problem)
+    return [*lines, f"{told_far(far)}."] if far else lines
 
 
 def beginnings(found: Estimation) -> list[str]:

@@ -71,12 +71,12 @@ def notes(verdict: Verdict) -> list[str]:
     evidence for that. Both with what was not tried, where the search was stopped.
     """
     if not verdict.effects:
-        return [*verdict.evidence, *verdict.not_tried.sentences()]
+        return [*verdict.short_validation, *verdict.evidence, *verdict.not_tried.sentences()]
     stopped = [] if verdict.complete else [STOPPED, *verdict.not_tried.sentences()]
     left = [] if verdict.left is None else [verdict.left.sentence]
     small = [f"Refinement: {refinement.sentence}." for refinement in verdict.refinements]
     by_effect = (line for effect in verdict.effects for line in _notes(effect))
-    return [*verdict.no_longer_validation, SIZE, *by_effect, *left, *small, *stopped]
+    return [*verdict.no_longer_validation, *verdict.short_validation, SIZE, *by_effect, *left, *small, *stopped]
 
 
 def verdict_scores(verdict: Verdict) -> dict[str, tuple[Score, ...]]:

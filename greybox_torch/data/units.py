@@ -27,6 +27,8 @@ _USUAL = (
     "m/s^2", "kg", "s", "ms", "min", "h", "l/min", "m^3/h", "m^3/s", "l", "%",
 )  # fmt: skip
 """What may be meant by a unit that is none, or one of another quantity but for its capitals."""
+_GRAVITY = {"g": "gram", "mg": "milligram", "G": "gauss"}
+"""How accelerometers write multiples of gravity, and what that is beside other quantities."""
 
 
 class TurnOrRadian(UserError):
@@ -48,7 +50,7 @@ def conversion(source: str, target: str, place: str) -> tuple[float, float]:
         of_hertz = _hertz_in_turns(source, target, units, place)
         zero, one = (registry.Quantity(value, units[0]).to(units[1]).magnitude for value in (0.0, 1.0))
     except pint.DimensionalityError:
-        meant = _meant(source, target, capitals=True) if place else ""
+        meant = (_gravity(source, target) or _meant(source, target, capitals=True)) if place else ""
         raise UserError(
             f'{place}: "{source}" cannot be converted to "{target}"{meant}; expected units of one quantity'
         ) from None
@@ -92,6 +94,16 @@ def _meant(unit: str, other: str, *, capitals: bool = False) -> str:
     quantity = _dimension(other)
     near = [usual for usual in _USUAL if quantity is None or _dimension(usual) == quantity]
     return did_you_mean(unit, [usual for usual in near if not capitals or usual.lower() == unit.lower()])
+
+
+def _gravity(unit: str, other: str) -> str:
+    """To end a message about a unit that is a mass here and gravity to those who write it, beside an acceleration; "" elsewhere."""
+    name = bare(unit)
+    if name not in _GRAVITY or _dimension(other) != _dimension("m/s^2"):
+        return ""
+    ours = "mg0" if name == "mg" else "g0"
+    factor = 1e-3 if name == "mg" else 1.0
+    return f' ("{name}" is the {_GRAVITY[name]}; multiples of gravity are "{ours}", {factor * 9.80665:g} m/s^2 each)'
 
 
 def written_alike(one: str, other: str) -> bool:
@@ -168,6 +180,7 @@ def _dimension(unit: str) -> dict[str, float] | None:
 
 
 def _written(unit: str) -> str:
+    unit = unit.replace("g_n", "gn")
     if factor_in(unit):  # of 1e-3 the registry makes a power of the elementary charge
         raise ValueError("a unit does not begin with a number")
     if not _PLAIN.fullmatch(unit) or _LONG_NUMBER.search(unit):
@@ -194,4 +207,5 @@ def _registry() -> Any:
     registry.define("Nmm = newton * millimeter")
     registry.define("Ohm = ohm")
     registry.define("lpm = liter / minute")
+    registry.define("gn = standard_gravity")
     return registry

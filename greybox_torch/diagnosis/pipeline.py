@@ -200,6 +200,7 @@ def _as_found(
         traces=traces,
         inputs=report_data.inputs(judged),
         no_longer_validation=report_data.no_longer_validation(dataset, found.dataset),
+        short_validation=report_data.too_short_to_judge(dataset, judged, effects),
         parameters=report_data.parameters(judged, bool(effects)),
         complete=found.complete,
         unexplained=unexplained,
@@ -221,8 +222,7 @@ def _as_found(
         looked=looked,
         not_tried=NotTried() if found.complete else NotTried(found.cut, study.journal.left),
     )
-    final = judged.augmented if effects else judged.plain
-    chosen = state.current if effects else state.plain
+    final, chosen = (judged.augmented, state.current) if effects else (judged.plain, state.plain)
     attachments = [attachment_json(e, study.surroundings[e.port]) for e in chosen.effects]
     beside = rivals(state, study.settings, study.beliefs) if effects else ()
     return Diagnosis(verdict, chosen.model, final.values(), starts_of(final.problem), attachments, beside)

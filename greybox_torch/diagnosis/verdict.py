@@ -142,6 +142,8 @@ class Verdict:
     """Validation experiments that the recommended model simulates worse than the re-estimated one, as no free run of it follows them."""
     no_longer_validation: tuple[str, ...] = ()
     """A sentence for each validation experiment that was taken to choose with, and so is not in the validation fit."""
+    short_validation: tuple[str, ...] = ()
+    """A sentence where the validation experiments are short beside those of estimation or beside times of the machine."""
     settings: DiagnosisSettings = DiagnosisSettings()
     """By what it was decided, and with ``budget`` how much was computed for it."""
     budget: SearchBudget = SearchBudget()
@@ -227,6 +229,7 @@ class Verdict:
             "fit": fit_rows(self.scores),
             **({"unstable": sorted(self.unstable)} if self.unstable else {}),
             "evidence": list(self.evidence),
+            **({"short_validation": list(self.short_validation)} if self.short_validation else {}),
             "stages": dict(self.stages),
             "not_tried": self.not_tried.as_json(),
             "settings": changed_settings(self.settings, self.budget),

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from greybox_torch.data.gaps import Gap, pieces_around
 from greybox_torch.drafting.channels import Draft, Drafted, drafted
 from greybox_torch.drafting.clock import Clock, clock_of
 from greybox_torch.drafting.recorded import Recorded, recorded
@@ -72,10 +73,8 @@ def _clock(clock: Clock) -> list[str]:
             if clock.unit == "s"
             else f"{{ column = {toml_text(clock.column)}, unit = {toml_text(clock.unit)} }}"
         )
-        uneven = [
-            "# resample = 0.001                 # s: the time stamps are uneven; this makes them even"
-        ] * clock.uneven
-        return [f"time = {time}    # {clock.remark}", *uneven]
+        uneven = f"# resample = {clock.uneven}    # s: the time stamps are uneven; this makes them even"
+        return [f"time = {time}    # {clock.remark}", *([uneven] if clock.uneven else [])]
     if clock.sample_time is not None:
         return [f"sample_time = {clock.sample_time!r}    # s, {clock.remark}"]
     return [f"# sample_time = 0.001              # s, to be filled in: {clock.remark}"]
@@ -125,18 +124,26 @@ def _experiments(
                 ("first part", "estimation", (0, cut)),
                 ("last part", "validation", (cut, file.samples)),
             ):
-                lines += _experiment(f"{names[k]}, {name}", file, role, folder, own, rows)
+                lines += _experiment(f"{names[k]}, {name}", file, role, folder, own, rows, clock.gap)
             continue
-        lines += _experiment(names[k], file, "validation" if last and not alone else "estimation", folder, own, None)
+        role = "validation" if last and not alone else "estimation"
+        lines += _experiment(names[k], file, role, folder, own, None, clock.gap)
     return lines
 
 
 def _experiment(
-    name: str, file: Recorded, role: str, folder: Path, columns: dict[str, str], rows: tuple[int, int] | None
+    name: str,
+    file: Recorded,
+    role: str,
+    folder: Path,
+    columns: dict[str, str],
+    rows: tuple[int, int] | None,
+    gap: Gap | None,
 ) -> list[str]:
     seen = "parameters are estimated from it" if role == "estimation" else "results are judged on it"
     own = ", ".join(f"{toml_key(channel)} = {toml_text(column)}" for channel, column in columns.items())
     return [
+        *_gap(gap, rows or (0, file.samples)),
         "[[experiment]]",
         f"name = {toml_text(name)}",
         f"file = {toml_text(Path(os.path.relpath(file.path.resolve(), folder.resolve())).as_posix())}",
@@ -144,6 +151,16 @@ def _experiment(
         *([f"rows = [{rows[0]}, {rows[1]}]"] if rows else []),
         *([f"columns = {{ {own} }}"] if own else []),
         "",
+    ]
+
+
+def _gap(gap: Gap | None, rows: tuple[int, int]) -> list[str]:
+    """What to do about a gap that lies in an experiment with ``rows``."""
+    if gap is None or not rows[0] <= gap.after < rows[1] - 1:
+        return []
+    return [
+        f"# {gap.in_brief}: a simulation across it would hold the last input.",
+        f"# Write {pieces_around((gap.after + 1, gap.after + 1), rows)}.",
     ]
 
 

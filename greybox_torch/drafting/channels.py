@@ -9,10 +9,10 @@ import numpy as np
 
 from greybox_torch.data.units import slip
 from greybox_torch.data.unwrapping import turn_within, unwrapped
-from greybox_torch.drafting.clock import Clock
+from greybox_torch.drafting.clock import SECONDS, Clock
 from greybox_torch.drafting.column_units import unit_in, without_ending, without_unit
 from greybox_torch.drafting.magnitudes import slips
-from greybox_torch.drafting.matching import Wanted, matched, words
+from greybox_torch.drafting.matching import Wanted, letter_unit, matched, words
 from greybox_torch.drafting.recorded import Recorded
 from greybox_torch.model import Body, GreyBoxModel
 
@@ -91,16 +91,22 @@ def _draft(
         free = [name for name in columns if name not in found.values()]
         left = f"; left over: {', '.join(free)}" if free else ""
         return Draft(channel.name, channel.unit, None, remark=f"no column fits{left}")
-    unit = units.get(column, "")
+    unit = units.get(column, "") or _gravity(column, channel.unit)
     certain = any(words(name) == words(channel.name) for name in (column, without_ending(column)))
     doubt = "" if certain or column.lower() == channel.name.lower() else "please check: guessed from the name"
     if unit and channel.unit and slip(unit, channel.unit) is not None:
-        told = "converted from the unit that the file says"
+        told = "converted from the unit that the file says" if column in units else f"in {unit}, as its name ends"
         return Draft(channel.name, channel.unit, column, unit, f"{told}; {doubt}" if doubt else told)
     if channel.name in suspected and not unit:
         guess = suspected[channel.name]
         return Draft(channel.name, channel.unit, column, remark=f'its size suggests {guess}: add file_unit = "{guess}"')
     return Draft(channel.name, channel.unit, column, remark=doubt)
+
+
+def _gravity(column: str, wanted: str) -> str:
+    """The unit of accelerations in multiples of gravity by their name; other letters are too often no units to convert by them."""
+    unit = letter_unit(column, wanted)
+    return unit if unit == "g0" else ""
 
 
 def _suspected(
@@ -110,8 +116,7 @@ def _suspected(
     bodies = [(str(port.position), str(port.speed)) for port in model.ports if isinstance(port, Body)]
     pairs = [(outputs[a], outputs[b]) for a, b in bodies if a in outputs and b in outputs]
     if clock.column is not None:
-        seconds = {"ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}.get(clock.unit, 1.0)
-        time = file.columns[clock.column] * seconds
+        time = file.columns[clock.column] * SECONDS.get(clock.unit, 1.0)
     elif clock.sample_time is not None:
         time = np.arange(file.samples, dtype=np.float64) * clock.sample_time
     else:

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from greybox_torch.data.steps import EVEN, unevenness
+from greybox_torch.data.gaps import Gap, longest_gap
+from greybox_torch.data.steps import EVEN, even_step, unevenness
 from greybox_torch.drafting.recorded import Recorded
 
 _TIME = re.compile(
@@ -24,6 +25,8 @@ _UNITS = {
     "ms": re.compile(r"(^|[\W_])(ms|msec|millis\w*)($|[\W_])", re.IGNORECASE),
     "min": re.compile(r"(^|[\W_])(min|minutes)($|[\W_])", re.IGNORECASE),
 }
+SECONDS = {"ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
+"""Of the units of time stamps that are none themselves."""
 _SINCE_1970 = {"ns": 1e17, "us": 1e14, "ms": 1e11}
 """Time stamps of our days are larger than this in that unit."""
 
@@ -35,14 +38,16 @@ _EVEN_ENOUGH = 0.5
 class Clock:
     """Either ``column`` (None: there is none) with its unit, or ``sample_time`` in seconds (None: not known).
 
-    ``remark`` says what the guess is from; ``uneven`` whether the steps differ.
+    ``remark`` says what the guess is from; ``uneven`` the step in s of an even grid where the steps differ, but for gaps, else empty;
+    ``gap`` is the longest gap.
     """
 
     column: str | None = None
     unit: str = "s"
     sample_time: float | None = None
     remark: str = ""
-    uneven: bool = False
+    uneven: str = ""
+    gap: Gap | None = None
 
 
 def clock_of(file: Recorded) -> Clock:
@@ -72,18 +77,27 @@ def is_clock(values: NDArray[np.float64]) -> bool:
 
 
 def _clock(column: str, values: NDArray[np.float64], unit: str) -> Clock:
-    step, uneven = float(np.median(np.diff(values))), unevenness(values) > EVEN
-    for known in ("s", "ms", "us", "µs", "ns", "min", "h"):
+    known, why = _unit(column, values, unit)
+    step = float(np.median(np.diff(values)))
+    doubt = '; if the stamps are milliseconds, unit = "ms"' if not known and step >= 0.5 and step.is_integer() else ""
+    seconds = values * SECONDS.get(known, 1.0)
+    uneven = even_step(seconds) if unevenness(values, gaps=False) > EVEN else ""
+    remark = f"{why}{_step(step, values, known or 's')}{doubt}"
+    return Clock(column, known or "s", remark=remark, uneven=uneven, gap=longest_gap(seconds))
+
+
+def _unit(column: str, values: NDArray[np.float64], unit: str) -> tuple[str, str]:
+    """The unit of time stamps, empty where nothing tells it, and how it is told."""
+    for known in ("s", *SECONDS):
         if unit.strip("[]() ").lower() == known:
-            return Clock(column, known, remark=f"read in {known}; {_step(step, values, known)}", uneven=uneven)
+            return known, f"read in {known}; "
     for known, pattern in _UNITS.items():
         if pattern.search(column):
-            return Clock(column, known, remark=f"by its name; {_step(step, values, known)}", uneven=uneven)
+            return known, "by its name; "
     for known, least in _SINCE_1970.items():
         if values[0] > least:
-            return Clock(column, known, remark=f"by its size, since 1970; {_step(step, values, known)}", uneven=uneven)
-    doubt = '; if the stamps are milliseconds, unit = "ms"' if step >= 0.5 and float(step).is_integer() else ""
-    return Clock(column, "s", remark=f"{_step(step, values, 's')}{doubt}", uneven=uneven)
+            return known, "by its size, since 1970; "
+    return "", ""
 
 
 def _step(step: float, values: NDArray[np.float64], unit: str) -> str:

@@ -28,6 +28,11 @@ _ALIKE = (
 )
 """Words of one meaning, in the languages of data logs."""
 
+_LETTERS = ("A", "V", "W", "N", "K", "m")
+"""Units of one letter that may end a name, if the channel is in such a unit: x_m is a length where one is wanted, else measured."""
+_GRAVITY = "g"
+"""Ends the names of accelerations in multiples of gravity."""
+
 SURE = 0.5
 """Score from which a column is taken for a channel."""
 
@@ -73,6 +78,8 @@ def _only_ones_left(
 
 def _score(channel: Wanted, column: str, unit: str, wanted: Sequence[Wanted]) -> float:
     """From 0 to 1.5: how well a column fits a channel."""
+    if not unit and (unit := letter_unit(column, channel.unit)):
+        column = column.rpartition("_")[0]
     one, other = channel.name.lower(), column.lower()
     if one == other:
         return 1.5
@@ -90,6 +97,16 @@ def _score(channel: Wanted, column: str, unit: str, wanted: Sequence[Wanted]) ->
     if unit and channel.unit:
         score += 0.25 if fits(unit, channel.unit) else -0.4
     return score
+
+
+def letter_unit(column: str, wanted: str) -> str:
+    """The unit that the letter behind the last underscore of a name stands for, if that is of the ``wanted`` unit's quantity; else ""."""
+    head, _, letter = column.rpartition("_")
+    if not head or not wanted:
+        return ""
+    if letter == _GRAVITY:
+        return "g0" if fits("g0", wanted) else ""
+    return letter if letter in _LETTERS and fits(letter, wanted) else ""
 
 
 def fits(unit: str, wanted: str) -> bool:

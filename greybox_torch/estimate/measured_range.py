@@ -39,7 +39,7 @@ def as_measured(model: GreyBoxModel, signal: Signal, x: Signals, u: Signals, pro
 
 def farther(simulated: Range, measured: np.ndarray) -> Range:
     """The range that takes in ``measured`` (N,) as well, noise aside; NaN is missing."""
-    ends = _ends(_averages(measured), _noise(measured) / np.sqrt(AVERAGED))
+    ends = _ends(_averages(measured), noise_of(measured) / np.sqrt(AVERAGED))
     if ends is None:
         return simulated
     return Range(min(simulated.low, ends[0]), max(simulated.high, ends[1]), simulated.rms)
@@ -47,7 +47,7 @@ def farther(simulated: Range, measured: np.ndarray) -> Range:
 
 def no_farther(simulated: Range, measured: np.ndarray) -> Range:
     """The range of ``measured`` (N,), noise aside, in the place of the simulated one; NaN is missing."""
-    noise = _noise(measured)
+    noise = noise_of(measured)
     known = measured[np.isfinite(measured)]
     averages, samples = _ends(_averages(measured), noise / np.sqrt(AVERAGED)), _ends(known, noise)
     if averages is None or samples is None:
@@ -57,7 +57,7 @@ def no_farther(simulated: Range, measured: np.ndarray) -> Range:
     return Range(low, high, float(np.sqrt(np.mean(known**2)))) if low < high else simulated
 
 
-def _noise(measured: np.ndarray) -> float:
+def noise_of(measured: np.ndarray) -> float:
     """The standard deviation of white noise in measurements (N,): zero where they are too few to tell."""
     known = measured[np.isfinite(measured)]
     if len(known) < FEWEST:

@@ -21,7 +21,8 @@ def plot_channels(data: DataSet, along: str = "time [s]") -> Figure:
 
     The channels of an experiment share the time axis, in seconds since its start. A channel has the same vertical axis, in its unit,
     in all experiments. Of very many channels or experiments the figure shows the first, and says so. Missing samples leave a gap in
-    the curve and a red mark at the foot of it.
+    the curve and a red mark at the foot of it, and are counted
+    beside the axes.
 
     Args:
         along: the label of the horizontal axis.
@@ -67,6 +68,6 @@ def _plot(axes: Axes, recording: Recording, channel: Channel) -> None:
     if missing.size:
         foot = axes.get_xaxis_transform()
         axes.plot(missing, np.zeros_like(missing), "|", color="tab:red", markersize=8, transform=foot)
-        axes.text(
-            0.99, 0.95, f"{missing.size} missing", color="tab:red", ha="right", va="top", transform=axes.transAxes
+        axes.text(  # outside: inside it lies on the curve
+            1.01, 0.5, f"{missing.size} missing", color="tab:red", rotation=90, va="center", transform=axes.transAxes
         )

@@ -10,6 +10,7 @@ from greybox_torch.api.verdict_summary import SIZE, effect_table, moved_table, n
 from greybox_torch.diagnosis.verdict import MOST_NAMED, STOPPED, Estimate, NotTried
 from greybox_torch.estimate.notes import told_at_bound
 from greybox_torch.report.sections.effects import Effects
+from greybox_torch.report.sections.headline import Headline
 from tests.diagnosis.test_verdict import BACKLASH, verdict
 
 CUT = NotTried(("searching",), (("rotor", "quadratic_drag"), ("rotor", "constant_bias")))
@@ -69,6 +70,15 @@ def test_an_experiment_that_no_longer_judges_is_told_first() -> None:
     found = replace(verdict(BACKLASH), no_longer_validation=(told,))
     assert notes(found)[:2] == [told, SIZE]
     assert told not in notes(replace(verdict(), no_longer_validation=(told,)))  # the evidence stands there
+
+
+def test_validation_experiments_that_are_short_are_told_of_whatever_is_found() -> None:
+    """Seen: 80 s of a machine with minutes; a probability of 0.5, and no word of why."""
+    told = "The validation experiment lasts 80 s."
+    assert notes(replace(verdict(BACKLASH), short_validation=(told,)))[:2] == [told, SIZE]
+    short = replace(verdict(), short_validation=(told,))
+    assert notes(short)[0] == told and short.as_json()["short_validation"] == [told]
+    assert Headline.of(short).of_validation == (told,)
 
 
 def test_the_size_of_an_effect_is_told_and_its_equation() -> None:

@@ -82,6 +82,17 @@ def test_what_may_be_meant(source: str, target: str, meant: str) -> None:
         conversion(source, target, "here")
 
 
+@pytest.mark.parametrize(
+    ("written", "told"), [("g", '"g" is the gram.*"g0"'), ("mg", '"mg" is.*"mg0"'), ("G", "the gauss")]
+)
+def test_gravity_beside_an_acceleration(written: str, told: str) -> None:
+    with pytest.raises(UserError, match=told):
+        conversion(written, "m/s^2", "here")
+    with pytest.raises(UserError, match='"g" cannot be converted to "m"; expected'):
+        conversion("g", "m", "here")
+    assert [conversion(name, "m/s^2", "")[0] for name in ("g0", "gn", "g_n")] == pytest.approx([9.80665] * 3)
+
+
 def test_no_unit_of_another_quantity_is_meant() -> None:
     with pytest.raises(UserError, match='"m/s" cannot be converted to "m/s\\^2"; expected'):
         conversion("m/s", "m/s^2", "here")

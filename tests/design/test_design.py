@@ -100,7 +100,7 @@ def test_command(results: Path) -> None:
     assert sorted(p.name for p in folder.iterdir()) == ["design.csv", "design.png", "next.toml"]
     with (folder / "design.csv").open() as file:
         rows = list(csv.DictReader(file))
-    assert list(rows[0]) == ["time", "voltage"] and len(rows) == 100
+    assert list(rows[0]) == ["time [s]", "voltage [V]"] and len(rows) == 100
     card = tomllib.loads((folder / "next.toml").read_text())
     assert card["experiment"][0]["file"] == "recorded.csv" and card["channels"]["speed"]["unit"] == "rad/s"
 

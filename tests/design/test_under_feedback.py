@@ -135,7 +135,7 @@ def test_command(undecided, few, tmp_path: Path) -> None:
     assert told["inputs"] == {} and told["set_points"]["angle"]["drives"] == "voltage"
     with (results / "design" / "design.csv").open() as file:
         rows = list(csv.DictReader(file))
-    assert list(rows[0]) == ["time", "angle_set_point", "voltage_expected"] and len(rows) == 30
+    assert list(rows[0]) == ["time [s]", "angle_set_point [rad]", "voltage_expected [V]"] and len(rows) == 30
     assert (results / "design" / "design.png").stat().st_size > 10_000
     assert "[controller]" not in (results / "design" / "next.toml").read_text()
 

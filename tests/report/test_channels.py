@@ -28,6 +28,7 @@ def test_every_channel_of_every_experiment(bench: Path) -> None:
     speed = axes[1].lines[0].get_ydata()
     assert np.isnan(speed[7])
     assert [text.get_text() for text in axes[1].texts] == ["1 missing"]
+    assert axes[1].texts[0].get_position()[0] > 1.0, "seen: on the curve"
     assert axes[1].lines[1].get_xdata() == [0.07]
 
 

@@ -62,6 +62,7 @@ def _seconds(path: Path, line: int, column: str, cell: str, stamps: TimeStamps) 
     try:
         return stamps.seconds(cell) if cell else float("nan")
     except ValueError as error:
+        _refuse_names(path, line, column, cell)
         raise UserError(f'{path}, line {line}, column "{column}": found "{cell:.60}": {error}') from None
 
 
@@ -76,11 +77,21 @@ def _number(path: Path, line: int, column: str, cell: str, decimal: str) -> floa
             return float(cell or "nan")
     except ValueError:
         pass
+    _refuse_names(path, line, column, cell)
     sign = "; decimals have a comma in this file" if decimal == "," else ""
     raise UserError(
         f'{path}, line {line}, column "{column}": found "{cell:.60}", expected a number '
         f"(missing samples are empty cells or NaN{sign})"
     ) from None
+
+
+def _refuse_names(path: Path, line: int, column: str, cell: str) -> None:
+    """Raises UserError where a cell among the samples is the name of its column: a logger that is started anew writes its heading again."""
+    if cell.strip().strip('"') == column:
+        raise UserError(
+            f"{path}, line {line}: found the names of the columns again, as where the logger was started anew; expected the file divided "
+            "there, an experiment for each part, or, where time runs on without a gap, this line deleted"
+        ) from None
 
 
 def _samples(path: Path, file: TextIO, layout: Layout) -> Iterator[tuple[int, list[str]]]:

@@ -4,11 +4,16 @@ recordings judge them no longer.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.effect import Effect
+from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.verdict import Estimate, InputTrace, Trace
+from greybox_torch.estimate.short_validation import short_validation, slowest_time_constant
 
 
 def traces(judged: Judgement, effects: bool) -> tuple[Trace, ...]:
@@ -38,6 +43,22 @@ def no_longer_validation(given: DataSet, used: DataSet) -> tuple[str, ...]:
         for r in used.estimation()
         if r.name in held_out
     )
+
+
+def too_short_to_judge(given: DataSet, judged: Judgement, effects: Sequence[Effect]) -> tuple[str, ...]:
+    """A sentence where the validation experiments of ``given`` are short beside those of estimation, the model's time constants as it was
+    re-estimated, or the times of ``effects`` (their parameters in s); none elsewhere.
+    """
+    values = judged.plain.values()
+    problem = judged.problem.with_values(np.array([values[name] for name in judged.problem.names]))
+    times = {
+        f"{name} of {spoken_at(effect.mechanism, effect.port)}": float(entry["value"])
+        for effect in effects
+        for name, entry in effect.shown_parameters.items()
+        if entry.get("unit") == "s"
+    }
+    told = short_validation(given, slowest_time_constant(judged.problem.model.plain, problem), times)
+    return () if told is None else (f"{told[0].upper()}{told[1:]}.",)
 
 
 def inputs(judged: Judgement) -> tuple[InputTrace, ...]:

@@ -132,3 +132,13 @@ def test_lines_count_from_the_beginning_of_the_file(tmp_path: Path) -> None:
     assert table.units == {"u": "V"}
     with pytest.raises(UserError, match=r'line 6, column "y": found "x"'):
         read_csv(tmp_path / "a.csv", ("y",))
+
+
+@pytest.mark.parametrize("heading", ["t,u,y", "date,u,y"])
+def test_a_heading_among_the_samples_says_what_to_do(tmp_path: Path, heading: str) -> None:
+    """Seen: a logger that was started anew; the message named a cell, and not what it was nor what to write."""
+    first = heading.split(",")[0]
+    times = ["0", "1"] if first == "t" else ["2026-03-02T08:15:00", "2026-03-02T08:15:02"]
+    (tmp_path / "a.csv").write_text(f"{heading}\n{times[0]},1,2\n{heading}\n{times[1]},3,4\n")
+    with pytest.raises(UserError, match=r"line 3: found the names of the columns again.*; expected the file divided"):
+        read_csv(tmp_path / "a.csv", (first, "u", "y"))

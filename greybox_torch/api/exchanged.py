@@ -1,0 +1,123 @@
+"""Whether channels may be exchanged, or one has the other sign: asked where an estimate simulates the validation experiments badly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from greybox_torch.data import DataSet, Recording
+from greybox_torch.errors import NumericalError, UserError
+from greybox_torch.estimate.comparison import compare, held_out_scores, mean_fit
+from greybox_torch.estimate.fit import fit_records
+from greybox_torch.estimate.levenberg_marquardt import ROUGH
+from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate.simulators import fine_enough
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.name_lists import listed
+from greybox_torch.simulation.simulator import Simulator
+
+POOR = 80.0
+"""Mean fit in % below which it is asked."""
+
+MOST_SAMPLES = 4000
+"""Samples of the experiments of a role that it is asked with: the beginnings of all. A hint is worth no more time."""
+
+REFITTED = 3
+"""Changes that are refitted, those that simulate best with the start values."""
+
+FAR_BETTER = 0.5
+"""Part of what is missing to a fit of 100 % that may be left for a change to be told."""
+
+FOLLOWS = 30.0
+"""Mean fit in % that a change has to reach: of free runs that go elsewhere, the one that goes least far says nothing."""
+
+AS_GOOD = 1.2
+"""Times as much that others may leave and be told with it."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """A channel by which another is read instead, by name, and how a reader is asked; ``sign`` is −1 where that is reversed."""
+
+    read: Mapping[str, str]
+    question: str
+    sign: float = 1.0
+
+    def of(self, recording: Recording) -> Recording:
+        """A recording with the change."""
+        changed = {name: self.sign * recording.signals[other] for name, other in self.read.items()}
+        return replace(recording, signals={**recording.signals, **changed})
+
+
+AS_IT_IS = Change({}, "")
+
+
+def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator) -> str | None:
+    """A question to the user, where exchanging two inputs or two outputs of one unit, or reversing the sign of one channel, makes a short
+    refit far better on the validation experiments; else None.
+
+    Args:
+        simulator: of the model, with tangents for its free parameters.
+    """
+    short = _beginnings(data)
+    changes = list(_changes(model))
+    by_start = {k: _fit(short, model, simulator, change, refitted=False) for k, change in enumerate(changes)}
+    tried = sorted(by_start, key=lambda k: -by_start[k])[:REFITTED]
+    left = 100.0 - _fit(short, model, simulator, AS_IT_IS)
+    lefts = {k: 100.0 - _fit(short, model, simulator, changes[k]) for k in sorted(tried)}
+    least = min(lefts.values(), default=np.inf)
+    if not least < min(FAR_BETTER * left, 100.0 - FOLLOWS):
+        return None
+    asked = [changes[k].question for k, one in lefts.items() if one <= AS_GOOD * least]
+    question = ", or ".join(asked)
+    return (
+        f"{question[0].upper()}{question[1:]}? So changed, a short refit reaches a mean fit of {100.0 - least:.3g} % on "
+        f"{_judging(data)} ({100.0 - left:.3g} % as it is). If so, mend the card's columns or scale; if not, disregard this"
+    )
+
+
+def _judging(data: DataSet) -> str:
+    return "the validation experiments" if data.validation() else "the experiments"
+
+
+def _changes(model: GreyBoxModel) -> Iterator[Change]:
+    """Exchanges first: of two that fit alike, they are the likelier slip."""
+    for signals in (model.inputs, model.outputs):
+        for one, other in combinations(signals, 2):
+            if one.unit == other.unit:
+                names = listed([one.name, other.name])
+                yield Change({one.name: other.name, other.name: one.name}, f"are the columns of {names} exchanged")
+    for one in (*model.inputs, *model.outputs):
+        yield Change({one.name: one.name}, f"has {one.name} the other sign", -1.0)
+
+
+def _beginnings(data: DataSet) -> DataSet:
+    """The data set with the beginnings of its experiments, and what the card says of the model."""
+    runs = []
+    for recording in data.recordings:
+        count = MOST_SAMPLES // sum(other.role == recording.role for other in data.recordings)
+        signals = {name: values[:count] for name, values in recording.signals.items()}
+        runs.append(replace(recording, time=recording.time[:count], signals=signals))
+    own = {"hold": data.hold, "channels": data.channels, "parameters": data.parameters, "initial": data.initial}
+    return DataSet(runs, **own, held_out_by_default=data.held_out_by_default)
+
+
+def _fit(data: DataSet, model: GreyBoxModel, simulator: Simulator, change: Change, *, refitted: bool = True) -> float:
+    """The mean fit (%) on the validation experiments after a change, of a short refit or of the start values; -inf where none simulates."""
+    runs = [change.of(recording) for recording in data.recordings]
+    judged = [recording for recording in runs if recording.role == "validation"] or runs
+    try:
+        values = None
+        if refitted:
+            estimated = [recording for recording in runs if recording.role == "estimation"]
+            problem = make_problem(data, model, estimated)
+            found = fit_records(problem, simulator=simulator, settings=ROUGH, with_uncertainty=False, starts=1)
+            values = found.problem.values_by_name
+        judging = make_problem(data, model, judged, values=values)
+        fit = mean_fit(held_out_scores(compare(judging, judged, fine_enough(simulator, judging)).scores))
+    except (NumericalError, UserError):  # a change may lead where nothing simulates
+        return -np.inf
+    return fit if np.isfinite(fit) else -np.inf

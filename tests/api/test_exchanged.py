@@ -1,0 +1,71 @@
+"""Where channels are exchanged, or one has the other sign, an estimate asks whether they are."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import greybox_torch as gt
+from greybox_torch.api.exchanged import MOST_SAMPLES
+
+COUNT, STEP = 400, 2.0
+
+
+class Plate(gt.GreyBoxModel):
+    """Two zones of different size, a heater and a thermocouple each."""
+
+    states = (gt.State("T1", "degC", initial="measured"), gt.State("T2", "degC", initial="measured"))
+    inputs = (gt.Input("P1", "W"), gt.Input("P2", "W"))
+    outputs = (gt.Output("T1", "degC"), gt.Output("T2", "degC"))
+    parameters = (
+        gt.Parameter("C1", 300.0, unit="J/K", lower=1.0),
+        gt.Parameter("C2", 90.0, unit="J/K", lower=1.0),
+        gt.Parameter("G", 0.5, unit="W/K", lower=0.0),
+    )
+
+    def derivative(self, x, u, p, port):
+        flow = p.G * (x.T1 - x.T2)
+        return {"T1": (u.P1 - flow - x.T1) / p.C1, "T2": (u.P2 + flow - x.T2) / p.C2}
+
+    def output(self, x, u, p):
+        return {"T1": x.T1, "T2": x.T2}
+
+
+def recorded(role: str, seed: int, read: dict[str, str], sign: dict[str, float]) -> gt.Recording:
+    """What a plate does, of which channels are read from others, some of them reversed."""
+    draw = np.random.default_rng(seed)
+    u = np.repeat(draw.uniform(0.0, 60.0, size=(2, COUNT // 20)), 20, axis=1)
+    x, rows = np.zeros(2), []
+    for k in range(COUNT):
+        rows.append(x.copy())
+        for _ in range(20):
+            flow = 0.8 * (x[0] - x[1])
+            x = x + STEP / 20 * np.array([(u[0, k] - flow - x[0]) / 400.0, (u[1, k] + flow - x[1]) / 60.0])
+    y = np.array(rows).T + 0.05 * draw.standard_normal((2, COUNT))
+    signals = {"P1": u[0], "P2": u[1], "T1": y[0], "T2": y[1]}
+    given = {name: sign.get(name, 1.0) * signals[read.get(name, name)] for name in signals}
+    return gt.Recording.from_arrays(role, given, sample_time=STEP, role=role)
+
+
+def fitted(read: dict[str, str] | None = None, **sign: float) -> gt.FitResult:
+    roles = ("estimation", "validation")
+    return gt.fit(Plate(), gt.DataSet([recorded(role, k, read or {}, sign) for k, role in enumerate(roles)]))
+
+
+@pytest.mark.parametrize(
+    ("read", "sign", "asked"),
+    [
+        ({"P1": "P2", "P2": "P1"}, {}, "re the columns of P1 and P2 exchanged"),
+        ({"T1": "T2", "T2": "T1"}, {}, "re the columns of T1 and T2 exchanged"),
+        ({}, {"P2": -1.0}, "as P2 the other sign"),
+    ],
+)
+def test_a_slip_among_the_channels_is_asked_for(read: dict[str, str], sign: dict[str, float], asked: str) -> None:
+    """Seen: heaters exchanged, thermocouples exchanged: a fit of 38 to 80 %, and not a word."""
+    found = fitted(read, **sign)
+    assert found.question is not None and asked in found.question and "?" in found.question
+    assert f"{found.question}." in found._advice
+
+
+def test_nothing_is_asked_where_the_fit_is_good() -> None:
+    assert fitted().question is None and MOST_SAMPLES >= COUNT
