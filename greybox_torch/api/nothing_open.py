@@ -27,19 +27,19 @@ def group_in_question(held: Hypotheses) -> Sequence[Kept]:
     if decided([kept.probability for kept in group]):
         best = max(group, key=lambda kept: kept.probability)
         raise UserError(
-            f"between the named hypotheses all is already decided, so that no recording is needed for it: {_decided(best, held.complete)}"
+            f"between the named hypotheses all is already decided: {_decided(best, held.complete)}"
             f"{_all_the_same(held)}; expected a finding that is open, {_OR_A_PARAMETER}{told}"
         )
     return group
 
 
 def _all_the_same(held: Hypotheses) -> str:
-    """What the verdict leaves beside its findings, and why no input is designed for that; "" where it says nothing of it."""
+    """What the verdict leaves beside its findings, in its first sentence, and why no input is designed for it; "" where nothing is."""
     if not held.left:
         return ""
     return (
-        f". The verdict leaves some error all the same. {held.left.rstrip('.')}. No hypothesis says what that is, so no input can be "
-        "designed for it; greybox residuals draws it over time, with the inputs that it is correlated with"
+        f". The verdict leaves some error all the same. {held.left.split('. ')[0].rstrip('.')}. No hypothesis says what that is, so no "
+        "input can be designed for it (greybox residuals draws it)"
     )
 
 

@@ -95,6 +95,8 @@ def _rows(effect: Effect) -> Iterator[list[str | float]]:
     for name, entry in effect.shown_parameters.items():
         yield [*first, name, float(entry["value"]), _deviation(entry.get("std")), entry.get("unit", "")]
         first = [""] * len(first)
+        if pitch := effect.pitch(name):
+            yield [*first, "(pitch)", pitch[0], _deviation(pitch[1]), pitch[2]]
 
 
 def _deviation(value: float | None) -> str | float:

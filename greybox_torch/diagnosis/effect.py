@@ -11,6 +11,7 @@ import numpy as np
 from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken_at
 from greybox_torch.estimate.notes import told_at_bound
+from greybox_torch.mechanisms.pitch import pitch_of
 from greybox_torch.name_lists import listed
 
 
@@ -141,6 +142,13 @@ class Effect:
         if self.memory is None:
             return {n: v for n, v in self.parameters.items() if not n.startswith(("w_", "first", "spacing"))}
         return {n: v for n, v in self.parameters.items() if not self.memory.curved or n == "T"}
+
+    def pitch(self, name: str) -> tuple[float, float | None, str] | None:
+        """In which travel its law repeats, with its deviation and unit, if the parameter ``name`` is an order over one."""
+        told = self.parameters[name]
+        if name != "order" or told.get("value") is None:
+            return None
+        return pitch_of(float(told["value"]), told.get("unit", ""), told.get("std"))
 
     @property
     def undetermined(self) -> str:

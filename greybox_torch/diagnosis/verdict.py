@@ -134,7 +134,8 @@ class Verdict:
     complete: bool = True
     """Whether the search ran to its end, rather than into a time limit or an interruption."""
     unexplained: float | None = None
-    """How many times the noise the error is where nothing was found that explains it, if clearly more than noise."""
+    """How many times the noise the error is where nothing was found that explains it, if clearly more than noise: over windows or in free
+    runs, whichever say less."""
     refinements: tuple[Effect, ...] = ()
     """What is significant and small beside the findings; in the model where there are findings, never in the headline."""
     left: Left | None = None
@@ -172,7 +173,7 @@ class Verdict:
             )
             output = mostly_in(self.counted("refit"))
             its = f"its error, mostly in {output}," if output else "its error"
-            times = f"{digits(self.unexplained, 3)} times the noise {NOISE_SHOWN}"
+            times = f"at least {digits(self.unexplained, 3)} times the noise {NOISE_SHOWN}, over short windows and in free runs alike"
             return f"Something is missing from {self.model}: {its} is {times}. {why}"
         if not self.effects and not self.looked:
             return f"Nothing was looked for in {self.model}: the beliefs exclude every hypothesis."

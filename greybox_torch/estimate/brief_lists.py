@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from greybox_torch.estimate.identifiability import Unidentifiable
 from greybox_torch.name_lists import brief, listed
@@ -15,9 +16,11 @@ _DEVIATION = re.compile(r"standard deviation is about (\S+) times its value; (.*
 
 
 def brief_sentences(found: Sequence[Unidentifiable]) -> list[str]:
-    """Findings of single parameters that are alike in one sentence, each other one in its own, at most MOST_SENTENCES."""
+    """Findings of single parameters that are alike in one sentence, and so are those that say the same of lists with names in common;
+    each other one in its own, at most MOST_SENTENCES.
+    """
     groups: dict[str, list[Unidentifiable]] = {}
-    for one in found:
+    for one in _joined(found):
         groups.setdefault(_alike(one), []).append(one)
     told = [_told(group) for group in groups.values()]
     left = told[MOST_SENTENCES:]
@@ -39,6 +42,24 @@ def brief_pairs(pairs: Iterable[tuple[str, str, float]]) -> str:
         else f"{brief(names)} (at least {min(map(abs, values)):.3f})"
         for names, values in groups
     )
+
+
+def _joined(found: Sequence[Unidentifiable]) -> list[Unidentifiable]:
+    """Findings of several parameters that say the same and have some of these in common, as one of all of them."""
+    result: list[Unidentifiable] = []
+    for one in found:
+        name, _, rest = one.sentence.partition(": ")
+        if len(one.parameters) > 1 and name == brief(one.parameters):
+            for other in [o for o in result if _says(o, rest) and set(o.parameters) & set(one.parameters)]:
+                result.remove(other)
+                names = tuple(dict.fromkeys([*other.parameters, *one.parameters]))
+                one = replace(one, parameters=names, direction=(), sentence=f"{brief(names)}: {rest}")
+        result.append(one)
+    return result
+
+
+def _says(one: Unidentifiable, rest: str) -> bool:
+    return len(one.parameters) > 1 and one.sentence == f"{brief(one.parameters)}: {rest}"
 
 
 def _alike(one: Unidentifiable) -> str:

@@ -16,6 +16,9 @@ from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import whole_records
 
+MOST_SENSITIVITIES = 20_000_000
+"""Numbers that may be held at once for a closer look at what the data determine."""
+
 
 def simulate(problem: Problem, simulator: Simulator) -> list[np.ndarray]:
     """Simulated outputs (N_e, n_y) of every experiment from its start state."""
@@ -97,6 +100,23 @@ class FreeRun:
         point = self.at(z)
         records = point.driving_records
         return self._parallel.errors(records, point.values, point.initial, self._rough, self.problem.weights)
+
+    def by_samples(self, z: np.ndarray) -> np.ndarray | None:
+        """The Gauss-Newton Hessian (d, d) at ``z`` from the sensitivities of every sample, which cancel nothing, as windows of it may.
+
+        None where the simulation is not finite, or there are more than :data:`MOST_SENSITIVITIES`.
+        """
+        if self.problem.samples * len(z) > MOST_SENSITIVITIES:
+            return None
+        found = self.errors(z)
+        if found is None:
+            return None
+        size, hessian = len(z), np.zeros((len(z), len(z)))
+        for e, (_, slopes) in enumerate(found):
+            rows = np.nan_to_num(slopes.reshape(-1, slopes.shape[-1]))
+            index = self.columns(e, self.n_parameters, (size - self.n_parameters) // len(found))
+            hessian[np.ix_(index, index)] += rows.T @ rows
+        return hessian if np.isfinite(hessian).all() else None
 
     @cached_property
     def _parallel(self) -> ParallelRun:

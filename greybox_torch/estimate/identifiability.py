@@ -17,7 +17,7 @@ import numpy as np
 
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.identifiability_sentences import Direction, sentence
-from greybox_torch.estimate.information import FLAT, Information, echelon
+from greybox_torch.estimate.information import Information, echelon
 from greybox_torch.estimate.levenberg_marquardt import Quadratic
 from greybox_torch.linear_algebra import eigh, pseudo_inverse
 
@@ -63,10 +63,15 @@ def identifiability(run: FreeRun, z: np.ndarray, here: Quadratic[None] | None = 
     unmoved, flat = view.unmoved(), view.flat_directions()
     if len(flat) and view.exploded():
         return (_failed(view),)
+    if len(flat):
+        closer = view.closer()
+        seen = closer.flat_directions()
+        if len(seen) < len(flat):
+            view, flat = closer, seen
     nearby = _nearby(view, here) if len(unmoved) or len(flat) else None
     found = [_unmoved(view, i, nearby, here) for i in unmoved if i < run.n_parameters]
     found += [_together(view, step, nearby, here) for step in flat]
-    held = {*unmoved, *[int(np.argmax(np.abs(step) * np.sqrt(np.diag(here.hessian)))) for step in flat]}
+    held = {*unmoved, *[int(np.argmax(np.abs(step) * np.sqrt(np.diag(view.hessian)))) for step in flat]}
     return (*found, *_weak(view, here, held))
 
 
@@ -151,7 +156,7 @@ def _weak(view: Information, here: Quadratic[None], held: set[int]) -> list[Unid
     kept = np.setdiff1d(np.arange(len(view.z)), sorted(held))
     scale = view.scale[kept]
     inverse = pseudo_inverse(
-        view.hessian[np.ix_(kept, kept)] * np.outer(scale, scale), rcond=FLAT[view.precision], hermitian=True
+        view.hessian[np.ix_(kept, kept)] * np.outer(scale, scale), rcond=view.rounding, hermitian=True
     )
     inverse *= np.outer(scale, scale)
     gradient = here.gradient[kept]

@@ -7,7 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.estimate.free_run import FreeRun
+from greybox_torch.estimate.information import FLAT_BY_SAMPLES
 from greybox_torch.linear_algebra import eigh
+
+FLAT = 1e-12
+"""Curvature, relative to the largest in unknowns of unit diagonal, that rounding alone accounts for."""
 
 
 @dataclass(frozen=True)
@@ -50,8 +54,8 @@ def uncertainty(run: FreeRun, z: np.ndarray, penalty: np.ndarray | None = None) 
     hessian = np.zeros((size, size))
     for index, stretches in zip(columns, normals, strict=True):
         hessian[np.ix_(index, index)] += stretches[:, :-1, :-1].sum(axis=0)
-    hessian += 0.0 if penalty is None else np.diag(penalty)
-    root, undetermined = _root_of_inverse(hessian)
+    stiff = 0.0 if penalty is None else np.diag(penalty)
+    root, undetermined = _looked_at_closely(run, z, *_root_of_inverse(hessian + stiff), stiff)
     meat = np.zeros((root.shape[1], root.shape[1]))
     for index, stretches in zip(columns, normals, strict=True):
         meat += long_run_scatter(_without_leverage(stretches, root[index]))
@@ -60,9 +64,13 @@ def uncertainty(run: FreeRun, z: np.ndarray, penalty: np.ndarray | None = None) 
     return Uncertainty(variance * root @ root.T, root @ meat @ root.T, undetermined)
 
 
-def of_information(information: np.ndarray) -> Uncertainty:
-    """Covariance of the estimates of greatest likelihood, from their ``information`` (d, d): the errors' colour is in it already."""
-    root, undetermined = _root_of_inverse(information)
+def of_information(information: np.ndarray, *, by_samples: bool = False) -> Uncertainty:
+    """Covariance of the estimates of greatest likelihood, from their ``information`` (d, d): the errors' colour is in it already.
+
+    Args:
+        by_samples: whether it was summed in double precision over samples (or frequencies), with nothing taken off it.
+    """
+    root, undetermined = _root_of_inverse(information, FLAT_BY_SAMPLES if by_samples else FLAT)
     covariance = root @ root.T
     return Uncertainty(covariance, covariance, undetermined)
 
@@ -101,12 +109,25 @@ def _bandwidth(scores: np.ndarray) -> int:
     return min(int(1.1447 * (strength * count) ** (1 / 3)), count // 4)
 
 
-def _root_of_inverse(hessian: np.ndarray) -> tuple[np.ndarray, tuple[int, ...]]:
+def _looked_at_closely(
+    run: FreeRun, z: np.ndarray, root: np.ndarray, undetermined: tuple[int, ...], stiff: np.ndarray | float
+) -> tuple[np.ndarray, tuple[int, ...]]:
+    """:func:`_root_of_inverse` from the sensitivities of every sample, if that determines more: one stretch that nearly leaves its valley
+    outweighs the others so far that what these tell is lost in rounding where less is known of that.
+    """
+    closer = run.by_samples(z) if undetermined and run.simulator.options.precision == "double" else None
+    if closer is None:
+        return root, undetermined
+    found = _root_of_inverse(closer + stiff, FLAT_BY_SAMPLES)
+    return found if len(found[1]) < len(undetermined) else (root, undetermined)
+
+
+def _root_of_inverse(hessian: np.ndarray, rounding: float = FLAT) -> tuple[np.ndarray, tuple[int, ...]]:
     """R (d, r) with R Rᵀ the inverse in the directions of curvature, and the unknowns that take part in one of no curvature."""
     diagonal = np.diag(hessian)
     scale = np.where(diagonal > 0, 1.0 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)), 0.0)
     values, vectors = eigh(hessian * scale[:, None] * scale[None, :])
-    flat = values < 1e-12 * values.max(initial=1e-300)
+    flat = values < rounding * values.max(initial=1e-300)
     involved = set(np.flatnonzero((np.abs(vectors[:, flat]) > 0.1).any(axis=1))) | set(np.flatnonzero(diagonal <= 0))
     root = scale[:, None] * vectors[:, ~flat] / np.sqrt(values[~flat])
     return root, tuple(int(i) for i in sorted(involved))

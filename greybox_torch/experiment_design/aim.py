@@ -10,6 +10,7 @@ import numpy as np
 from greybox_torch.experiment_design.contender import Contender, Prediction
 from greybox_torch.experiment_design.excitation import Excitation
 from greybox_torch.experiment_design.separation import deviation, evidence
+from greybox_torch.experiment_design.trusted import trusted
 
 DECIDED = 20.0
 """Nats of which a pair of hypotheses counts as half decided: what is far beyond says little more."""
@@ -77,7 +78,12 @@ class Aim:
     def _of_rival(self, index: int, prediction: Prediction, record: int) -> tuple[np.ndarray, np.ndarray]:
         """Its slopes (N, n_d) in units of the errors, and what is known of its unknowns: nothing of start states."""
         assert prediction.slopes is not None
-        slopes = prediction.slopes[record] / self.level[:, None]
+        slopes = prediction.slopes[record]
+        if self.parameter is not None:
+            one = self.contenders[index]
+            sizes = np.maximum(np.abs(prediction.y[record]).max(axis=0), self.level)
+            slopes = trusted(slopes, one.problem.values[one.free], sizes)
+        slopes = slopes / self.level[:, None]
         slopes = slopes.reshape(-1, slopes.shape[-1])
         known = np.zeros((slopes.shape[1],) * 2)
         own = self.contenders[index].information

@@ -16,6 +16,7 @@ from greybox_torch.experiment_design.closed_loop import under_feedback
 from greybox_torch.experiment_design.controller import Loop
 from greybox_torch.experiment_design.separation import deviation, scaled_inverse
 from greybox_torch.experiment_design.side_by_side import begun_each, prepared_each
+from greybox_torch.experiment_design.trusted import trusted
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.passes import Pass, Run
 from greybox_torch.simulation.records import Records
@@ -231,9 +232,9 @@ def _known(problem: Problem, run: Run) -> tuple[np.ndarray, np.ndarray, float]:
         measured = problem.records.y[:, problem.records.span(e)].T
         errors.append(measured - run.y[e, :length])
         own = np.zeros((length, len(measured[0]), count + starts * len(problem.initial)))
-        own[..., :count] = run.dy[e, :length, :, :count]
-        at = count + e * starts
-        own[..., at : at + starts] = run.dy[e, :length, :, count:]
+        sizes = np.fmax(np.abs(run.y[e, :length]).max(axis=0), np.abs(errors[-1]).max(axis=0))
+        seen, at = trusted(run.dy[e, :length], problem.values[problem.free], sizes), count + e * starts
+        own[..., :count], own[..., at : at + starts] = seen[..., :count], seen[..., count:]
         slopes.append(own)
     level = np.sqrt(np.nanmean(np.concatenate(errors) ** 2, axis=0))
     memory = max(correlation_length(column[~np.isnan(column)]) for e in errors for column in e.T)

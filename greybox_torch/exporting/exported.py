@@ -13,7 +13,8 @@ from greybox_torch.exporting.delays import Delay, delays_of, with_delays
 from greybox_torch.mechanisms.attached import attached
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import SHARE
-from greybox_torch.model import GreyBoxModel
+from greybox_torch.mechanisms.pitch import with_pitch
+from greybox_torch.model import GreyBoxModel, Parameter
 
 USUAL_STEP = 1e-3
 """Seconds of an integration step where nothing says how many are needed."""
@@ -91,14 +92,16 @@ def exported(
         ),
         tuple(Variable(i.name, i.unit, 0.0, i.description) for i in whole.plain.inputs),
         tuple(Variable(o.name, o.unit, 0.0, o.description) for o in whole.outputs),
-        tuple(
-            Variable(p.name, p.unit, values.get(p.name, 1.0), p.description, *p.bounds, is_switch=p.name in switches)
-            for p in whole.declared_parameters
-        ),
+        tuple(_parameter(p, values.get(p.name, 1.0), is_switch=p.name in switches) for p in whole.declared_parameters),
         step if step is not None else _sample_time(whole),
         hold,
         delays,
     )
+
+
+def _parameter(declared: Parameter, value: float, is_switch: bool) -> Variable:
+    told = with_pitch(declared.description, value, declared.unit)
+    return Variable(declared.name, declared.unit, value, told, *declared.bounds, is_switch=is_switch)
 
 
 def _switchable(model: GreyBoxModel) -> tuple[GreyBoxModel, set[str]]:

@@ -9,6 +9,7 @@ from typing import Any
 import torch
 
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
+from greybox_torch.mechanisms.pitch import order_told
 from greybox_torch.model import Parameter, Signals
 
 HARMONICS = 3
@@ -49,17 +50,18 @@ def strongest_alone(
 
 
 def wave_parameters(around: Surroundings, order: float, harmonics: int, unit: str | None = None) -> list[Parameter]:
-    """Amplitudes, zero to begin with, and the order: periods per turn.
+    """Amplitudes, zero to begin with, and the order: periods per turn, or radians per travel where the position is no angle.
 
     Args:
         unit: of the amplitudes; by default that of a force at the port.
     """
     size = around.force_unit if unit is None else unit
+    per_travel, what = order_told(around.units.get("position", ""))
     told = {"a": "cosine amplitude", "b": "sine amplitude"}
     waves = [(n, k) for k in range(1, harmonics + 1) for n in amplitudes(k)]
     return [
         *(Parameter(n, 0.0, size, description=f"{told[n[0]]}{f' at {k} orders' if k > 1 else ''}") for n, k in waves),
-        Parameter("order", order, "", lower=order / OCTAVE, upper=OCTAVE * order, description="periods per turn"),
+        Parameter("order", order, per_travel, lower=order / OCTAVE, upper=OCTAVE * order, description=what),
     ]
 
 

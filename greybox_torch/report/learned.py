@@ -1,4 +1,7 @@
-"""The figure of what a network has learned: its mean force over each signal with a band, and the laws that were put in its place."""
+"""The figure of what a network has learned: its mean force over each signal with a band, and the laws that were put in its place.
+
+A law is estimated together with the physics, which then may hold a constant that the network held before, or the other way round.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +11,17 @@ import torch
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.mechanisms.matching import law_force
+from greybox_torch.report import text
 from greybox_torch.report.style import STYLE, dots_within, with_unit
 from greybox_torch.training import Explanation, Trained
 from greybox_torch.training.learned_force import SignalCurve
+
+MOVED = "laws are drawn with a constant that the physics,\nestimated anew with them, takes over"
+
+HARDLY_SEEN = 0.02
+"""Share of the learned curve's height by which a law that lies beside it is drawn where it is."""
 
 LAW_COLOURS = ("#c8553d", "#6a7f3f", "#8a5fa8")
 
@@ -39,13 +49,27 @@ def _draw(axes: Axes, curve: SignalCurve) -> None:
     axes.fill_between(curve.values, low, high, color="#0b6e99", alpha=0.2, linewidth=0, label="two deviations")
     axes.plot(curve.values, curve.force, color="#0b6e99", linewidth=1.6, label="learned")
     axes.axhline(0.0, color="black", linewidth=0.6)
-    axes.set_title(f"explains {100 * curve.share:.0f} % of its variance", fontsize=9)
+    told = f"{100 * curve.share:.0f} % of the learned force's variance is a function of {curve.signal} alone"
+    axes.set_title(told, fontsize=9)
 
 
 def _draw_laws(axes: Axes, curve: SignalCurve, found: Trained, explained: Explanation) -> None:
     around = found.hybrid.surroundings[found.hybrid.network.port]
     values = np.linspace(curve.values[0], curve.values[-1], 300)
+    unit, moved = around.force_unit, False
     drawn = [term for term in explained.terms if term.match is not None]
     for term, colour in zip(drawn, LAW_COLOURS, strict=False):
-        force = law_force(term.attachment.mechanism, around, {curve.signal: torch.as_tensor(values)}, term.parameters)
-        axes.plot(values, force, "--", color=colour, linewidth=1.1, label=term.attachment.mechanism.name)
+        mechanism = term.attachment.mechanism
+        force = law_force(mechanism, around, {curve.signal: torch.as_tensor(values)}, term.parameters)
+        offset = offset_of(curve, values, force)
+        moved |= offset != 0.0
+        by = f" {'+' if offset > 0 else '−'} {text.with_unit(digits(abs(offset)), unit)}" if offset else ""
+        axes.plot(values, force + offset, "--", color=colour, linewidth=1.1, label=f"{mechanism.name}{by}")
+    if moved:
+        axes.text(0.02, 0.03, MOVED, transform=axes.transAxes, fontsize=7, va="bottom")
+
+
+def offset_of(curve: SignalCurve, values: np.ndarray, force: np.ndarray) -> float:
+    """By how much the learned curve lies above a law's ``force`` (N,) over ``values`` (N,) in the mean; zero where that is hardly seen."""
+    offset = float(np.mean(curve.force - np.interp(curve.values, values, force)))
+    return offset if abs(offset) > HARDLY_SEEN * float(np.ptp(curve.force)) else 0.0

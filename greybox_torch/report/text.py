@@ -25,6 +25,9 @@ _GREEK = {
 MOST_DIGITS = 8
 """Of a value whose standard deviation is next to nothing: seen were more than a hundred, off the page."""
 
+LOST = 10.0
+"""Times its size that a value's deviation is, from which its place leaves nothing of it."""
+
 
 def number(value: float, digits: int = 3) -> str:
     """So many significant digits, a true minus sign, a power of ten only where plain digits would be hard to read."""
@@ -40,9 +43,11 @@ def number(value: float, digits: int = 3) -> str:
 
 
 def measured(value: float, deviation: float | None) -> str:
-    """A value with its standard deviation: two digits of that, and the value to the same place."""
+    """A value with its standard deviation: two digits of that, and the value to the same place; to three digits where none were left."""
     if deviation is None or not math.isfinite(deviation) or deviation <= 0 or not math.isfinite(value):
         return number(value, 4)
+    if deviation >= LOST * abs(value) > 0:
+        return f"{number(value)} ± {number(deviation, 2)}"
     place = 1 - math.floor(math.log10(deviation))
     largest = math.floor(math.log10(max(abs(value), deviation)))
     if -4 <= largest < 6 and place <= 7:

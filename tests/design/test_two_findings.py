@@ -87,7 +87,11 @@ def test_what_is_decided_is_not_recorded(two_found, tmp_path, in_verdict: float,
 def test_what_is_left_all_the_same_is_told(two_found, tmp_path) -> None:
     """Seen: "there is nothing to record", where the verdict says that 51 times the noise is left, and repeatable."""
     *_, final, other = two_found.found.rivals
-    left = Left(0.06, 51.0, "6 % of the mismatch remains: 51 times the noise.")
+    left = Left(
+        0.06,
+        51.0,
+        "6 % of the mismatch remains: 51 times the noise. On the experiments that it was estimated from, all is well.",
+    )
     verdict = replace(two_found.verdict, left=left)
     rivals = (replace(final, probability=0.97), replace(other, probability=1e-5))
     sure = replace(two_found, found=replace(two_found.found, verdict=verdict, rivals=rivals))

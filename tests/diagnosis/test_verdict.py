@@ -187,6 +187,6 @@ def test_where_the_error_without_a_name_is(second: float, words: str) -> None:
     both = tuple(Score("Run 2", "validation", name, fit, 0.3) for name, fit in (("speed", 72.0), ("heat", second)))
     told = replace(verdict(), unexplained=12.0, scores={"start": both, "refit": both, "augmented": both}).sentence
     assert (
-        f"Something is missing from Motor: {words} 12 times the noise that the recordings' highest frequencies show."
-        in told
+        f"Something is missing from Motor: {words} at least 12 times the noise that the recordings' highest frequencies show, over short "
+        "windows and in free runs alike." in told
     )

@@ -25,6 +25,15 @@ def test_findings_that_are_alike_are_one() -> None:
     ]
 
 
+def test_lists_with_names_in_common_are_one() -> None:
+    """Seen: "m_p and m_p: of each, cannot be told apart", where two lists began alike, and a third one besides."""
+    lists = [["a", "b", "c", "d", "e", "f"], ["x", "y"], ["a", "b", "c", "d", "e", "g"], ["b", "h"]]
+    steps = [Direction(tuple(names), (1.0,) * len(names), (True,) * len(names)) for names in lists]
+    found = [Unidentifiable("start", s.names, s.changes, sentence("start", s)) for s in steps]
+    whole = Direction(tuple("abcdefgh"), (1.0,) * 8, (True,) * 8)
+    assert brief_sentences(found) == [found[1].sentence, sentence("start", whole)]
+
+
 def test_one_finding_is_told_as_it_is() -> None:
     assert brief_sentences([unmoved("a")]) == [unmoved("a").sentence]
     assert brief_sentences([weak("a", 2.0)]) == [weak("a", 2.0).sentence]

@@ -121,7 +121,11 @@ def test_an_error_that_nothing_explains(of_kind: Callable[[str], Verdict], about
     unexplained = replace(of_kind("nothing"), unexplained=12.0)
     text = Page(render_page(unexplained, about)).text
     assert "Something is missing" in text and "12 times the noise" in text and "that something is missing" in text
-    assert "Nothing is missing" not in text
+    assert "Nothing is missing" not in text and "search says that was stopped" not in text
+    assert (
+        "as far as a search says that was stopped"
+        in Page(render_page(replace(unexplained, complete=False), about)).text
+    )
 
 
 def test_every_picture_is_told_in_words(verdict: Verdict, about: About) -> None:

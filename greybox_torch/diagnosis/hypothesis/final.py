@@ -105,7 +105,7 @@ def _weighed(hypothesis: Hypothesis, begun: Sequence[Problem], records: Records 
     if found is None:
         return None
     run, fit = found
-    return Final(run.at(fit.point), of_information(fit.information), weighed=True)
+    return Final(run.at(fit.point), of_information(fit.information, by_samples=True), weighed=True)
 
 
 def from_longest_windows(hypothesis: Hypothesis) -> Final:

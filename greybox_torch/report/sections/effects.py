@@ -136,6 +136,9 @@ def _parameters(effect: Effect) -> tuple[ParameterRow, ...]:
         rows.append(
             ParameterRow(text.symbol(name), entry.get("description", ""), shown, text.unit(entry.get("unit", "")))
         )
+        if pitch := effect.pitch(name):
+            told = "travel in which it repeats, 2 pi over the order"
+            rows.append(ParameterRow(text.symbol("pitch"), told, text.measured(*pitch[:2]), text.unit(pitch[2])))
     return tuple(rows)
 
 

@@ -93,4 +93,6 @@ def _errors(verdict: Verdict) -> list[Figure]:
 
 def _confidence(verdict: Verdict) -> Figure:
     what = "that something is missing" if verdict.mismatch else "that these recordings show nothing more"
+    if not verdict.effects and not verdict.complete:
+        what += ", as far as a search says that was stopped"
     return Figure("Confidence", "", f"{verdict.confidence:.2f}", what)

@@ -123,10 +123,12 @@ class _Stretch:
 
 
 def _chart(trace: Trace, mismatch: bool, inputs: Sequence[InputTrace], experiment: int, most: int) -> Chart:
-    runs, worst = series(trace, mismatch), _worst(trace)
+    runs = series(trace, mismatch)
+    worst = _worst(trace, list(runs.values())[-1])
+    where = "detail where the error after is largest" if mismatch else "detail where the error is largest"
     detail = float(trace.time[worst][0]), float(trace.time[worst][-1])
     columns = []
-    for part, title in ((slice(None), "whole record"), (worst, "detail where the error was largest")):
+    for part, title in ((slice(None), "whole record"), (worst, where)):
         x, closer = linear(trace.time[part], room=0.0), part is not worst
         shade = (span(x, *detail, "detail"),) if closer else ()
         here = _Stretch(trace, runs, part, x, shade, detail, closer)
@@ -200,10 +202,10 @@ def _extent(trace: Trace) -> tuple[float, float]:
     return float(np.nanmin(trace.measured)), float(np.nanmax(trace.measured))
 
 
-def _worst(trace: Trace) -> slice:
-    """The stretch with the largest error before, at least forty samples long."""
+def _worst(trace: Trace, simulated: np.ndarray) -> slice:
+    """The stretch with the largest error of a run (N,), at least forty samples long."""
     size = min(len(trace.time), max(40, round(DETAIL * len(trace.time))))
-    error = np.nan_to_num(trace.measured - trace.refit, posinf=1e100, neginf=-1e100).clip(-1e100, 1e100) ** 2
+    error = np.nan_to_num(trace.measured - simulated, posinf=1e100, neginf=-1e100).clip(-1e100, 1e100) ** 2
     total = np.cumsum(np.concatenate([[0.0], error]))
     begin = int(np.argmax(total[size:] - total[:-size])) if len(error) > size else 0
     return slice(begin, begin + size)

@@ -58,6 +58,21 @@ def test_only_the_whole_record_can_be_looked_closer_at(with_traces: Callable[...
     assert all(panel.live is None for panel in detail)
 
 
+def test_the_detail_is_where_the_recommended_model_is_worst(with_traces: Callable[..., Verdict]) -> None:
+    """Seen: 0.3 s in which the error was nil, as the model without effects was worst there; 0.15 m at 6 s were not shown."""
+    verdict = with_traces(("A", "validation", 1.0))
+    (trace,) = verdict.traces
+    count = len(trace.time)
+    early, late = (np.arange(count) < count // 10), (np.arange(count) >= count - count // 20)
+    worse = replace(trace, refit=trace.measured - 5.0 * early, augmented=trace.measured - 1.0 * late)
+    (one,) = drawn(replace(verdict, traces=(worse,))).charts
+    detail = one.chart.columns[1][0]
+    assert detail.title == "detail where the error after is largest"
+    assert detail.x.low > trace.time[count // 2]
+    plain = drawn(replace(verdict, traces=(worse,), effects=())).charts[0].chart.columns[1][0]
+    assert plain.title == "detail where the error is largest" and plain.x.high < trace.time[count // 2]
+
+
 def test_held_inputs_are_steps(with_traces: Callable[..., Verdict], about: About) -> None:
     verdict = with_inputs(with_traces(("A", "validation", 1.0)))
     held = replace(verdict, inputs=tuple(replace(one, held=True) for one in verdict.inputs))
