@@ -16,6 +16,7 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share, negligible
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.one_of import spoken_at
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.remaining import leaves_little
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
@@ -26,6 +27,9 @@ from greybox_torch.mechanisms.attachment import Attachment
 
 NEARLY_ALL = 0.999
 """Share that an effect removes from which its interval would be 100.0 to 100.0 %."""
+
+SPEAKS = 0.01
+"""Gain by parameters that come nearer to the card's values from which it is told."""
 
 
 def sentences(
@@ -97,15 +101,15 @@ def begun(sentence: str) -> str:
 
 def _step_sentence(done: SelectionStep, study: Study, plain: Hypothesis) -> str:
     """What a forward step took beside what was found on top of ``plain``, or why it took nothing."""
-    if done.taken is not None:
+    if (taken := done.taken) is not None:
         preferred = (
             ""
             if done.led is None
             else f" By the recordings alone {_name(done.led.candidate.attachment)} would come first; what is believed beforehand decides."
         )
         return (
-            f"{_name(done.taken.candidate.attachment)} lowers the mean squared error by a factor {digits(np.exp(done.taken.gain), 3)}, "
-            f"{done.taken.significance:.1f} standard errors away from chance.{preferred}"
+            f"{_name(taken.candidate.attachment)} lowers the mean squared error by a factor {digits(np.exp(taken.of_errors), 3)}, "
+            f"{taken.significance:.1f} standard errors away from chance.{_plausible(taken)}{preferred}"
         )
     settings = study.settings
     little = bool(done.parent.effects) and leaves_little(study, plain, done.parent)
@@ -114,15 +118,24 @@ def _step_sentence(done: SelectionStep, study: Study, plain: Hypothesis) -> str:
             return f"{_little(settings)}: no further candidate promised in the screen to leave noise alone."
         return "No further candidate promised enough in the screen to be refitted."
     best = done.ranked[0]
-    if best.gain <= 0:
+    if best.of_errors <= 0:
         return f"The best further candidate, {_name(best.candidate.attachment)}, would not lower it."
     lowers = (
-        f"The best further candidate, {_name(best.candidate.attachment)}, would lower it by {100 * (1 - np.exp(-best.gain)):.2g} % "
+        f"The best further candidate, {_name(best.candidate.attachment)}, would lower it by {100 * (1 - np.exp(-best.of_errors)):.2g} % "
         f"({best.significance:.1f} standard errors)"
     )
     if little:
         return f"{lowers}. {_little(settings)}, of which only what leaves noise alone is claimed."
     return f"{lowers}; claimed is what exceeds {100 * least_gain(best.fitted, settings):.0f} % and chance."
+
+
+def _plausible(taken: RankedCandidate) -> str:
+    """What else speaks for a candidate: parameters that without it are orders of magnitude from where the card has them."""
+    if taken.plausible <= SPEAKS:
+        return ""
+    return (
+        " Without it, parameters of the model become smaller or larger than the card's values by orders of magnitude."
+    )
 
 
 def _little(settings: DiagnosisSettings) -> str:
@@ -137,7 +150,7 @@ def _memory_sentence(done: SelectionStep) -> str:
     best = done.ranked[0]
     return (
         f"{asked}: the best, {_name(best.candidate.attachment)}, alone lowers the mean squared error of the model as it stands by a factor "
-        f"{digits(np.exp(best.gain), 3)}."
+        f"{digits(np.exp(best.of_errors), 3)}."
     )
 
 

@@ -205,7 +205,7 @@ def _elsewhere(study: Study, candidate: Candidate, trial: Hypothesis) -> list[di
 
 def _score_over(fitted: Hypothesis, steps: int) -> float:
     """The score over windows of one length, in steps."""
-    return score_of([f for f in fitted.fits if f.windows.steps == steps], fitted.floor)
+    return score_of([f for f in fitted.fits if f.windows.steps == steps], fitted.floor) + fitted.implausible
 
 
 def _pays(study: Study, ranked: RankedCandidate) -> bool:

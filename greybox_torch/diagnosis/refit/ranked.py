@@ -27,6 +27,13 @@ class RankedCandidate:
     significance: float
     cost: float | None = None
     """Negative logarithm of the likelihood of whole records, errors coloured, where others fit windows alike and noise alone is left."""
+    plausible: float = 0.0
+    """How much of the gain is that the model's parameters are not as far from the card's values as without it."""
+
+    @property
+    def of_errors(self) -> float:
+        """How much of the gain is that of the logarithm of the mean squared error."""
+        return self.gain - self.plausible
 
     @property
     def unknown(self) -> bool:
@@ -70,9 +77,8 @@ def judged(
     candidate: Candidate, before: Hypothesis, fitted: Hypothesis, settings: DiagnosisSettings
 ) -> RankedCandidate:
     """A refit compared with the hypothesis ``before`` it."""
-    return RankedCandidate(
-        candidate, fitted, before.score - fitted.score, window_significance(before, fitted, settings)
-    )
+    gain, plausible = before.score - fitted.score, before.implausible - fitted.implausible
+    return RankedCandidate(candidate, fitted, gain, window_significance(before, fitted, settings), plausible=plausible)
 
 
 def sound(study: Study, ranked: RankedCandidate) -> bool:

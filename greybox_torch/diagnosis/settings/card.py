@@ -1,4 +1,4 @@
-"""Thresholds by which the card's parameter values speak for an effect that the recordings cannot show."""
+"""Thresholds by which the card's parameter values speak for an effect that the recordings cannot show, or against a hypothesis."""
 
 from __future__ import annotations
 
@@ -11,6 +11,14 @@ from greybox_torch.diagnosis.settings.fields import number, share
 class CardSettings:
     """What moves of re-estimated parameters from the card's values say."""
 
+    implausible_decade: float = number(
+        0.05,
+        "By how much a hypothesis is worse for each of the model's parameters per squared decade, beyond the first, from the card's value; "
+        "of what vanishes two decades count.",
+        unit="logarithm of the mean squared error",
+        chosen_by="guesses are right within a factor of ten; an arm whose stiffness vanished took up friction to a tenth of the error",
+        least=0.0,
+    )
     most_scatter_of_card: float = share(
         0.1,
         "How far the parameters may lie from the card's values, a gain error allowed for, where these are to speak for it; parameters "

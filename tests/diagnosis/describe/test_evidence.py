@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.confirm.held_out import Gain
@@ -9,6 +10,7 @@ from greybox_torch.diagnosis.describe import evidence
 from greybox_torch.diagnosis.describe.effects import ceiling_share
 from greybox_torch.diagnosis.describe.evidence import _held_out, _step_sentence, ceiling_sentence, detection_sentences
 from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest, Remains
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.select import remaining
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
@@ -105,10 +107,21 @@ def test_what_was_not_claimed_and_why(stub, monkeypatch: pytest.MonkeyPatch, sha
     monkeypatch.setattr(remaining, "remaining_share", lambda plain, parent, settings: share)
     monkeypatch.setattr(evidence, "least_gain", lambda fitted, settings: 0.05)
     monkeypatch.setattr(evidence, "_name", lambda attachment: "torque ripple at rotor")
-    best = stub(gain=1.14, significance=12.8, candidate=stub(attachment=None), fitted=None)
+    best = stub(of_errors=1.14, significance=12.8, candidate=stub(attachment=None), fitted=None)
     step = stub(taken=None, ranked=(best,), parent=stub(effects=("friction",)))
     said = _step_sentence(step, stub(settings=DiagnosisSettings(), more_is_missing=False), stub())
     assert said == f"The best further candidate, torque ripple at rotor, would lower it by 68 % {claimed}"
+
+
+@pytest.mark.parametrize("plausible", [0.0, 0.2])
+def test_a_gain_of_errors_is_told_apart_from_that_of_plausible_parameters(stub, monkeypatch, plausible) -> None:
+    """The error is lower by a factor of 1.1; the rest of the gain is that a stiffness no longer vanishes."""
+    monkeypatch.setattr(evidence, "_name", lambda attachment: "Coulomb asymmetry at motor")
+    taken = RankedCandidate(stub(attachment=None), stub(), np.log(1.1) + plausible, 7.7, plausible=plausible)
+    said = _step_sentence(stub(taken=taken, led=None), stub(), stub())
+    lowers = "Coulomb asymmetry at motor lowers the mean squared error by a factor 1.1, 7.7 standard errors away from chance."
+    assert said.startswith(lowers)
+    assert said.endswith("than the card's values by orders of magnitude.") is bool(plausible)
 
 
 def test_none_was_refitted_where_little_was_left(stub, monkeypatch: pytest.MonkeyPatch) -> None:
