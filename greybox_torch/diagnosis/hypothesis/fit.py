@@ -46,7 +46,9 @@ class Hypothesis:
     frozen: frozenset[str] = frozenset()
     """Parameters that were kept as they are though they are free."""
     implausible: float = 0.0
-    """What its score is worse for parameters that are orders of magnitude from the card's, see :func:`implausibility`."""
+    """What the score of the model as it stands is worse for parameters that are orders of magnitude from the card's values.
+
+    Not with effects, which may stand for what a parameter did: a curve of friction for the model's own."""
 
     @property
     def score(self) -> float:
@@ -122,11 +124,6 @@ def hypothesis(
     limits, fits = limits or budget.window_iterations, []
     as_far = partial(_as_far_as_counts, base, limits, settings, budget, rough)
     at_end = partial(at_floor, base, settings=settings)
-
-    def judged(fit: WindowFit) -> float:
-        """The mean squared error, larger where the parameters are implausible."""
-        return fit.mean_square * float(np.exp(implausibility(base, fit.problem, settings)))
-
     at = at or window_lengths(base, budget)
     known_places = [*(() if before is None else before.fits[:1]), *(() if shorter is None else (shorter,))]
     problems, first = with_common_positions(problems, first, simulator, at[0], known_places, budget, rough, places)
@@ -136,14 +133,14 @@ def hypothesis(
         trials = _distinct([f.problem for f in fits[-1:]] + problems + ([] if fits else first), known)
         stood = None if beside is None or not fits else _over(cut(base.records, length), beside.fits)
         also = None if there is None or stood is None else (there, stood)
-        fit = _best_fit(trials, known, simulator, length, shorter, as_far, at_end, budget, also, judged)
+        fit = _best_fit(trials, known, simulator, length, shorter, as_far, at_end, budget, also)
         if fit is None:
             return None
         lost = fits and reaches_noise(base, fits[-1], settings) and not reaches_noise(base, fit, settings)
         fits.append(states_first(base, fit, fits, simulator, length, limits, settings, budget) if lost else fit)
         shorter = fits[-1]
     fits = no_worse_than_longer(fits, at, simulator, limits)
-    implausible = implausibility(base, fits[-1].problem, settings)
+    implausible = 0.0 if effects else implausibility(base, fits[-1].problem, settings)
     return Hypothesis(tuple(effects), model, simulator, tuple(fits), _floor(base, settings), frozen, implausible)
 
 
@@ -177,14 +174,12 @@ def _best_fit(
     at_end: Callable[[WindowFit], bool],
     budget: SearchBudget,
     beside: tuple[Problem, WindowFit] | None = None,
-    judged: Callable[[WindowFit], float] = lambda fit: fit.mean_square,
 ) -> WindowFit | None:
     """The best that the trials lead to.
 
     Args:
         at_end: whether no other start could lead farther.
         beside: one more trial, and the fit that its start states come from.
-        judged: by which the best is chosen.
     """
     begin = partial(fit_windows, simulator=simulator, length=length, shorter=shorter, settings=budget.first_iterations)
     leading, others = known, trials
@@ -199,13 +194,13 @@ def _best_fit(
         begun.append(
             fit_windows(problem, simulator, length, shorter=stood, settings=budget.first_iterations, rival=rival)
         )
-    found = sorted((fit for fit in begun if fit is not None), key=judged)
+    found = sorted((fit for fit in begun if fit is not None), key=lambda f: f.mean_square)
     if not found:
         return None
     ended = side_by_side(
         partial(continued, fit, simulator, length, limits_of(fit), budget) for fit in _apart(found, budget)
     )
-    return min(ended, key=judged)
+    return min(ended, key=lambda f: f.mean_square)
 
 
 def _as_far_as_counts(

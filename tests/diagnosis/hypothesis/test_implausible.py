@@ -1,4 +1,4 @@
-"""Parameters that are orders of magnitude from the card's values speak against a hypothesis."""
+"""Parameters that are orders of magnitude from the card's values speak against the model as it stands."""
 
 from __future__ import annotations
 
