@@ -1,4 +1,4 @@
-"""Thresholds by which the card's parameter values speak for an effect that the recordings cannot show, or against the model as it stands."""
+"""Thresholds by which the card's parameter values speak for an effect that the recordings cannot show, or against the model."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class CardSettings:
 
     implausible_decade: float = number(
         0.05,
-        "By how much the model as it stands is worse for each of its parameters per squared decade, beyond the first, from the card's value; "
+        "By how much the model as it stands is worse for each parameter, per squared decade, beyond the first, from the card's value; "
         "of what vanishes two decades count.",
         unit="logarithm of the mean squared error",
         chosen_by="guesses are right within a factor of ten; an arm whose stiffness vanished took up friction to a tenth of the error",
