@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from greybox_torch.diagnosis.confirm.judgement import Judgement
-from greybox_torch.diagnosis.refit.curve import drawing, may_be_drawn, values_without
+from greybox_torch.diagnosis.refit.curve import drawing, may_be_drawn
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
@@ -37,8 +37,8 @@ def curves_for_names(study: Study, state: SearchState, judged: Judgement) -> Sea
     for law in (e for e in state.effects if e.prefix in curves):
         curve = curves[law.prefix]
         heights = drawing(drawn, law, curve, study.surroundings)
-        values = {n: v for n, v in values.items() if n in values_without(drawn, law)}
-        values |= {n: v for n, v in heights.items() if n.startswith(f"{curve.prefix}.")}
+        rest = {n: v for n, v in values.items() if not n.startswith(f"{law.prefix}.")}
+        values = rest | {n: v for n, v in heights.items() if n.startswith(f"{curve.prefix}.")}
     effects = tuple(curves.get(e.prefix, e) for e in state.effects)
     fitted = fit(study, effects, [values], drawn.fits[0], limits=study.budget.window_iterations)
     if fitted is None or fitted.score > drawn.score - settings.curve_margin * len(curves):

@@ -149,7 +149,8 @@ def _probability(
 def ceiling_share(done: SelectionStep, memory: SelectionStep | None = None) -> float | None:
     """The share of the best free curve's gain, in the logarithm of the mean squared error, that the named effect of a step reaches.
 
-    At most one, where the law does better than any curve; None where there is no curve beside it in the step.
+    At most one, where the law does better than any curve; None where there is no curve beside it in the step, and where the error is not
+    all that speaks for both.
 
     Args:
         memory: the step in which residuals with memory were offered, where there was one: fitted in the same place they count as curves.
@@ -158,6 +159,8 @@ def ceiling_share(done: SelectionStep, memory: SelectionStep | None = None) -> f
     if memory is not None and memory.parent.effects == done.parent.effects:
         gains += [r.gain for r in memory.ranked]
     if done.taken is None or done.taken.unknown or not gains or done.taken.gain <= 0:
+        return None
+    if done.taken.plausible > 0.0:
         return None
     return round(done.taken.gain / max(done.taken.gain, *gains), 4)
 

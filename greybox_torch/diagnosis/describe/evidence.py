@@ -29,7 +29,7 @@ NEARLY_ALL = 0.999
 """Share that an effect removes from which its interval would be 100.0 to 100.0 %."""
 
 SPEAKS = 0.01
-"""Gain by parameters that come nearer to the card's values from which it is told."""
+"""Gain by parameters far from the card's values from which it is told."""
 
 
 def sentences(
@@ -64,9 +64,7 @@ def sentences(
         )
     kept = {e.prefix for e in effects} | {a.prefix for a in state.effects}  # refinements are in the model, too
     taken = [done.taken.candidate.attachment for done in state.steps if done.taken is not None]
-    lost = [_name(a) for a in taken if f"{a.port}.{a.mechanism.name}" not in kept]
-    if lost:
-        lines.append(f"Removed again, as other experiments or effects do not confirm it: {', '.join(lost)}.")
+    lines += _removed([a for a in taken if f"{a.port}.{a.mechanism.name}" not in kept], state)
     if dataset.held_out_by_default:
         lines.append(
             "No experiment had the role 'validation': the last quarter of every experiment was held out for judging."
@@ -74,6 +72,16 @@ def sentences(
     if interrupted:
         lines.append(STOPPED)
     return tuple(begun(line) for line in lines)
+
+
+def _removed(lost: Sequence[Attachment], state: SearchState) -> list[str]:
+    """What was taken and is not told: names in whose place a free curve stands, and those that nothing confirms."""
+    curves = {a.port for a in state.effects if a.mechanism.free}
+    replaced = [_name(a) for a in lost if a.port in curves and not a.mechanism.free]
+    others = [_name(a) for a in lost if a.port not in curves or a.mechanism.free]
+    told = [(f"A free curve stands in the place of {', '.join(replaced)}.", replaced)]
+    told.append((f"Removed again, as other experiments or effects do not confirm it: {', '.join(others)}.", others))
+    return [sentence for sentence, names in told if names]
 
 
 def _held_out(gain: Gain) -> tuple[str, str]:
@@ -130,12 +138,10 @@ def _step_sentence(done: SelectionStep, study: Study, plain: Hypothesis) -> str:
 
 
 def _plausible(taken: RankedCandidate) -> str:
-    """What else speaks for a candidate: parameters that without it are orders of magnitude from where the card has them."""
+    """What else speaks for a candidate: that the model as it stands is estimated with parameters orders of magnitude from the card's."""
     if taken.plausible <= SPEAKS:
         return ""
-    return (
-        " Without it, parameters of the model become smaller or larger than the card's values by orders of magnitude."
-    )
+    return " It also counts that the model as it stands is estimated with parameters more than ten times from where they began."
 
 
 def _little(settings: DiagnosisSettings) -> str:

@@ -28,7 +28,7 @@ class RankedCandidate:
     cost: float | None = None
     """Negative logarithm of the likelihood of whole records, errors coloured, where others fit windows alike and noise alone is left."""
     plausible: float = 0.0
-    """How much of the gain is that the model's parameters are not as far from the card's values as without it."""
+    """How much of the gain is that the model as it stands has parameters far from the card's values, where that is what came before."""
 
     @property
     def of_errors(self) -> float:

@@ -75,7 +75,7 @@ def _from_there(
 
 def _from_better_parent(study: Study, ranked: RankedCandidate, fitted: Hypothesis, parent: Hypothesis) -> Hypothesis:
     """A front runner that its improved parent has left behind, polished from where that has the parameters: it contains the parent, so
-    that less is a local minimum."""
+    that less is a local minimum. Not one that is behind in its error alone, where the parent has parameters that no machine has."""
     behind = fitted.score > parent.score - study.settings.score_tie
     if not behind or ranked.unknown:
         return fitted

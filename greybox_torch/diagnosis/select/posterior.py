@@ -238,7 +238,7 @@ def confidence(
     above = times_noise(study.problem, state.current, settings) > settings.above_noise
     if (above or free > settings.free_runs_to_doubt_nothing) and not negligible(study, state.plain):
         return settings.confidence_nothing_above_noise
-    best = max((r.gain for r in state.steps[-1].ranked), default=0.0) if state.steps else 0.0
+    best = max((r.of_errors for r in state.steps[-1].ranked), default=0.0) if state.steps else 0.0
     return settings.confidence_nothing if best < settings.least_gain else settings.confidence_nothing_with_rivals
 
 

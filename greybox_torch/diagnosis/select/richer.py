@@ -143,7 +143,8 @@ def _of_the_other(
 
 def _beside_rivals(plain: RankedCandidate, form: RankedCandidate) -> RankedCandidate:
     """A form as its step has its rivals: with what it gains on the hypothesis that these build on, not on the plain form alone."""
-    return replace(form, gain=plain.gain + form.gain, significance=max(plain.significance, form.significance))
+    both = {n: getattr(plain, n) + getattr(form, n) for n in ("gain", "plausible")}
+    return replace(form, **both, significance=max(plain.significance, form.significance))
 
 
 def _improves(study: Study, found: RankedCandidate) -> bool:

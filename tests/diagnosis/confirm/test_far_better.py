@@ -112,3 +112,16 @@ def test_where_all_effects_remove_too_little_it_is_enough_that_fewer_remove_more
     monkeypatch.setattr(module, "take_back_weakest", lambda *args: fewer)
     found = far_better(study, state, stub(places=lambda hypothesis: {}), {}, judgement(stub, left, alone))
     assert found == ((fewer, {"friction": SURE}, alone) if taken else None)
+
+
+@pytest.mark.parametrize(("left", "by_curves", "taken"), [(0.04, 0.014, True), (0.04, 0.03, False), (0.04, 1.5, False)])
+def test_curves_stand_in_the_place_of_several_names_where_free_runs_leave_far_less(
+    monkeypatch, stub, study, left: float, by_curves: float, taken: bool
+) -> None:
+    """Seen: radiation of three zones, told as a threshold and two leaks."""
+    state = stub(effects=("threshold", "leak"), compared_without=True, current="names", has_curve=False)
+    curves = stub(effects=("unknown 1", "unknown 2"), compared_without=True, current="curves", has_curve=True)
+    monkeypatch.setattr(module, "curves_for_names", lambda *args: curves)
+    drawn = judgement(stub, by_curves)
+    found = far_better(study, state, stub(places=lambda h: {}), {}, judgement(stub, left, drawn))
+    assert found == ((curves, {"friction": SURE}, drawn) if taken else None)

@@ -8,7 +8,13 @@ import pytest
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe import evidence
 from greybox_torch.diagnosis.describe.effects import ceiling_share
-from greybox_torch.diagnosis.describe.evidence import _held_out, _step_sentence, ceiling_sentence, detection_sentences
+from greybox_torch.diagnosis.describe.evidence import (
+    _held_out,
+    _removed,
+    _step_sentence,
+    ceiling_sentence,
+    detection_sentences,
+)
 from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest, Remains
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.select import remaining
@@ -70,7 +76,7 @@ def test_no_estimation_experiment_that_could_be_followed() -> None:
 )
 def test_share_of_the_ceiling(stub, named, curves, share) -> None:
     """The best free curve of the round is what any law of one signal could reach."""
-    taken = stub(gain=named, unknown=False)
+    taken = stub(gain=named, unknown=False, plausible=0.0)
     others = [stub(gain=gain, unknown=True) for gain in curves]
     assert ceiling_share(stub(taken=taken, ranked=(taken, stub(gain=2.0, unknown=False), *others))) == share
 
@@ -121,7 +127,7 @@ def test_a_gain_of_errors_is_told_apart_from_that_of_plausible_parameters(stub, 
     said = _step_sentence(stub(taken=taken, led=None), stub(), stub())
     lowers = "Coulomb asymmetry at motor lowers the mean squared error by a factor 1.1, 7.7 standard errors away from chance."
     assert said.startswith(lowers)
-    assert said.endswith("than the card's values by orders of magnitude.") is bool(plausible)
+    assert said.endswith("more than ten times from where they began.") is bool(plausible)
 
 
 def test_none_was_refitted_where_little_was_left(stub, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -132,3 +138,17 @@ def test_none_was_refitted_where_little_was_left(stub, monkeypatch: pytest.Monke
         said
         == "Less than 2 % of the mismatch was left: no further candidate promised in the screen to leave noise alone."
     )
+
+
+def test_names_in_whose_place_a_curve_stands_are_not_said_to_be_refuted(stub, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(evidence, "_name", lambda attachment: f"{attachment.mechanism.name} at {attachment.port}")
+    leak, lag, curve = (
+        stub(port=port, mechanism=stub(name=name, free=name == "unknown"))
+        for port, name in (("zone", "leak"), ("input", "lag"), ("zone", "unknown"))
+    )
+    state = stub(effects=(curve,))
+    assert _removed([leak, lag], state) == [
+        "A free curve stands in the place of leak at zone.",
+        "Removed again, as other experiments or effects do not confirm it: lag at input.",
+    ]
+    assert _removed([], state) == []
