@@ -126,6 +126,11 @@ class Recording:
     def __len__(self) -> int:
         return len(self.time)
 
+    @property
+    def seconds(self) -> float:
+        """How long it lasts, s: the step after its last sample included."""
+        return float(self.time[-1] - self.time[0]) + self.sample_time
+
     def __repr__(self) -> str:
         units = {name: self.units.get(name) for name in self.signals}
         channels = ", ".join(f"{name} [{unit}]" if unit else name for name, unit in units.items())

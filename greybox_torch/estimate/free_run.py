@@ -106,17 +106,23 @@ class FreeRun:
 
         None where the simulation is not finite, or there are more than :data:`MOST_SENSITIVITIES`.
         """
-        if self.problem.samples * len(z) > MOST_SENSITIVITIES:
+        own = self.n_parameters + int(self.problem.initial_free.sum())  # of one experiment, as the arrays have them
+        if self.problem.records.y.size * own > MOST_SENSITIVITIES:
             return None
         found = self.errors(z)
         if found is None:
             return None
         size, hessian = len(z), np.zeros((len(z), len(z)))
         for e, (_, slopes) in enumerate(found):
-            rows = np.nan_to_num(slopes.reshape(-1, slopes.shape[-1]))
+            rows = slopes.reshape(-1, slopes.shape[-1])
             index = self.columns(e, self.n_parameters, (size - self.n_parameters) // len(found))
             hessian[np.ix_(index, index)] += rows.T @ rows
         return hessian if np.isfinite(hessian).all() else None
+
+    @property
+    def stretch(self) -> int:
+        """Samples of each stretch that :meth:`normals` is by; the last one of an experiment may be shorter."""
+        return self._parallel.links.windows.steps
 
     @cached_property
     def _parallel(self) -> ParallelRun:

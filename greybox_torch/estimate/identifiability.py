@@ -96,7 +96,7 @@ def _nearby(view: Information, here: Quadratic[None], only: int | None = None) -
         point = np.clip(z + away, low, high)
         there = run.quadratic(point) if run.admissible(point) else None
         if there is not None:
-            return replace(view, z=point, hessian=there.hessian)
+            return replace(view, z=point, hessian=there.hessian, by_samples=False)
         away = 0.5 * away
     return None
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import torch
 
-from greybox_torch.data import DataSet, Recording
+from greybox_torch.data import DataSet
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.signals import parameter_signals
@@ -34,7 +34,7 @@ def short_validation(
         constant: the slowest time constant of the machine, in s, where it is known.
         delays: of the machine, in s, by what a reader calls them.
     """
-    validation, estimation = ([seconds(r) for r in own] for own in (data.validation(), data.estimation()))
+    validation, estimation = ([r.seconds for r in own] for own in (data.validation(), data.estimation()))
     if not validation or not estimation or data.held_out_by_default:
         return None
     longest, estimated = max(validation), max(estimation)
@@ -48,11 +48,6 @@ def short_validation(
         return None
     what = "the validation experiment lasts" if len(validation) == 1 else "the longest validation experiment lasts"
     return f"{what} {_shown(longest)}, which is short beside {' and '.join(beside)}: hardly more than its beginning is judged"
-
-
-def seconds(recording: Recording) -> float:
-    """How long a recording lasts, s."""
-    return float(recording.time[-1] - recording.time[0]) + recording.sample_time
 
 
 def slowest_time_constant(model: GreyBoxModel, problem: Problem) -> float | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,10 +56,11 @@ def uncertainty(run: FreeRun, z: np.ndarray, penalty: np.ndarray | None = None) 
     for index, stretches in zip(columns, normals, strict=True):
         hessian[np.ix_(index, index)] += stretches[:, :-1, :-1].sum(axis=0)
     stiff = 0.0 if penalty is None else np.diag(penalty)
-    root, undetermined = _looked_at_closely(run, z, *_root_of_inverse(hessian + stiff), stiff)
+    root, undetermined, closely = _looked_at_closely(run, z, *_root_of_inverse(hessian + stiff), stiff)
+    roots = [root[index] for index in columns]
     meat = np.zeros((root.shape[1], root.shape[1]))
-    for index, stretches in zip(columns, normals, strict=True):
-        meat += long_run_scatter(_without_leverage(stretches, root[index]))
+    for pull, scores in _by_samples(run, z, roots) if closely else map(_in_unit_unknowns, normals, roots):
+        meat += long_run_scatter(_without_leverage(pull, scores))
     total = sum(float(stretches[:, -1, -1].sum()) for stretches in normals)
     variance = total / max(run.problem.samples - size, 1)
     return Uncertainty(variance * root @ root.T, root @ meat @ root.T, undetermined)
@@ -75,15 +77,34 @@ def of_information(information: np.ndarray, *, by_samples: bool = False) -> Unce
     return Uncertainty(covariance, covariance, undetermined)
 
 
-def _without_leverage(stretches: np.ndarray, root: np.ndarray) -> np.ndarray:
-    """Scores (C, r) of stretches in unknowns of unit covariance, as if a stretch had not drawn the estimate to itself.
+def _in_unit_unknowns(stretches: np.ndarray, root: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Curvature (C, r, r) and scores (C, r) of stretches (C, d + 1, d + 1), in unknowns of unit covariance that ``root`` (d, r) gives."""
+    return root.T @ stretches[:, :-1, :-1] @ root, stretches[:, :-1, -1] @ root
+
+
+def _by_samples(run: FreeRun, z: np.ndarray, roots: Sequence[np.ndarray]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """:func:`_in_unit_unknowns` of every experiment from the sensitivities of every sample, where stretches' matrices are not exact enough:
+    in the directions that only these samples determine, their rounding errors are larger than all curvature that there is.
+    """
+    found = run.errors(z)
+    assert found is not None, "looked at before"
+    for (errors, slopes), root in zip(found, roots, strict=True):
+        begins = range(0, len(errors), run.stretch)
+        cut = [slice(begin, begin + run.stretch) for begin in begins]
+        rows = [slopes[one].reshape(-1, slopes.shape[-1]) @ root for one in cut]
+        scores = [own.T @ errors[one].ravel() for own, one in zip(rows, cut, strict=True)]
+        yield np.array([own.T @ own for own in rows]), np.array(scores)
+
+
+def _without_leverage(pull: np.ndarray, scores: np.ndarray) -> np.ndarray:
+    """Scores (C, r) of stretches of curvature ``pull`` (C, r, r) in unknowns of unit covariance, as if a stretch had not drawn the estimate
+    to itself.
 
     A start state matters to few stretches; those follow it so closely that their errors say little about its scatter.
     """
-    pull = root.T @ stretches[:, :-1, :-1] @ root
     values, vectors = eigh(pull)
     freed = np.einsum("crk,ck,csk->crs", vectors, 1.0 / np.sqrt(np.maximum(1.0 - values, 1e-3)), vectors)
-    return np.einsum("crs,cs->cr", freed, stretches[:, :-1, -1] @ root)
+    return np.einsum("crs,cs->cr", freed, scores)
 
 
 def long_run_scatter(scores: np.ndarray) -> np.ndarray:
@@ -111,15 +132,17 @@ def _bandwidth(scores: np.ndarray) -> int:
 
 def _looked_at_closely(
     run: FreeRun, z: np.ndarray, root: np.ndarray, undetermined: tuple[int, ...], stiff: np.ndarray | float
-) -> tuple[np.ndarray, tuple[int, ...]]:
-    """:func:`_root_of_inverse` from the sensitivities of every sample, if that determines more: one stretch that nearly leaves its valley
-    outweighs the others so far that what these tell is lost in rounding where less is known of that.
+) -> tuple[np.ndarray, tuple[int, ...], bool]:
+    """:func:`_root_of_inverse` from the sensitivities of every sample, and whether that determines more; what is given, where it does not.
+
+    One stretch that nearly leaves its valley outweighs the others so far that what these tell is lost in rounding where less is known of
+    that.
     """
     closer = run.by_samples(z) if undetermined and run.simulator.options.precision == "double" else None
     if closer is None:
-        return root, undetermined
+        return root, undetermined, False
     found = _root_of_inverse(closer + stiff, FLAT_BY_SAMPLES)
-    return found if len(found[1]) < len(undetermined) else (root, undetermined)
+    return (*found, True) if len(found[1]) < len(undetermined) else (root, undetermined, False)
 
 
 def _root_of_inverse(hessian: np.ndarray, rounding: float = FLAT) -> tuple[np.ndarray, tuple[int, ...]]:

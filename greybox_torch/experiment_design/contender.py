@@ -29,9 +29,9 @@ class Contender:
     """A model with its values and the ``probability`` of being right, on the recordings that it was estimated from.
 
     ``information`` (n_p, n_p) is what they say of the free parameters: [J]ᵀ[J] of the outputs in units of the errors, over the number of
-    samples that errors are correlated for. ``level`` (n_y,) are the root mean square errors, ``memory`` is that number. ``loops``: the
-    controller that a new recording runs under. ``reach`` (n_x,): the largest size of each state along the recordings. ``begins``: which of
-    these a next recording begins as, but for the states ``begun_with``.
+    samples that errors are correlated for; J as far as it is :func:`trusted`, whatever is designed. ``level`` (n_y,) are the root mean
+    square errors, ``memory`` is that number. ``loops``: the controller that a new recording runs under. ``reach`` (n_x,): the largest size
+    of each state along the recordings. ``begins``: which of these a next recording begins as, but for the states ``begun_with``.
     """
 
     name: str
@@ -233,6 +233,7 @@ def _known(problem: Problem, run: Run) -> tuple[np.ndarray, np.ndarray, float]:
         errors.append(measured - run.y[e, :length])
         own = np.zeros((length, len(measured[0]), count + starts * len(problem.initial)))
         sizes = np.fmax(np.abs(run.y[e, :length]).max(axis=0), np.abs(errors[-1]).max(axis=0))
+        # for every design: derivatives that have grown without bound would determine everything, and let no rival move
         seen, at = trusted(run.dy[e, :length], problem.values[problem.free], sizes), count + e * starts
         own[..., :count], own[..., at : at + starts] = seen[..., :count], seen[..., count:]
         slopes.append(own)

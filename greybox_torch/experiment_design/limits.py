@@ -93,7 +93,7 @@ def limits_of(
             raise UserError(
                 f"{place} {name}: no input, output or state is named so{did_you_mean(name, known)}; expected one of {', '.join(known)}"
             )
-    recorded = max(float(r.time[-1] - r.time[0]) + r.sample_time for r in data.recordings)
+    recorded = max(r.seconds for r in data.recordings)
     seconds = _positive(given.get(SECONDS, recorded), f"{place} {SECONDS}")
     return Limits(
         seconds,

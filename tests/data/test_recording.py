@@ -42,6 +42,7 @@ def test_from_arrays() -> None:
     np.testing.assert_array_equal(found.time, np.arange(N) * 0.01)
     np.testing.assert_array_equal(found.signals["y"], Y)
     assert found.units == {"u": "V"}
+    assert found.seconds == pytest.approx(0.01 * N)
     assert repr(found) == "Recording('run', validation: 20 samples of u [V], y, 0.01 s apart)"
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greybox_torch.estimate import free_run
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.identifiability import identifiability
 from greybox_torch.estimate.problem import make_problem
@@ -43,6 +44,34 @@ def run(data_set: Any) -> FreeRun:
     return FreeRun(problem, Simulator.of(problem.model, problem.free_names))
 
 
+class Shifted(GreyBoxModel):
+    """A sensor's shift that the state all but makes up for: 2e-10 of it are left; its amplifier is switched on late."""
+
+    states = [State("level", "V", initial="measured")]
+    inputs = [Input("pulse", "V"), Input("gain")]
+    outputs = [Output("level", "V")]
+    parameters = [Parameter("size", 1.0), Parameter("shift", 1.0)]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return {"level": 30.0 * (p.size * u.pulse + 0.73 * p.shift - x.level)}
+
+    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+        return {"level": u.gain * (x.level - 0.73 * p.shift) + 2e-10 * p.shift}
+
+
+@pytest.fixture
+def shifted(data_set: Any) -> FreeRun:
+    """Two experiments of 10 s, with white noise."""
+    rng = np.random.default_rng(0)
+    gain, pulse = rng.uniform(0.5, 1.5, 1000), np.eye(1, 1000)[0]
+    gain[:100] *= 0.01
+    units = {"pulse": "V", "gain": "1", "level": "V"}
+    runs = [{"pulse": pulse, "gain": gain, "level": rng.normal(0.0, 1e-3, 1000)} for _ in range(2)]
+    data = data_set(units, runs)
+    problem = make_problem(data, Shifted(), data.recordings)
+    return FreeRun(problem, Simulator.of(problem.model, problem.free_names))
+
+
 def exact(run: FreeRun) -> np.ndarray:
     """The inverse of the information by the singular values of the sensitivities, which rounding hardly touches."""
     found = run.errors(run.start)
@@ -68,3 +97,19 @@ def test_information_that_took_something_off_is_trusted_less() -> None:
     hardly = np.array([[1.0, 1.0 - 1e-13], [1.0 - 1e-13, 1.0]])
     assert of_information(hardly).undetermined == (0, 1)
     assert of_information(hardly, by_samples=True).undetermined == ()
+
+
+def test_the_sandwich_is_of_the_samples_too(shifted: FreeRun) -> None:
+    """By their windows' matrices, which are rounding there, windows drew more than all there is: the deviation was 21 times too large."""
+    found = uncertainty(shifted, shifted.start)
+    assert found.undetermined == ()
+    white, coloured = found.deviations()[1], found.deviations("sandwich")[1]
+    assert coloured == pytest.approx(white, rel=0.3)
+
+
+def test_what_is_held_at_once_is_counted(shifted: FreeRun, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every sample holds the start states of its own experiment alone; a missing one holds them as well."""
+    shifted.problem.records.y[:, :250] = np.nan
+    for held, looked in ((6000, True), (5999, False)):  # 2000 samples, two parameters, and a start state
+        monkeypatch.setattr(free_run, "MOST_SENSITIVITIES", held)
+        assert (shifted.by_samples(shifted.start) is not None) == looked
