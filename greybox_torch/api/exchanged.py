@@ -34,6 +34,9 @@ FAR_BETTER = 0.5
 FOLLOWS = 30.0
 """Mean fit in % that a change has to reach: of free runs that go elsewhere, the one that goes least far says nothing."""
 
+MOST_ALIKE = 28
+"""Exchanges among inputs or among outputs that are simulated, and channels of other sign: the pairs of eight. More are not asked for."""
+
 AS_GOOD = 1.2
 """Times as much that others may leave and be told with it."""
 
@@ -55,27 +58,32 @@ class Change:
 AS_IT_IS = Change({}, "")
 
 
-def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator) -> str | None:
+def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:
     """A question to the user, where exchanging two inputs or two outputs of one unit, or reversing the sign of one channel, makes a short
-    refit far better on the validation experiments; else None.
+    refit far better on the validation experiments than these are as they stand; else None.
+
+    None as well where a channel's first sample lies behind what a short refit takes, so that there is nothing to refit.
 
     Args:
         simulator: of the model, with tangents for its free parameters.
+        achieved: the mean fit in % on the validation experiments of the estimate itself; may be minus infinity.
     """
-    short = _beginnings(data)
-    changes = list(_changes(model))
+    short, changes = _beginnings(data), list(_changes(model))
+    if short is None or not changes:
+        return None
     by_start = {k: _fit(short, model, simulator, change, refitted=False) for k, change in enumerate(changes)}
     tried = sorted(by_start, key=lambda k: -by_start[k])[:REFITTED]
-    left = 100.0 - _fit(short, model, simulator, AS_IT_IS)
+    left = 100.0 - max(_fit(short, model, simulator, AS_IT_IS), achieved if np.isfinite(achieved) else -np.inf)
     lefts = {k: 100.0 - _fit(short, model, simulator, changes[k]) for k in sorted(tried)}
     least = min(lefts.values(), default=np.inf)
     if not least < min(FAR_BETTER * left, 100.0 - FOLLOWS):
         return None
     asked = [changes[k].question for k, one in lefts.items() if one <= AS_GOOD * least]
     question = ", or ".join(asked)
+    as_it_is = f" ({100.0 - left:.3g} % as it is)" if np.isfinite(left) else ""
     return (
         f"{question[0].upper()}{question[1:]}? So changed, a short refit reaches a mean fit of {100.0 - least:.3g} % on "
-        f"{_judging(data)} ({100.0 - left:.3g} % as it is). If so, mend the card's columns or scale; if not, disregard this"
+        f"{_judging(data)}{as_it_is}. If so, mend the card's columns or scale; if not, disregard this"
     )
 
 
@@ -85,24 +93,32 @@ def _judging(data: DataSet) -> str:
 
 def _changes(model: GreyBoxModel) -> Iterator[Change]:
     """Exchanges first: of two that fit alike, they are the likelier slip."""
-    for signals in (model.inputs, model.outputs):
-        for one, other in combinations(signals, 2):
-            if one.unit == other.unit:
-                names = listed([one.name, other.name])
-                yield Change({one.name: other.name, other.name: one.name}, f"are the columns of {names} exchanged")
-    for one in (*model.inputs, *model.outputs):
-        yield Change({one.name: one.name}, f"has {one.name} the other sign", -1.0)
+    sides = (model.inputs, model.outputs)
+    for signals in sides:
+        pairs = [
+            (one.name, other.name) for one, other in combinations(signals, 2) if one.unit and one.unit == other.unit
+        ]
+        for one, other in pairs if len(pairs) <= MOST_ALIKE else ():
+            yield Change({one: other, other: one}, f"are the columns of {listed([one, other])} exchanged")
+    for signals in sides:
+        for signal in signals if len(signals) <= MOST_ALIKE else ():
+            yield Change({signal.name: signal.name}, f"has {signal.name} the other sign", -1.0)
 
 
-def _beginnings(data: DataSet) -> DataSet:
-    """The data set with the beginnings of its experiments, and what the card says of the model."""
+def _beginnings(data: DataSet) -> DataSet | None:
+    """The data set with the beginnings of its experiments, and what the card says of the model; None where one has no sample of a channel
+    there.
+    """
     runs = []
     for recording in data.recordings:
         count = MOST_SAMPLES // sum(other.role == recording.role for other in data.recordings)
         signals = {name: values[:count] for name, values in recording.signals.items()}
         runs.append(replace(recording, time=recording.time[:count], signals=signals))
     own = {"hold": data.hold, "channels": data.channels, "parameters": data.parameters, "initial": data.initial}
-    return DataSet(runs, **own, held_out_by_default=data.held_out_by_default)
+    try:
+        return DataSet(runs, **own, held_out_by_default=data.held_out_by_default)
+    except UserError:  # a sensor that begins late, or more experiments than samples
+        return None
 
 
 def _fit(data: DataSet, model: GreyBoxModel, simulator: Simulator, change: Change, *, refitted: bool = True) -> float:

@@ -108,10 +108,11 @@ def _question(
     data: DataSet, model: GreyBoxModel, refit: Comparison, simulator: Simulator, progress: Callable[[str], None]
 ) -> str | None:
     """Whether channels are exchanged, where the refit is poor and another reading of them is far better."""
-    if mean_fit(held_out_scores(refit.scores)) >= POOR:
+    achieved = mean_fit(held_out_scores(refit.scores))
+    if achieved >= POOR:
         return None
     progress("The validation fit is poor: short refits with channels exchanged, or of the other sign")
-    return exchanged(data, model, simulator)
+    return exchanged(data, model, simulator, achieved)
 
 
 def _compared(data: DataSet, model: GreyBoxModel, found: Estimation, simulator: Simulator) -> dict[str, Comparison]:

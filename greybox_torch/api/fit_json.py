@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -15,15 +15,15 @@ from greybox_torch.estimate.profile import LEVEL, THRESHOLD, Profile
 from greybox_torch.estimate.termination import Termination
 
 
-def estimation_json(found: Estimation, scores: Scores, seconds: float) -> dict[str, Any]:
-    """What the estimation itself came to."""
+def estimation_json(found: Estimation, scores: Scores, seconds: float, given: Collection[str]) -> dict[str, Any]:
+    """What the estimation itself came to; ``given`` are the states that the card gives a start value."""
     problem = found.problem
     return {
         "schema": "greybox-fit/1",
         "seconds": seconds,
         "parameters": parameters_json(found),
         "initial": {name: initial_json(found, e) for e, name in enumerate(problem.records.names)},
-        **({"far_starts": far} if (far := far_starts(problem)) else {}),
+        **({"far_starts": far} if (far := far_starts(problem, given)) else {}),
         "fit": scores_side_by_side(scores),
         "statistics": {
             "mse": found.mse,

@@ -89,7 +89,7 @@ class FitResult(EstimatedModel):
         return f"<fit of {self._title}: {self.status}>"
 
     def content(self, folder: Path) -> dict[str, Any]:
-        return estimation_json(self.estimation, self._scores, self.seconds) | {
+        return estimation_json(self.estimation, self._scores, self.seconds, self._given) | {
             "identifiability": identifiability_json(self.undetermined, self.estimation.identifiability),
             "profiles": {name: profile_json(one) for name, one in self.profiles.items()},
             "precision": self.precision,
@@ -102,7 +102,7 @@ class FitResult(EstimatedModel):
 
     def show(self, console: Console) -> None:
         console.print(Text(f"{self.data.name}: {self.estimation.problem.model.title}", style="bold"))
-        print_estimate(console, self.estimation, self.profiles)
+        print_estimate(console, self.estimation, self.profiles, self._given)
         console.print()
         print_scores(console, self.data, self._scores)
         for line in beginnings(self.estimation):
@@ -131,7 +131,7 @@ class FitResult(EstimatedModel):
         return notebook.page(
             self._title,
             notebook.sentence(f"{self.estimation.termination.value}; mean squared error {self.estimation.mse:.5g}"),
-            *(notebook.sentence(line) for line in warnings(self.estimation)),
+            *(notebook.sentence(line) for line in warnings(self.estimation, self._given)),
             notebook.table(*parameter_table(self.estimation)),
             notebook.table(*score_table(self.data, self._scores)),
             *(notebook.sentence(line) for line in (*beginnings(self.estimation), *self._advice)),
@@ -144,6 +144,11 @@ class FitResult(EstimatedModel):
         said = fit_advice(self._scores, begun_with(self.estimation.problem, self.data))
         asked = None if self.question is None else f"{self.question}."
         return [line for line in (said, asked) if line is not None]
+
+    @property
+    def _given(self) -> list[str]:
+        """States that the card gives a start value."""
+        return [name for name, entry in self.data.initial.items() if entry.value is not None]
 
     @property
     def _title(self) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from rich.console import Console
 from rich.text import Text
@@ -19,8 +19,10 @@ from greybox_torch.name_lists import brief
 from greybox_torch.report.tables import number, print_table
 
 
-def print_estimate(console: Console, found: Estimation, profiles: Mapping[str, Profile]) -> None:
-    """Parameters, start states, how the estimation ended, and profiles."""
+def print_estimate(
+    console: Console, found: Estimation, profiles: Mapping[str, Profile], given: Collection[str]
+) -> None:
+    """Parameters, start states, how the estimation ended, and profiles; ``given`` are the states that the card gives a start value."""
     console.print(Text("\nParameters", style="bold"))
     print_table(console, *parameter_table(found), prose=["description"])
     for e, name in enumerate(found.problem.records.names):
@@ -30,7 +32,7 @@ def print_estimate(console: Console, found: Estimation, profiles: Mapping[str, P
         console.print(Text(f"{name + ':':24}{value}"), soft_wrap=True)
     print_substeps(console, found.substeps)
     _print_correlations(console, found)
-    for line in warnings(found):
+    for line in warnings(found, given):
         console.print(Text(line, style="yellow"), soft_wrap=True)
     _print_profiles(console, profiles)
 
@@ -93,8 +95,8 @@ def _print_correlations(console: Console, found: Estimation) -> None:
         console.print(Text(f"Estimates that move together (correlation): {brief_pairs(pairs)}"), soft_wrap=True)
 
 
-def warnings(found: Estimation) -> list[str]:
-    """What is doubtful about the estimate, in sentences."""
+def warnings(found: Estimation, given: Collection[str] = ()) -> list[str]:
+    """What is doubtful about the estimate, in sentences; ``given`` are the states that the card gives a start value."""
     lost = [name for name, deviation in found.parameter_deviations().items() if deviation == float("inf")]
     lines = [f"{told_at_bound(note.detail)}." for note in found.notes if note.kind is Termination.at_bound]
     if not found.problem.free.any():
@@ -104,7 +106,7 @@ def warnings(found: Estimation) -> list[str]:
             f"The data do not determine {brief(lost)}, alone or together: fix one of them, or excite the machine more."
         )
     lines += [f"{told}." for told in brief_sentences(found.identifiability)]
-    far = far_starts(found.problem)
+    far = far_starts(found.problem, given)
     return [*lines, f"{told_far(far)}."] if far else lines
 
 

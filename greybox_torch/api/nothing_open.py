@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from greybox_torch.api.expected import NOTHING, WANTED, decided
 from greybox_torch.api.hypotheses import Hypotheses, Kept, left_out_told, to_tell_apart
+from greybox_torch.diagnosis.verdict import OF_ESTIMATION
 from greybox_torch.errors import UserError
 
 _OR_A_PARAMETER = "or a parameter whose standard deviation is to shrink: --precision PARAMETER (in Python: precision=)"
@@ -37,8 +38,9 @@ def _all_the_same(held: Hypotheses) -> str:
     """What the verdict leaves beside its findings, in its first sentence, and why no input is designed for it; "" where nothing is."""
     if not held.left:
         return ""
+    first = held.left.partition(f" {OF_ESTIMATION}")[0].rstrip(".")  # names of experiments have full stops, too
     return (
-        f". The verdict leaves some error all the same. {held.left.split('. ')[0].rstrip('.')}. No hypothesis says what that is, so no "
+        f". The verdict leaves some error all the same. {first}. No hypothesis says what that is, so no "
         "input can be designed for it (greybox residuals draws it)"
     )
 

@@ -27,7 +27,8 @@ class ShortRecords(InASentence):
 def short_records(data: DataSet, model: GreyBoxModel) -> Iterator[ShortRecords]:
     """Whether the validation experiments are short beside those of estimation, or beside the model's time constants there."""
     from greybox_torch.estimate.problem import make_problem  # these load torch
-    from greybox_torch.estimate.short_validation import short_validation, slowest_time_constant
+    from greybox_torch.estimate.short_validation import short_validation
+    from greybox_torch.estimate.slowest_time_constant import slowest_time_constant
 
     try:
         problem = make_problem(data, model, data.estimation() or data.recordings)

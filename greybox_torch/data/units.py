@@ -50,7 +50,7 @@ def conversion(source: str, target: str, place: str) -> tuple[float, float]:
         of_hertz = _hertz_in_turns(source, target, units, place)
         zero, one = (registry.Quantity(value, units[0]).to(units[1]).magnitude for value in (0.0, 1.0))
     except pint.DimensionalityError:
-        meant = (_gravity(source, target) or _meant(source, target, capitals=True)) if place else ""
+        meant = (gravity(source, target) or _meant(source, target, capitals=True)) if place else ""
         raise UserError(
             f'{place}: "{source}" cannot be converted to "{target}"{meant}; expected units of one quantity'
         ) from None
@@ -96,10 +96,13 @@ def _meant(unit: str, other: str, *, capitals: bool = False) -> str:
     return did_you_mean(unit, [usual for usual in near if not capitals or usual.lower() == unit.lower()])
 
 
-def _gravity(unit: str, other: str) -> str:
-    """To end a message about a unit that is a mass here and gravity to those who write it, beside an acceleration; "" elsewhere."""
-    name = bare(unit)
-    if name not in _GRAVITY or _dimension(other) != _dimension("m/s^2"):
+def gravity(one: str, other: str) -> str:
+    """To go on in a message about two units of which one is a mass here and gravity to those who write it, and the other an acceleration;
+    "" elsewhere.
+    """
+    names = [bare(unit) for unit, beside in ((one, other), (other, one)) if _dimension(beside) == _dimension("m/s^2")]
+    name = next((name for name in names if name in _GRAVITY), "")
+    if not name:
         return ""
     ours = "mg0" if name == "mg" else "g0"
     factor = 1e-3 if name == "mg" else 1.0

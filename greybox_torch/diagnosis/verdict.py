@@ -33,6 +33,9 @@ class Left:
 NOISE_SHOWN = "that the recordings' highest frequencies show"
 """What is meant by the noise: not all that disturbs, but the sensors' own, which is little where an encoder has fine steps."""
 
+OF_ESTIMATION = "On the experiments that it was estimated from"
+"""How the second sentence of what is left begins."""
+
 STOPPED = "The search was stopped before it was done (time limit or interruption): the best verdict so far."
 
 MOST_NAMED = 12

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
 from greybox_torch.estimate.measured_range import noise_of
-from greybox_torch.estimate.measured_states import measured_at
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.model.sensed_states import sensed_states
 
@@ -23,9 +22,14 @@ RANGE = 0.005
 """Share of what the sensor shows in the experiment below which a difference is not worth a word."""
 
 
-def far_starts(problem: Problem) -> list[str]:
+def far_starts(problem: Problem, given: Collection[str] = ()) -> list[str]:
     """A sentence without its full stop for every experiment in which estimated start states that an output shows, and that are declared
     ``initial="measured"``, are not where the first sample is, farther than the sensor's noise explains.
+
+    Where the first sample is missing nothing is said: the next one may be anywhere.
+
+    Args:
+        given: states that the card gives a start value, so that they are not to begin as measured.
     """
     records, model = problem.records, problem.model.plain
     shown = sensed_states(model)
@@ -35,10 +39,11 @@ def far_starts(problem: Problem) -> list[str]:
         for i, state in enumerate(model.states):
             if state.initial != "measured" or state.name not in shown or not problem.initial_free[i]:
                 continue
+            if state.name in given:
+                continue
             values = records.y[[o.name for o in model.outputs].index(shown[state.name]), records.span(e)]
-            sample = float(measured_at(model, state, records, records.first[e : e + 1])[0])
-            noise = noise_of(values)
-            if abs(problem.initial[e, i] - sample) > _at_most(values, noise):
+            sample, noise = float(values[0]), noise_of(values)
+            if np.isfinite(sample) and abs(problem.initial[e, i] - sample) > _at_most(values, noise):
                 far.append(
                     f"{state.name} at {problem.initial[e, i]:.4g} {state.unit}".rstrip() + _beside(sample, noise)
                 )

@@ -43,7 +43,7 @@ def estimate_initial(
     """The problem with the free start states of every experiment estimated on its first ``fraction``, parameters as they are.
 
     Start values that a model knows only up to a few possibilities (the angle at which a periodic effect begins) are tried one by one.
-    Where the simulation fails from the start states given, they are left as they are.
+    Where the simulation fails from the start states given, or nothing is measured there, they are left as they are.
 
     Args:
         places: start positions by experiment and state, known otherwise; taken where that beginning does not speak against them.
@@ -57,6 +57,8 @@ def estimate_initial(
 
     def start_of(e: int) -> np.ndarray:
         part = beginning(replace(problem, initial_free=free), e, fraction)
+        if not part.samples:
+            return part.initial[0]
         best, cost = _best_start(part, trials, simulator)
         place = (places or {}).get(problem.records.names[e])
         there = None if place is None else _begun_at(replace(part, initial=best[None]), place, simulator)

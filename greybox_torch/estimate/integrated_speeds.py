@@ -18,7 +18,9 @@ from greybox_torch.model.sensed_states import sensed_states
 
 
 def integrated_speeds(problem: Problem, samples: np.ndarray) -> dict[int, np.ndarray]:
-    """How far each carried state whose rate is a measured state has gone at some samples (W,) since its experiment began, by number."""
+    """How far each carried state whose rate is a measured state has gone at some samples (W,) since its experiment began, by number;
+    without those of which no sample is known.
+    """
     model, records, states = problem.model, problem.records, problem.model.states
     names, found = [s.name for s in states], {}
     everywhere = np.arange(records.y.shape[1])
@@ -26,6 +28,8 @@ def integrated_speeds(problem: Problem, samples: np.ndarray) -> dict[int, np.nda
         i = names.index(position)
         if problem.carried[i]:
             measured = measured_at(model, states[names.index(speed)], records, everywhere)
+            if np.isnan(measured).any():
+                continue
             steps = 0.5 * (measured[:-1] + measured[1:]) * records.dt[:-1]
             gone = np.concatenate([[0.0], np.cumsum(steps)])
             found[i] = gone[samples] - gone[records.first[records.experiments(samples)]]

@@ -11,13 +11,15 @@ from greybox_torch.simulation.records import Records
 
 
 def measured_at(model: GreyBoxModel, state: State, records: Records, samples: np.ndarray) -> np.ndarray:
-    """The measured value of a state at some samples (W,), or where that is missing the next known one.
+    """The measured value of a state at some samples (W,), or where that is missing the next known one; NaN where none is known at all.
 
     Raises:
         UserError: no signal measures the state, see :class:`State`.
     """
     values = _measuring_signal(model, state, records)
     known = np.flatnonzero(~np.isnan(values))
+    if not known.size:  # the beginning of an experiment, before a sensor has come to life
+        return np.full(len(samples), np.nan)
     return values[known[np.minimum(np.searchsorted(known, samples), len(known) - 1)]]
 
 

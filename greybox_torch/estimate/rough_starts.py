@@ -18,6 +18,7 @@ def rough_starts(problem: Problem, windows: Windows) -> np.ndarray:
     shown = sensed_states(problem.model)
     for i, state in enumerate(problem.model.states):
         if state.initial == "measured" or state.name in shown:
-            states[:, i] = measured_at(problem.model, state, problem.records, windows.start)
+            measured = measured_at(problem.model, state, problem.records, windows.start)
+            states[:, i] = np.where(np.isnan(measured), states[:, i], measured)
     states = hidden_starts(problem.model, problem.records, states, windows.start, windows.steps)
     return problem.model.begun(states, problem.driving_records, windows.start, problem.values)

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-import numpy as np
-import torch
+from collections.abc import Mapping, Sequence
 
 from greybox_torch.data import DataSet
-from greybox_torch.estimate.problem import Problem
-from greybox_torch.model import GreyBoxModel
-from greybox_torch.model.signals import parameter_signals
 
 SMALL = 0.02
 """Share of the time of the estimation experiments below which validation experiments are told to be short, whatever the machine."""
@@ -26,45 +20,42 @@ SHOWN = 4.0
 
 
 def short_validation(
-    data: DataSet, constant: float | None = None, delays: Mapping[str, float] | None = None
+    data: DataSet,
+    constant: float | None = None,
+    delays: Mapping[str, float] | None = None,
+    constants: Mapping[str, float] | None = None,
 ) -> str | None:
     """A sentence without its full stop where the validation experiments are too short to judge by; else None.
 
     Args:
-        constant: the slowest time constant of the machine, in s, where it is known.
-        delays: of the machine, in s, by what a reader calls them.
+        constant: the slowest time constant of the model, in s, where it is known.
+        delays: dead times of the machine, in s, by what a reader calls them.
+        constants: further time constants, of lags and memories, in s, likewise.
     """
     validation, estimation = ([r.seconds for r in own] for own in (data.validation(), data.estimation()))
     if not validation or not estimation or data.held_out_by_default:
         return None
-    longest, estimated = max(validation), max(estimation)
-    beside = [f"{_shown(sum(estimation))} of estimation"] if sum(validation) < SMALL * sum(estimation) else []
-    if constant is not None and longest < OF_A_TIME_CONSTANT * constant <= estimated / SHOWN:
-        beside.append(f"a slowest time constant of {_shown(constant)} by the model's values")
-    for name, delay in (delays or {}).items():
-        if longest < OF_A_DELAY * delay <= estimated / SHOWN:
-            beside.append(f"{name} of {_shown(delay)}")
-    if not beside:
-        return None
-    what = "the validation experiment lasts" if len(validation) == 1 else "the longest validation experiment lasts"
-    return f"{what} {_shown(longest)}, which is short beside {' and '.join(beside)}: hardly more than its beginning is judged"
+    share = [f"{_shown(sum(estimation))} of estimation"] if sum(validation) < SMALL * sum(estimation) else []
+    told = (
+        {} if constant is None else {f"a slowest time constant of {_shown(constant)} by the model's values": constant}
+    )
+    told |= {f"{name} of {_shown(time)}": time for name, time in (constants or {}).items()}
+    least = {what: OF_A_TIME_CONSTANT * time for what, time in told.items()}
+    least |= {f"{name} of {_shown(time)}": OF_A_DELAY * time for name, time in (delays or {}).items()}
+    times = [what for what, time in least.items() if max(validation) < time <= max(estimation) / SHOWN]
+    if len(validation) == 1:
+        parts = [_short(f"the validation experiment lasts {_shown(validation[0])}", [*share, *times])]
+    else:
+        parts = [
+            _short(f"the validation experiments last {_shown(sum(validation))} together", share),
+            _short(f"the longest validation experiment lasts {_shown(max(validation))}", times),
+        ]
+    sentence = "; ".join(part for part in parts if part)
+    return f"{sentence}: hardly more than its beginning is judged" if times else sentence or None
 
 
-def slowest_time_constant(model: GreyBoxModel, problem: Problem) -> float | None:
-    """The largest time constant, in s, of a model linearised where the first experiment begins; None where none decays, or none is known.
-
-    Args:
-        problem: its values, start states and records.
-    """
-    x, u = torch.as_tensor(problem.initial[0, : len(model.states)]), torch.as_tensor(problem.records.u[:, :1])
-    p = parameter_signals({q.name: problem.values_by_name[q.name] for q in model.declared_parameters})
-    try:
-        matrix = torch.autograd.functional.jacobian(lambda s: model.rates(s[:, None], u, p)[:, 0], x).numpy()
-        decay = -np.linalg.eigvals(matrix).real
-    except Exception:  # equations may do anything; what is wrong with them is told where they are run
-        return None
-    slow = decay[decay > 1e-9 * np.abs(decay).max(initial=0.0)]
-    return float(1.0 / slow.min()) if len(slow) else None
+def _short(lasts: str, beside: Sequence[str]) -> str:
+    return f"{lasts}, which is short beside {' and '.join(beside)}" if beside else ""
 
 
 def _shown(time: float) -> str:

@@ -191,7 +191,7 @@ def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: 
     times what is expected of them (without which a friction law's shape can wander off where no speed is visited; held where each fit
     of many begins, it would still get there by and by).
     """
-    measured = problem.records.y * problem.weights[:, None]
+    measured = (problem.records.y * problem.weights[:, None])[~np.isnan(problem.records.y).all(axis=1)]
     mean_square = min(mean_square, float(np.nanvar(measured, axis=1).mean()))  # what explodes must not freeze all
     spread = np.nanstd(states, axis=0)
     least = max(float(np.nanstd(problem.records.y)), 1e-6)

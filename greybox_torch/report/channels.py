@@ -20,9 +20,8 @@ def plot_channels(data: DataSet, along: str = "time [s]") -> Figure:
     """An experiment a column, a channel a row; after three experiments the columns go on in another band of rows.
 
     The channels of an experiment share the time axis, in seconds since its start. A channel has the same vertical axis, in its unit,
-    in all experiments. Of very many channels or experiments the figure shows the first, and says so. Missing samples leave a gap in
-    the curve and a red mark at the foot of it, and are counted
-    beside the axes.
+    in all experiments. Of very many channels or experiments the figure shows the first, and says so. Missing samples leave a gap in the
+    curve and a red mark at the foot of it, and are counted beside the axes.
 
     Args:
         along: the label of the horizontal axis.

@@ -10,7 +10,7 @@ import numpy as np
 
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.steps import steps_of
-from greybox_torch.data.units import dimensionality, written_alike
+from greybox_torch.data.units import dimensionality, gravity, written_alike
 from greybox_torch.errors import UserError
 from greybox_torch.files import toml_key
 from greybox_torch.model import GreyBoxModel, Input, Output
@@ -144,7 +144,10 @@ def _other_unit(dataset: DataSet, found: str, wanted: str) -> str:
     except ValueError:  # a unit of the user's own
         of_one_quantity = True
     if not of_one_quantity:
-        return f"{found} cannot be converted to {wanted}; expected a column whose values are in {wanted}, or in a unit of that quantity"
+        return (
+            f"{found} cannot be converted to {wanted}{gravity(found, wanted)}; expected a column whose values are in {wanted}, "
+            "or in a unit of that quantity"
+        )
     if dataset.path is None:
         return "expected values and unit of the model"
     return f'expected unit = "{wanted}" with file_unit = "{found}", or with a scale, to convert the values of the file'

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import greybox_torch as gt
-from greybox_torch.api.exchanged import MOST_SAMPLES
+from greybox_torch.api import exchanged
+from greybox_torch.api.exchanged import MOST_ALIKE, MOST_SAMPLES
 
 COUNT, STEP = 400, 2.0
 
@@ -69,3 +72,43 @@ def test_a_slip_among_the_channels_is_asked_for(read: dict[str, str], sign: dict
 
 def test_nothing_is_asked_where_the_fit_is_good() -> None:
     assert fitted().question is None and MOST_SAMPLES >= COUNT
+
+
+def test_a_sensor_that_begins_late_is_no_reason_to_fail(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seen: the estimate failed after all was done, as the beginning of the experiments had no sample of a channel."""
+    monkeypatch.setattr(exchanged, "MOST_SAMPLES", 100)
+    runs = []
+    for k, role in enumerate(("estimation", "validation")):
+        run = recorded(role, k, {"P1": "P2", "P2": "P1"}, {})
+        late = np.where(np.arange(COUNT) < 150, np.nan, run.signals["T2"])
+        runs.append(replace(run, signals={**run.signals, "T2": late}))
+    assert gt.fit(Plate(), gt.DataSet(runs)).question is None
+
+
+@pytest.mark.parametrize(("achieved", "is_asked"), [(-np.inf, True), (10.0, True), (78.0, True), (95.0, False)])
+def test_a_change_is_compared_with_the_estimate_itself(
+    achieved: float, is_asked: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Seen: "(-inf % as it is)", where the short refit as it is failed; and a question though the estimate was the better one."""
+    monkeypatch.setattr(exchanged, "_fit", lambda *given, refitted=True: 90.0 if given[3].read else -np.inf)
+    roles = ("estimation", "validation")
+    data = gt.DataSet([recorded(role, k, {}, {}) for k, role in enumerate(roles)])
+    question = exchanged.exchanged(data, Plate(), None, achieved)  # pyright: ignore[reportArgumentType]
+    assert (question is not None) is is_asked
+    if question is not None:
+        assert ("as it is" in question) is bool(np.isfinite(achieved)) and "inf" not in question
+        assert f"({achieved:.3g} % as it is)" in question or not np.isfinite(achieved)
+
+
+def test_many_channels_of_one_unit_are_not_exchanged_one_by_one() -> None:
+    """Seen: 20 thermocouples, 190 pairs, all simulated; and channels without a unit taken for those of one."""
+    few, many = (tuple(gt.Output(f"T{k}", "degC") for k in range(count)) for count in (8, 20))
+    inputs = (gt.Input("P1"), gt.Input("P2"))
+
+    def asked(outputs: tuple[gt.Output, ...]) -> list[str]:
+        return [
+            change.question for change in exchanged._changes(type("Oven", (), {"inputs": inputs, "outputs": outputs}))
+        ]
+
+    assert sum("exchanged" in one for one in asked(few)) == MOST_ALIKE
+    assert len(asked(many)) == 22 and all("sign" in one for one in asked(many))

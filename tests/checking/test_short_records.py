@@ -7,8 +7,7 @@ import pytest
 
 import greybox_torch as gt
 from greybox_torch.checking.short_records import short_records
-from greybox_torch.estimate.problem import make_problem
-from greybox_torch.estimate.short_validation import short_validation, slowest_time_constant
+from greybox_torch.estimate.short_validation import short_validation
 
 CONSTANT = 500.0
 
@@ -63,10 +62,31 @@ def test_a_delay_that_was_found() -> None:
     assert short_validation(data(600.0, 200.0), None, {"T of input delay at P": 14.0}) is None
 
 
-def test_the_slowest_time_constant_of_a_model() -> None:
-    recordings = data(600.0, 80.0)
-    problem = make_problem(recordings, Plate(), recordings.estimation())
-    assert slowest_time_constant(Plate(), problem) == pytest.approx(CONSTANT)
+def test_a_lag_is_shown_by_less_than_a_delay() -> None:
+    """Seen: every time of an effect was taken for a delay, ten of which an experiment has to last: a lag's time constant as well."""
+    lag = {"T of input lag at P": 14.0}
+    assert short_validation(data(600.0, 80.0), constants=lag) is None
+    told = short_validation(data(600.0, 20.0), constants={"T of input lag at P": 60.0})
+    assert told is not None and "short beside T of input lag at P of 60 s: hardly more than its beginning" in told
+
+
+def test_what_is_short_beside_estimation_alone_may_be_long_for_the_machine() -> None:
+    """Seen: 60 s of a motor with 0.1 s beside an hour, of which "hardly more than its beginning is judged"."""
+    told = short_validation(data(3600.0, 60.0), 0.1)
+    assert told == "the validation experiment lasts 60 s, which is short beside 3600 s of estimation"
+
+
+def test_what_is_summed_is_told_as_a_sum() -> None:
+    """Seen: "the longest validation experiment lasts 40 s", where all of them together had been compared."""
+    signals = {"P": np.ones(20), "T": np.ones(20)}
+    more = gt.Recording.from_arrays("more", signals, sample_time=2.0, role="validation")
+    several = gt.DataSet([*data(5000.0, 40.0).recordings, more])
+    together = "the validation experiments last 80 s together, which is short beside 5000 s of estimation"
+    assert short_validation(several) == together
+    assert short_validation(several, 500.0) == (
+        f"{together}; the longest validation experiment lasts 40 s, which is short beside a slowest time constant of 500 s by the model's "
+        "values: hardly more than its beginning is judged"
+    )
 
 
 def test_a_quarter_that_was_held_out_by_default_is_as_long_as_it_is() -> None:

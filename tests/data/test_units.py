@@ -86,8 +86,10 @@ def test_what_may_be_meant(source: str, target: str, meant: str) -> None:
     ("written", "told"), [("g", '"g" is the gram.*"g0"'), ("mg", '"mg" is.*"mg0"'), ("G", "the gauss")]
 )
 def test_gravity_beside_an_acceleration(written: str, told: str) -> None:
-    with pytest.raises(UserError, match=told):
-        conversion(written, "m/s^2", "here")
+    """Whichever of the two the file has."""
+    for pair in ((written, "m/s^2"), ("m/s^2", written)):
+        with pytest.raises(UserError, match=told):
+            conversion(*pair, "here")
     with pytest.raises(UserError, match='"g" cannot be converted to "m"; expected'):
         conversion("g", "m", "here")
     assert [conversion(name, "m/s^2", "")[0] for name in ("g0", "gn", "g_n")] == pytest.approx([9.80665] * 3)

@@ -90,14 +90,14 @@ def test_what_is_left_all_the_same_is_told(two_found, tmp_path) -> None:
     left = Left(
         0.06,
         51.0,
-        "6 % of the mismatch remains: 51 times the noise. On the experiments that it was estimated from, all is well.",
+        "6 % of the mismatch remains: in Exp. 2 51 times the noise. On the experiments that it was estimated from, all is well.",
     )
     verdict = replace(two_found.verdict, left=left)
     rivals = (replace(final, probability=0.97), replace(other, probability=1e-5))
     sure = replace(two_found, found=replace(two_found.found, verdict=verdict, rivals=rivals))
     with pytest.raises(
         UserError,
-        match=r"leaves some error all the same\. 6 % of the mismatch remains: 51 times the noise\. No hypo",
+        match=r"leaves some error all the same\. 6 % of the mismatch remains: in Exp\. 2 51 times the noise\. No hypo",
     ):
         gt.design(sure)
     (tmp_path / "verdict.json").write_text(json.dumps(sure.content(tmp_path)))

@@ -29,13 +29,14 @@ class Plate(gt.GreyBoxModel):
         return {"T": x.T}
 
 
-def begun(start: float, *, counts: float = 0.0, inner: float = 0.0) -> Problem:
+def begun(start: float, *, counts: float = 0.0, inner: float = 0.0, missing: int = 0) -> Problem:
     """A problem with other start states than the first sample of a noisy sensor, or of one that counts."""
     time = np.arange(400.0)
     values = 22.0 + 20.0 * (1.0 - np.exp(-time / 100.0))
     values[1:] += NOISE * np.random.default_rng(0).standard_normal(399)
     if counts:
         values = counts * np.round(values / counts)
+    values[:missing] = np.nan
     run = gt.Recording.from_arrays("day1", {"P": np.ones(400), "T": values}, sample_time=1.0)
     problem = make_problem(gt.DataSet([run], held_out_by_default=False), Plate(), [run])
     return replace(problem, initial=np.array([[start, inner]]), initial_free=np.array([True, True]))
@@ -56,3 +57,13 @@ def test_what_the_noise_explains_is_not() -> None:
 
 def test_a_state_that_is_held_is_not() -> None:
     assert far_starts(replace(begun(18.6), initial_free=np.array([False, True]))) == []
+
+
+def test_a_sensor_that_begins_late_says_nothing_of_the_beginning() -> None:
+    """Seen: the first sample that there is, 100 s later and 13 degrees higher, told as the one of the beginning."""
+    assert far_starts(begun(22.0, missing=100)) == []
+
+
+def test_a_state_that_the_card_gives_a_value_is_not_begun_as_measured() -> None:
+    """Seen: told that the state "is declared to begin as measured", beside the value on the card."""
+    assert far_starts(begun(18.6), given=["T"]) == [] and far_starts(begun(18.6), given=["inner"]) != []

@@ -8,7 +8,7 @@ import pytest
 import torch
 
 from greybox_torch.model import Body, GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.model.own_friction import dry_friction
+from greybox_torch.model.own_friction import dry_friction, has_dry_friction
 from greybox_torch.systems import RobotArm
 
 
@@ -47,3 +47,12 @@ def test_the_published_arm_has_it_at_its_motor_alone() -> None:
     levels = {b.name: dry_friction(arm, b, 60.0, arm.values()) for b in arm.ports if isinstance(b, Body)}
     assert levels["motor"] == pytest.approx(arm.values()["F_c"], rel=0.05)
     assert levels["gearbox"] == pytest.approx(0.0, abs=1e-9) and levels["arm"] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("F", "c", "has"), [(0.0, 0.0, False), (0.0, 1.0, False), (0.2, 0.0, True), (0.001, 0.0, False)]
+)
+def test_whether_a_model_has_any(F: float, c: float, has: bool) -> None:
+    values = {"F": F, "b": 1.0, "c": c}
+    assert has_dry_friction(Drum(), {"speed": 2.0}, values) is has
+    assert not has_dry_friction(Drum(), {"angle": 2.0}, values), "no speed is known"

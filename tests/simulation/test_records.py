@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greybox_torch.data import DataSet, Recording
 from greybox_torch.errors import UserError
-from greybox_torch.model import GreyBoxModel
+from greybox_torch.model import GreyBoxModel, Input, Output, State
 from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import make_records
 from greybox_torch.simulation.simulator import make_stepper
@@ -76,6 +77,22 @@ def test_channels_that_are_not_the_models(
     data = data_set(units, [{name: np.zeros(3) for name in units}])
     with pytest.raises(UserError, match=re.escape(f"dataset.toml: {message}")):
         make_records(data, motor, data.recordings)
+
+
+def test_a_model_in_multiples_of_gravity_that_are_written_as_grams() -> None:
+    """Seen: "expected a column whose values are in g", and not a word that g is the gram."""
+    sensor = type(
+        "Sensor", (GreyBoxModel,), {"outputs": (Output("a", "g"),), "output": lambda self, x, u, p: {"a": 0.0 * u.u}}
+    )
+    sensor.inputs, sensor.states, sensor.derivative = (
+        (Input("u"),),
+        (State("x"),),
+        lambda self, x, u, p, port: {"x": u.u},
+    )
+    signals = {"u": np.ones(20), "a": np.ones(20)}
+    data = DataSet([Recording.from_arrays("run", signals, sample_time=0.1, units={"a": "m/s^2"})])
+    with pytest.raises(UserError, match=r'multiples of gravity are "g0"'):
+        make_records(data, sensor(), data.recordings)
 
 
 @pytest.mark.parametrize("inertia", [0.1, 1e-3, 2e-4, 2e-5])

@@ -9,7 +9,7 @@ import numpy as np
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.describe.residual_tests import Detection
 from greybox_torch.diagnosis.digits import digits
-from greybox_torch.diagnosis.verdict import NOISE_SHOWN, Left
+from greybox_torch.diagnosis.verdict import NOISE_SHOWN, OF_ESTIMATION, Left
 
 
 def what_is_left(
@@ -58,7 +58,7 @@ def what_is_left(
     if effects:
         part = "Less than 0.01" if share < 1e-4 else digits(100 * share)
         whole = f"{part} % of the mismatch remains" if shown else "As much remains as without it"
-    return Left(share, times, f"{whole}: {size}. On the experiments that it was estimated from, {how}.")
+    return Left(share, times, f"{whole}: {size}. {OF_ESTIMATION}, {how}.")
 
 
 def _parts(judged: Judgement, effects: bool, experiment: str) -> bool:

@@ -13,7 +13,10 @@ from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.verdict import Estimate, InputTrace, Trace
-from greybox_torch.estimate.short_validation import short_validation, slowest_time_constant
+from greybox_torch.estimate.short_validation import short_validation
+from greybox_torch.estimate.slowest_time_constant import slowest_time_constant
+from greybox_torch.mechanisms.actuator import InputDelay
+from greybox_torch.mechanisms.sensor import OutputDelay
 
 
 def traces(judged: Judgement, effects: bool) -> tuple[Trace, ...]:
@@ -51,14 +54,20 @@ def too_short_to_judge(given: DataSet, judged: Judgement, effects: Sequence[Effe
     """
     values = judged.plain.values()
     problem = judged.problem.with_values(np.array([values[name] for name in judged.problem.names]))
-    times = {
-        f"{name} of {spoken_at(effect.mechanism, effect.port)}": float(entry["value"])
-        for effect in effects
-        for name, entry in effect.shown_parameters.items()
-        if entry.get("unit") == "s"
-    }
-    told = short_validation(given, slowest_time_constant(judged.problem.model.plain, problem), times)
+    told = short_validation(given, slowest_time_constant(judged.problem.model.plain, problem), *times_of(effects))
     return () if told is None else (f"{told[0].upper()}{told[1:]}.",)
+
+
+def times_of(effects: Sequence[Effect]) -> tuple[dict[str, float], dict[str, float]]:
+    """The dead times of effects and their further times (of lags, memories, warming up), in s, by what a reader calls them."""
+    dead: dict[str, float] = {}
+    further: dict[str, float] = {}
+    for effect in effects:
+        of_one = dead if effect.mechanism in (InputDelay.name, OutputDelay.name) else further
+        for name, entry in effect.shown_parameters.items():
+            if entry.get("unit") == "s":
+                of_one[f"{name} of {spoken_at(effect.mechanism, effect.port)}"] = float(entry["value"])
+    return dead, further
 
 
 def inputs(judged: Judgement) -> tuple[InputTrace, ...]:
