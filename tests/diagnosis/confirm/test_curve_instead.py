@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.confirm import curve_instead as module
@@ -101,3 +102,14 @@ def test_no_curve_is_asked_where_none_was_tried_or_there_is_nothing_to_ask(monke
     study = stub(settings=DiagnosisSettings(), problem=None)
     assert curve_instead(study, state, stub(), stub()) is None
     assert curve_instead(study, state, None, stub()) is None
+
+
+def test_a_curve_of_fewer_experiments_is_not_compared_with_the_model_on_more(monkeypatch, stub) -> None:
+    """Seen: a traceback, "shapes (64,) (128,)", where a second experiment was taken to choose with and the effects stayed."""
+    monkeypatch.setattr(module, "times_noise", lambda *args: 50.0)
+    monkeypatch.setattr(module, "sound", lambda study, ranked: True)
+    then, now = (stub(effects=(), fits=(stub(energies=np.ones(n)),)) for n in (64, 128))
+    curve = candidate(stub, "arm_spring.unknown", 4.0)
+    state = SearchState(now, now, (stub(parent=then, ranked=(curve,), taken=curve, screened=()),))
+    study = stub(settings=DiagnosisSettings(), problem=None)
+    assert curve_instead(study, state, stub(), stub()) is None
