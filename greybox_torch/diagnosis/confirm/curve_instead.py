@@ -9,7 +9,7 @@ from greybox_torch.diagnosis.confirm.far_better import Standing, judged_anew, le
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
-from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.significance import over_the_same_windows
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, sound
 from greybox_torch.diagnosis.select.finer_curve import as_fine_as_pays
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
@@ -26,7 +26,7 @@ def curve_instead(study: Study, state: SearchState, others: HeldOut | None, judg
     """
     settings = study.settings
     asked = (*(() if state.in_place_of is None else (state.in_place_of,)), *state.steps)
-    own = (s for s in asked if not s.parent.effects and _over_the_same_windows(s.parent, state.plain))
+    own = (s for s in asked if not s.parent.effects and over_the_same_windows(s.parent, state.plain))
     step = next((s for s in own if curves_of(study, s)), None)
     if others is None or step is None or times_noise(study.problem, state.plain, settings) <= settings.above_noise:
         return None
@@ -43,13 +43,6 @@ def curve_instead(study: Study, state: SearchState, others: HeldOut | None, judg
     gains, by_it = judged_anew(study, curve, others, judged)
     left = judged.mismatch(True) if state.effects else by_it.mismatch(False)
     return (curve, gains, by_it) if leaves_far_less(gains, by_it, left, settings) else None
-
-
-def _over_the_same_windows(parent: Hypothesis, plain: Hypothesis) -> bool:
-    """Whether a step was taken with the experiments that are chosen with now: where the effects stayed, steps are those of fewer."""
-    if parent is plain:
-        return True
-    return all(len(then.energies) == len(now.energies) for then, now in zip(parent.fits, plain.fits, strict=False))
 
 
 def curves_of(study: Study, step: SelectionStep) -> list[RankedCandidate]:

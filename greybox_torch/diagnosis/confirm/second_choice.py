@@ -9,6 +9,7 @@ import numpy as np
 from greybox_torch.diagnosis.confirm.held_out import HeldOut, gain
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share
+from greybox_torch.diagnosis.hypothesis.significance import over_the_same_windows
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, sound
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.choice import least_gain
@@ -30,7 +31,8 @@ def second_choice(study: Study, state: SearchState, others: HeldOut) -> Stage[Se
         return state
     study.working_on("asking held-out experiments about named laws in the place of a curve")
     screened = done[-1].screened
-    names = [r for step in reversed(done) for r in step.ranked if _pays(study, r)]
+    own = [step for step in reversed(done) if over_the_same_windows(step.parent, state.plain)]
+    names = [r for step in own for r in step.ranked if _pays(study, r)]
     compared = compare(study, state.plain, screened, names)
     best = _surest(study, compared.ranked)
     if best is None:

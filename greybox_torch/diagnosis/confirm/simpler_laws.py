@@ -8,7 +8,7 @@ from functools import partial
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, pooled
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import likelihood_significance
-from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged_beside
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.finer_steps import finely_enough
@@ -70,7 +70,7 @@ def simplified(study: Study, state: SearchState, effect: Attachment) -> SearchSt
         )
         if fitted is not None:
             candidate = replace(done.taken.candidate, attachment=law)
-            found.append(judged(candidate, done.parent, fitted, study.settings))
+            found.append(judged_beside(candidate, done.parent, state.plain, fitted, study.settings))
     best = min(found, key=lambda r: r.fitted.score, default=None)
     return None if best is None else _with_rival(state, best, best.fitted, effect)
 

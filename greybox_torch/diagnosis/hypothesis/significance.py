@@ -30,6 +30,14 @@ def white_samples(fitted: Hypothesis, settings: DiagnosisSettings) -> int:
     return int(np.sum(~np.isnan(fitted.problem.records.y)))
 
 
+def over_the_same_windows(before: Hypothesis, after: Hypothesis) -> bool:
+    """Whether two hypotheses were fitted to the same experiments: steps of a search with fewer have other windows."""
+    if before is after:
+        return True
+    pairs = zip(before.fits, after.fits, strict=False)
+    return all(len(old.energies) == len(new.energies) for old, new in pairs)
+
+
 def window_significance(before: Hypothesis, after: Hypothesis, settings: DiagnosisSettings) -> float:
     """How many standard errors the improvement is away from none: the largest over the window lengths.
 

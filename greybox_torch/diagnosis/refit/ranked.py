@@ -9,7 +9,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate, grows_with_speed
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.hypothesis.significance import white_samples, window_significance
+from greybox_torch.diagnosis.hypothesis.significance import over_the_same_windows, white_samples, window_significance
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
@@ -79,6 +79,14 @@ def judged(
     """A refit compared with the hypothesis ``before`` it."""
     gain, plausible = before.score - fitted.score, before.implausible - fitted.implausible
     return RankedCandidate(candidate, fitted, gain, window_significance(before, fitted, settings), plausible=plausible)
+
+
+def judged_beside(
+    candidate: Candidate, step_before: Hypothesis, plain: Hypothesis, fitted: Hypothesis, settings: DiagnosisSettings
+) -> RankedCandidate:
+    """A refit compared with the hypothesis ``step_before`` a step or, where that step was taken with fewer experiments, with ``plain``."""
+    before = step_before if over_the_same_windows(step_before, fitted) else plain
+    return judged(candidate, before, fitted, settings)
 
 
 def sound(study: Study, ranked: RankedCandidate) -> bool:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from greybox_torch.diagnosis.refit.curve import values_without
-from greybox_torch.diagnosis.refit.ranked import judged
+from greybox_torch.diagnosis.refit.ranked import judged_beside
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.comes_as_far import comes_as_far
 from greybox_torch.diagnosis.select.flexed import widened
@@ -42,5 +42,6 @@ def _in_form(
     found = fit(study, state.with_law(effect, law), [start], state.current.fits[0])
     if found is None or not comes_as_far(study, found, state.current):
         return state
-    form = judged(replace(done.taken.candidate, attachment=law), done.parent, found, study.settings)
+    candidate = replace(done.taken.candidate, attachment=law)
+    form = judged_beside(candidate, done.parent, state.plain, found, study.settings)
     return widened(state, done, form, found)

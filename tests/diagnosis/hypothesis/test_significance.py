@@ -5,7 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.hypothesis.significance import _nearly_all_removed, window_significance
+from greybox_torch.diagnosis.hypothesis.significance import (
+    _nearly_all_removed,
+    over_the_same_windows,
+    window_significance,
+)
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 SETTINGS = DiagnosisSettings()
@@ -84,3 +88,9 @@ def test_few_windows_say_nothing_and_the_surest_length_counts(fitted) -> None:
     assert window_significance(fitted(many, few), fitted(0.7 * many, few), SETTINGS) == window_significance(
         fitted(many), fitted(0.7 * many), SETTINGS
     )
+
+
+def test_steps_of_fewer_experiments_have_other_windows(stub) -> None:
+    then, now, again = (stub(fits=(stub(energies=np.ones(n)), stub(energies=np.ones(n // 4)))) for n in (64, 128, 128))
+    assert over_the_same_windows(now, again) and over_the_same_windows(then, then)
+    assert not over_the_same_windows(then, now)
