@@ -48,7 +48,7 @@ class Hypothesis:
     implausible: float = 0.0
     """What the score of the model as it stands is worse for parameters that are orders of magnitude from the card's values.
 
-    Not with effects, which may stand for what a parameter did: a curve of friction for the model's own."""
+    Where it leaves little more than noise: else what is missing shows. Not with effects, which may stand for what a parameter did."""
 
     @property
     def score(self) -> float:
@@ -140,7 +140,8 @@ def hypothesis(
         fits.append(states_first(base, fit, fits, simulator, length, limits, settings, budget) if lost else fit)
         shorter = fits[-1]
     fits = no_worse_than_longer(fits, at, simulator, limits)
-    implausible = 0.0 if effects else implausibility(base, fits[-1].problem, settings)
+    hidden = not effects and all(reaches_noise(base, fit, settings, settings.far_above_noise) for fit in fits)
+    implausible = implausibility(base, fits[-1].problem, settings) if hidden else 0.0
     return Hypothesis(tuple(effects), model, simulator, tuple(fits), _floor(base, settings), frozen, implausible)
 
 

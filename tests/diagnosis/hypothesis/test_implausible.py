@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from greybox_torch.diagnosis.hypothesis import fit
 from greybox_torch.diagnosis.hypothesis.fit import hypothesis
 from greybox_torch.diagnosis.hypothesis.implausible import MOST_DECADES, implausibility
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -35,19 +37,29 @@ def test_a_law_of_its_own_and_a_parameter_that_begins_at_zero_are_not_asked(stub
     assert judged(stub, {"d": 2.0}, {"d": 0.0}) == pytest.approx(SETTINGS.implausible_decade * MOST_DECADES**2)
 
 
-def test_it_counts_in_the_score_of_a_fit(dead_zone_search) -> None:
-    """The card's inertia is taken as a thousand times the machine's: three decades."""
-    study = dead_zone_search.study
+def fitted_with(search, far: float):
+    """The model as it stands, fitted from the card's values, where the card's first parameter is taken as so many times as large."""
+    study = search.study
     name, value = next(iter(study.problem.values_by_name.items()))
-    assert dead_zone_search.plain.implausible == 0.0
-    far = study.problem.with_values(
-        [1e3 * v if n == name else v for n, v in study.problem.values_by_name.items()], study.problem.initial
-    )
-    start = {**study.problem.values_by_name, name: value}
-    fitted = hypothesis(far, (), study.surroundings, [start], options=study.options)
-    assert fitted is not None
-    ratio = abs(fitted.values()[name] / (1e3 * value))
-    assert ratio < 0.01
-    assert fitted.implausible > 0.0
-    errors = fitted.score - fitted.implausible
-    assert errors == pytest.approx(dead_zone_search.plain.score, abs=1e-3)
+    values = study.problem.values.copy()
+    values[list(study.problem.names).index(name)] = far * value
+    card = study.problem.with_values(values, study.problem.initial)
+    found = hypothesis(card, (), study.surroundings, [study.problem.values_by_name], options=study.options)
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize("times_noise", [2.0, 4.0])
+def test_it_counts_in_the_score_where_little_more_than_noise_is_left(
+    monkeypatch, dead_zone_search, times_noise
+) -> None:
+    """A parameter of the card is taken as a thousand times the machine's: three decades, of which the first does not count."""
+    monkeypatch.setattr(fit, "reaches_noise", lambda base, one, settings, most=1.0: times_noise <= most)
+    near, far = fitted_with(dead_zone_search, 1.0), fitted_with(dead_zone_search, 1e3)
+    assert near.implausible == 0.0
+    assert far.score - far.implausible == pytest.approx(near.score, abs=1e-3)
+    name, value = next(iter(dead_zone_search.study.problem.values_by_name.items()))
+    beyond = 2.0 - np.log10(far.values()[name] / value)
+    assert beyond > 1.0
+    told = times_noise < SETTINGS.far_above_noise
+    assert far.implausible == pytest.approx(SETTINGS.implausible_decade * beyond**2 if told else 0.0)
