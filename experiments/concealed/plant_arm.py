@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiments.concealed.laws import Law, Motion
-from experiments.concealed.laws.base import BODIES
+from experiments.concealed.laws.base import BODIES, by_place
 
 Array = NDArray[np.float64]
 
@@ -97,10 +97,7 @@ class ArmPlant:
         self._inertias: dict[str, Array] = dict(
             zip(BODIES, (self._motor_inertia, self._gearbox_inertia, self._arm_inertia), strict=True)
         )
-        self._by_place: dict[str, list[Law]] = {}
-        for law in self.laws:
-            for place in law.places:
-                self._by_place.setdefault(place, []).append(law)
+        self._by_place = by_place(self.laws)
 
     def initial_state(self, speeds: Array) -> Array:
         """States (rows, lanes) with untwisted springs, position zero, and `speeds` (3, lanes) [rad/s]."""

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiments.concealed.laws import Instant, Law
+from experiments.concealed.laws.base import by_place
 
 Array = NDArray[np.float64]
 
@@ -92,15 +93,13 @@ class BodyPlant:
         self.output_rows = tuple(output_rows)
         self.sample_time, self.steps_per_sample, self.start_time = sample_time, steps_per_sample, start_time
         self.rows = STATE_ROWS
-        self._by_place: dict[str, list[Law]] = {}
         self.laws = list(laws)
+        self._by_place = by_place(self.laws)
         for law in self.laws:
             law.first_row, law.sample_time, law.step = self.rows, sample_time, sample_time / steps_per_sample
             law.speed_row = 1
             law.sensed_row = output_rows[sensors.index(law.port)] if law.port in sensors else output_rows[0]
             self.rows += law.memory
-            for place in law.places:
-                self._by_place.setdefault(place, []).append(law)
 
     def initial_state(self, position: Array, speed: Array) -> Array:
         """States (rows, lanes), with those of the laws at rest."""

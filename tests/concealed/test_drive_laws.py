@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 
@@ -14,10 +16,11 @@ def held_torques(samples: int) -> np.ndarray:
     return np.random.default_rng(2).normal(scale=4.0, size=(samples, 1))
 
 
-def simulate(torque: np.ndarray, law: Law | None, samples_of_delay: int = 0) -> np.ndarray:
+def simulate(torque: np.ndarray, law: Law | Sequence[Law] | None, samples_of_delay: int = 0) -> np.ndarray:
     """Open loop from rest, the torque delayed by whole samples if asked."""
     late = np.concatenate([np.repeat(torque[:1], samples_of_delay, axis=0), torque])[: len(torque)]
-    plant = ArmPlant({name: np.array([value]) for name, value in NOMINAL.items()}, [law] if law else [])
+    laws = [] if law is None else [law] if isinstance(law, Law) else law
+    plant = ArmPlant({name: np.array([value]) for name, value in NOMINAL.items()}, laws)
     zero = np.zeros((len(torque), 1))
     nothing = np.zeros(1)
     return plant.run(plant.initial_state(np.zeros((3, 1))), Drive(late, zero, zero, nothing, nothing)).speed
@@ -56,6 +59,20 @@ def test_output_delay_shows_the_past(delay: float):
     samples = np.arange(len(now))
     expected = np.interp(samples - delay, samples, now)
     np.testing.assert_allclose(late[10:], expected[10:], atol=0.02 if delay % 1 else 1e-9)
+
+
+@pytest.mark.parametrize(("past", "switches"), [(drive.OutputDelay, {"delay": 0.002}), (drive.SensorLag, {"T": 0.004})])
+def test_a_sensor_shows_what_it_adds_and_its_gain_beside_what_is_past(past: type[Law], switches: dict[str, float]):
+    torque = held_torques(60)
+
+    def late() -> Law:
+        return make(past, "sensor", 1, **switches)
+
+    alone = simulate(torque, late())
+    biased = simulate(torque, [make(drive.SensorBias, "sensor", 1, bias=0.3), late()])
+    scaled = simulate(torque, [make(drive.SensorGain, "sensor", 1, gain=1.2), late()])
+    np.testing.assert_allclose(biased, alone + 0.3, atol=1e-12)
+    np.testing.assert_allclose(scaled, 1.2 * alone, atol=1e-12)
 
 
 def test_delays_of_input_and_output_are_twins():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -85,6 +85,7 @@ class Law:
 
     places: ClassVar[tuple[str, ...]] = ("body",)
     memory: ClassVar[int] = 0  # states of its own
+    shows_the_past: ClassVar[bool] = False  # in the place of what is measured: asked before the other laws of a sensor
 
     def __init__(self, lanes: NDArray[np.intp], switches: Mapping[str, Array], port: str) -> None:
         self.lanes = lanes
@@ -120,3 +121,12 @@ class Law:
 
     def remember(self, state: Array) -> None:
         """Take note of the state after an integration step; for sensors that look back."""
+
+
+def by_place(laws: Sequence[Law]) -> dict[str, list[Law]]:
+    """The laws that are asked at each place, in turn."""
+    found: dict[str, list[Law]] = {}
+    for law in sorted(laws, key=lambda law: not law.shows_the_past):
+        for place in law.places:
+            found.setdefault(place, []).append(law)
+    return found

@@ -90,6 +90,7 @@ class OutputDelay(Law):
     """The sensor shows what was `delay` seconds ago, interpolated between integration steps."""
 
     places: ClassVar[tuple[str, ...]] = ("output",)
+    shows_the_past: ClassVar[bool] = True
     _speeds: list[Array]
     _late: Array
 
@@ -117,6 +118,7 @@ class SensorLag(Law):
 
     places: ClassVar[tuple[str, ...]] = ("body", "output")
     memory: ClassVar[int] = 1
+    shows_the_past: ClassVar[bool] = True
 
     def start(self, state: Array) -> None:
         state[self.first_row, self.lanes] = state[self.sensed_row, self.lanes]
