@@ -9,7 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiments.concealed.machines.base import Machine, Run, Trial
-from experiments.concealed.visibility import free_run, residuals, scatter, sensitivities, unexplained, visibilities
+from experiments.concealed.visibility import (
+    free_run,
+    residuals,
+    scatter,
+    sensitivities,
+    unexplained,
+    visibilities,
+    visibilities_beside,
+)
 
 Array = NDArray[np.float64]
 
@@ -17,6 +25,9 @@ WORDS = {"weak": (2.5, 4.0), "moderate": (8.0, 20.0), "dominant": (40.0, 100.0),
 """Visibilities that are aimed at, by word."""
 ROUNDS = 4
 """Of the search for a scale."""
+ROUNDS_BESIDE = 3
+STRONGER = 3.0
+"""Rounds in which effects of a pair are made stronger that the other hides, and times as strong at most in each."""
 HALVINGS = 5
 LEAST_SCALE = 1e-4
 
@@ -52,16 +63,23 @@ class _Search:
 def calibrate(machine: Machine, trials: Sequence[Trial]) -> list[Run]:
     """Scale every trial's effects to the visibility aimed at; set scales, switches, floor and visibility; the final runs.
 
-    Effects of a pair are scaled each on its own. A trial without targets keeps the scales that it has.
+    Effects of a pair are scaled each on its own, and made stronger where the other hides them. A trial without targets keeps the scales
+    that it has.
     """
     plain = machine.run(trials, effects=False)
     columns = sensitivities(machine, trials, plain)
     _set_floors(machine, trials, residuals(machine, trials, plain), columns)
     _set_scales(machine, trials, plain, columns)
+    both = zip(trials, plain, columns, strict=True)
+    _bring_out(machine, [one for one in both if one[0].targets and len(one[0].plan) > 1])
     runs = _finite_runs(machine, trials, plain)
-    seen = visibilities(machine, trials, runs, sensitivities(machine, trials, runs))
-    for trial, value in zip(trials, seen, strict=True):
+    own = sensitivities(machine, trials, runs)
+    for trial, value in zip(trials, visibilities(machine, trials, runs, own), strict=True):
         trial.visibility = value
+    pairs = [i for i, trial in enumerate(trials) if len(trial.plan) > 1]
+    chosen = ([some[i] for i in pairs] for some in (trials, runs, own))
+    for i, values in zip(pairs, visibilities_beside(machine, *chosen) if pairs else [], strict=True):
+        trials[i].beside = values
     return runs
 
 
@@ -94,6 +112,21 @@ def _set_scales(machine: Machine, trials: Sequence[Trial], plain: Sequence[Run],
             search.tell(seen)
     for search in searches:
         trials[search.trial].scales[search.effect] = search.best
+
+
+def _bring_out(machine: Machine, pairs: Sequence[tuple[Trial, Run, Array]]) -> None:
+    """Effects that what is beside them hides made stronger, until each adds what was aimed at, as far as the machine lets them.
+
+    Each alone may be plain to see, and yet take up what the other does: a stop that a delay's error hides, a constant force in a dead band.
+    """
+    for _ in range(ROUNDS_BESIDE if pairs else 0):
+        trials = [trial for trial, *_ in pairs]
+        runs = _finite_runs(machine, trials, [plain for _, plain, _ in pairs])
+        seen = visibilities_beside(machine, trials, runs, [own for *_, own in pairs], fine=False)
+        for trial, values in zip(trials, seen, strict=True):
+            wanted = (t / max(v, 1e-3) for t, v in zip(trial.targets, values, strict=True))
+            larger = [scale * float(np.clip(w, 1.0, STRONGER)) for scale, w in zip(trial.scales, wanted, strict=True)]
+            trial.scales = [max(s, min(b, machine.largest_scale)) for s, b in zip(trial.scales, larger, strict=True)]
 
 
 def _finite_runs(machine: Machine, trials: Sequence[Trial], plain: Sequence[Run]) -> list[Run]:

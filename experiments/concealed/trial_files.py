@@ -77,6 +77,7 @@ def key(trial: Trial) -> dict[str, Any]:
         "noise": trial.noise,
         "quiet": trial.quiet,
         "visibility": trial.visibility,
+        "beside": list(trial.beside),
         "strength": word(trial.visibility) if effects else "none",
         "seed": trial.seed,
         "number": trial.number,

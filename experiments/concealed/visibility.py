@@ -12,6 +12,8 @@ true parameters, start states estimated on the first tenth of each experiment, f
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -122,6 +124,37 @@ def visibilities(
         ratio = scatter(unexplained(left, own, len(machine.free), 1.0 / floor)) / floor
         found.append(min(float(np.sqrt(np.maximum(ratio**2 - 1.0, 0.0).max())), MOST))
     return found
+
+
+def visibilities_beside(
+    machine: Machine, trials: Sequence[Trial], runs: Sequence[Run], columns: Sequence[Array], *, fine: bool = True
+) -> list[tuple[float, ...]]:
+    """By effect of each trial, the RMS of what it adds beside the trial's others, likewise; that of a single effect is all that there is.
+
+    The run with all effects less the run without this one, projected off as :func:`unexplained` does.
+    """
+    every = [(i, k) for i, trial in enumerate(trials) for k in range(len(trial.plan))]
+    without = [_without(trials[i], k) for i, k in every]
+    whole = residuals(machine, trials, runs)
+    others = residuals(machine, without, machine.run(without, fine=fine))
+    found: list[list[float]] = [[] for _ in trials]
+    for (i, _), other in zip(every, others, strict=True):
+        floor, added = np.array(trials[i].floor), whole[i] - other
+        if np.isfinite(added).all() and np.isfinite(columns[i]).all():
+            ratio = scatter(unexplained(added, columns[i], len(machine.free), 1.0 / floor)) / floor
+            found[i].append(min(float(ratio.max()), MOST))
+        else:
+            found[i].append(MOST)
+    return [tuple(one) for one in found]
+
+
+def _without(trial: Trial, number: int) -> Trial:
+    """The trial without one of its effects, the others as they are."""
+
+    def rest(values: Sequence[Any]) -> list[Any]:
+        return [value for k, value in enumerate(values) if k != number]
+
+    return replace(trial, plan=tuple(rest(trial.plan)), scales=rest(trial.scales), switches=rest(trial.switches))
 
 
 def _together(machine: Machine, runs: Sequence[Run]) -> tuple[Array, Array, Array]:

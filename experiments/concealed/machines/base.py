@@ -32,8 +32,9 @@ class Channel:
 class Trial:
     """One machine with what was drawn for it. Lanes are its four experiments, in the order of `EXPERIMENTS`.
 
-    `visibility`: RMS error, in units of the floor, that stays when the plain model is refitted (see `visibility.py`); `floor`: by
-    output, what the refit leaves of the noise and the nuisances alone; `sigma`: what the true model leaves of them in free runs.
+    `visibility`: RMS error, in units of the floor, that stays when the plain model is refitted (see `visibility.py`); `beside`: by effect
+    of a pair, what it adds beside the other, likewise; `floor`: by output, what the refit leaves of the noise and the nuisances alone;
+    `sigma`: what the true model leaves of them in free runs.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Trial:
     scales: list[float] = field(default_factory=list)
     switches: list[dict[str, float]] = field(default_factory=list)
     visibility: float = 0.0
+    beside: tuple[float, ...] = ()
     floor: tuple[float, ...] = ()
     sigma: tuple[float, ...] = ()
 

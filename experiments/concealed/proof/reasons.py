@@ -29,6 +29,11 @@ def _strength(row: Scored) -> list[str]:
         found.append(
             f"weak: {row.key['visibility']:.1f} times the floor at most, for whoever refits all four experiments"
         )
+    for effect, added in zip(row.effects, row.key.get("beside", ()), strict=False):
+        if added < MODERATE:
+            found.append(
+                f"{effect} adds {added:.1f} times the floor beside the other, however strong the machine allows"
+            )
     ratio = _estimation_ratio(row)
     if ratio is not None and ratio < NOT_SHOWN:
         found.append(

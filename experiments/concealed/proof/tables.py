@@ -115,7 +115,9 @@ def _concealed(row: Scored) -> str:
 
 
 def _visibility(row: Scored) -> str:
-    return f"{row.key['visibility']:.1f}" if row.effects else ""
+    """Of all effects together, and what each of a pair adds beside the other."""
+    each = " and ".join(f"{v:.1f}" for v in row.key.get("beside", ()))
+    return f"{row.key['visibility']:.1f}{f' ({each})' if each else ''}" if row.effects else ""
 
 
 def _yes(right: bool) -> str:
