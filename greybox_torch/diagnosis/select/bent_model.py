@@ -43,11 +43,14 @@ def from_the_card(study: Study, plain: Hypothesis) -> tuple[tuple[WindowFit, ...
 
 
 def narrowed(found: Ranges, at_card: Ranges, farther: float) -> dict[str, Surroundings]:
-    """``found`` with the card's range for every signal that moves so many times ``farther`` than there."""
+    """``found`` with the card's range for every signal that moves so many times ``farther`` than there.
+
+    A signal that does not exist there keeps its range: what drives and brakes a body depends on which way it turns.
+    """
 
     def of(name: str, range_: Range, there: Surroundings) -> Range:
-        other = there.ranges[name]
-        return other if range_.reach > farther * other.reach and other.rms > 0 else range_
+        other = there.ranges.get(name)
+        return other if other is not None and range_.reach > farther * other.reach and other.rms > 0 else range_
 
     return {
         port: replace(around, ranges={n: of(n, r, at_card[port]) for n, r in around.ranges.items()})

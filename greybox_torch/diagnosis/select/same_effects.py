@@ -28,6 +28,8 @@ def with_same_effects(study: Study, begun: SearchState, before: SearchState) -> 
     effects, values = before.effects, before.current.values()
     curve = next((e for e in effects if e.mechanism.free), None)
     if curve is not None:
+        if not set(curve.mechanism.signals()) <= set(study.surroundings[curve.port].ranges):
+            return begun  # what drives and brakes a body depends on which way it turns
         drawn, values = over_its_range(before.current, curve, study.surroundings)
         effects = before.with_law(curve, drawn)
     fitted = refitted(study, effects, begun.current, [values])

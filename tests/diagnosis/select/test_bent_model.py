@@ -35,6 +35,13 @@ def test_a_signal_that_rests_with_the_cards_values_tells_no_range() -> None:
     assert narrowed(around(412.0), around(1e-15, rms=0.0), 3.0) == around(412.0)
 
 
+def test_a_signal_that_the_cards_values_do_not_have_keeps_its_range() -> None:
+    """Seen: a centrifuge's frame, which turned one way only at the card's values, so that no torque braked it there: a traceback."""
+    found = around(412.0)
+    found["bit"].ranges["along@torque"] = Range(-2.0, 3.0, 1.0)
+    assert narrowed(found, around(25.0), 3.0)["bit"].ranges["along@torque"] == Range(-2.0, 3.0, 1.0)
+
+
 def test_windows_with_the_cards_values_have_fitted_start_states_alone(dead_zone_search) -> None:
     study, state = dead_zone_search.study, dead_zone_search.state
     fits, ranges = from_the_card(study, state.plain)

@@ -53,3 +53,11 @@ def test_what_leaves_less_than_a_finding_is_kept_and_estimated_from_both(with_on
 def test_what_leaves_more_is_searched_anew(with_one_more) -> None:
     both, before = with_one_more("rotor", ConstantBias())
     assert with_same_effects(both.study, both.state, before) is both.state
+
+
+def test_a_curve_of_a_signal_that_one_more_experiment_does_not_have_is_searched_anew(with_one_more) -> None:
+    both, before = with_one_more("actuator", Unknown("input", 28))
+    bare = {
+        q: replace(a, ranges={n: r for n, r in a.ranges.items() if n != "input"}) for q, a in both.surroundings.items()
+    }
+    assert with_same_effects(replace(both.study, surroundings=bare), both.state, before) is both.state
