@@ -12,6 +12,7 @@ import pytest
 from hypothesis import settings
 
 from greybox_torch.data import Channel, DataSet, InitialEntry, ParameterEntry, Recording, Role
+from tests.pictures import unpainted as unpainted
 from tests.sled import sled_run as sled_run
 
 RunFile = Callable[..., ModuleType]

@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 
 import greybox_torch as gt
 from greybox_torch.cli import app
+from tests.pictures import not_painted
 
 Make = Callable[..., Path]
 UNITS = {"voltage": "V", "speed": "rad/s"}
@@ -41,7 +42,8 @@ class Motor(gt.GreyBoxModel):
 def told(folder: Path, command: str, *options: str) -> dict[str, Any]:
     """What the command prints with --json for the same data on files."""
     arguments = [command, str(folder / "dataset.toml"), *options, "--json", "--out", str(folder / "out")]
-    result = CliRunner().invoke(app, arguments)
+    with not_painted():
+        result = CliRunner().invoke(app, arguments)
     assert result.exit_code == 0, result.stderr
     return json.loads(result.stdout)
 

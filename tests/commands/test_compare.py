@@ -28,12 +28,14 @@ def test_compare(motor_folder: Make) -> None:
     assert ["start", "start", "good", "good"] in [line.split() for line in people.stdout.splitlines()]
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_compare_without_a_checkpoint(motor_folder: Make) -> None:
     folder = motor_folder()
     compared, simulated = of("compare", folder), of("simulate", folder)
     assert compared["models"] == simulated["models"]
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_compare_with_what_fit_wrote(motor_folder: Make) -> None:
     folder = motor_folder()
     fitted = of("fit", folder)
@@ -44,6 +46,7 @@ def test_compare_with_what_fit_wrote(motor_folder: Make) -> None:
     assert [r["fit"] for r in found["models"][0]["fit"]] == [r["start"]["fit"] for r in fitted["fit"]]
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_names_of_checkpoints(motor_folder: Make) -> None:
     folder = motor_folder()
     one, other, start = saved(folder, "a/model"), saved(folder, "b/model"), saved(folder, "start")
@@ -65,6 +68,7 @@ def test_compare_with_one_that_overflows(motor_folder: Make) -> None:
     assert f"wild: {numbers[1]['overflow']}" in result.stdout
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_checkpoint_of_a_model_that_has_moved(motor_folder: Make) -> None:
     folder = motor_folder()
     path = saved(folder, "good", model="/gone/since/my_motor.py:Motor")
@@ -122,6 +126,7 @@ def test_checkpoint_that_is_damaged(motor_folder: Make) -> None:
     assert "nowhere.safetensors: no such file" in result.stderr
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_folders_of_results_are_taken(motor_folder: Make) -> None:
     folder = motor_folder()
     saved(folder, "good/model")

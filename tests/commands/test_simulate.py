@@ -43,6 +43,7 @@ def test_simulate(motor_folder: Make) -> None:
     assert sorted(str(p) for p in (folder / "out").iterdir()) == sorted(found["tables"] + found["figures"])
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_simulate_with_a_checkpoint(motor_folder: Make) -> None:
     """The fitted model's signals as CSV: seen missing on the command line."""
     folder = motor_folder()
@@ -77,6 +78,7 @@ def test_stamps_since_1970_keep_their_fractions(motor_folder: Make, edit: Edit) 
     np.testing.assert_allclose(np.diff(columns["time"]), 0.01, atol=1e-5)
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_simulate_for_people(motor_folder: Make) -> None:
     result = greybox("simulate", motor_folder())
     assert (result.exit_code, result.stderr) == (0, "")
@@ -86,6 +88,7 @@ def test_simulate_for_people(motor_folder: Make) -> None:
     assert "simulated_3_sweep.csv" in result.stdout
 
 
+@pytest.mark.usefixtures("unpainted")
 def test_a_reversed_sign_is_told(motor_folder: Make, edit: Edit) -> None:
     """Seen: a sensor with its sign reversed, searched for two minutes and reported as something without a name."""
     folder = motor_folder()
@@ -144,6 +147,7 @@ def test_overflow_comes_with_start_values_that_avoid_it(motor_folder: Make, edit
     assert greybox("simulate", folder).exit_code == 0
 
 
+@pytest.mark.usefixtures("unpainted")
 @pytest.mark.parametrize("command", ["simulate", "compare", "residuals"])
 def test_single_precision(motor_folder: Make, command: str) -> None:
     folder = motor_folder()
@@ -156,6 +160,7 @@ def test_single_precision(motor_folder: Make, command: str) -> None:
     assert result.stderr == 'error: --precision half: expected "double" or "single"\n'
 
 
+@pytest.mark.usefixtures("unpainted")
 @pytest.mark.parametrize("command", ["simulate", "compare"])
 def test_substeps_are_told(motor_folder: Make, edit: Edit, command: str) -> None:
     folder = motor_folder()

@@ -174,26 +174,20 @@ def test_all_results_or_none(motor_folder: Make) -> None:
 def test_killed_and_resumed(motor_folder: Make) -> None:
     """SIGKILL at a random moment of the training; what goes on from the snapshot ends at the same validation fit."""
     folder = motor_folder(dead_zone=0.4)
-    command = [
-        sys.executable,
-        "-m",
-        "greybox_torch",
-        "train",
-        str(folder / "dataset.toml"),
-        *QUICK[:-1],
-        "25",
-        "--no-explain",
-        "--json",
-    ]
+    command = ["train", str(folder / "dataset.toml"), *QUICK[:-1], "25", "--no-explain", "--json"]
 
     def validation_fit(*options: str) -> Any:
-        done = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
+        done = CliRunner().invoke(app, [*command, *options])
+        assert done.exit_code == 0, done.stderr
         return json.loads(done.stdout)["fit"][2]["augmented"]["fit"]
 
     whole = validation_fit("--out", str(folder / "whole"))
     part, delay = folder / "part", random.uniform(0.0, 0.6)
-    process = subprocess.Popen([*command, "--out", str(part)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "greybox_torch", *command, "--out", str(part)],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
     while not (part / "training.safetensors").exists() and process.poll() is None:
         time.sleep(0.002)
     time.sleep(delay)

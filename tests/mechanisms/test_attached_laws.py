@@ -105,7 +105,7 @@ def test_transmission_error_with_its_whole_reaction_neither_makes_nor_loses_ener
     model = attached(ARM, around, error)
     none = {"F_v": 0.0, "F_c": 0.0, "F_cs": 0.0, "d_g": 0.0, "d_a": 0.0}
     p = values_of(model, **none, a=0.02, b=0.01, reaction=share)
-    records = replace(records_of(800), u=np.zeros((1, 800)))
+    records = replace(records_of(300), u=np.zeros((1, 300)))
     x0 = starts(model, np.array([[0.3, 0.0, 6.0, 5.0, 4.0]]))
     stepper = EagerStepper.of(model, (), "cpu", "double")
     states = stepper.run(records, Pass(whole_records(records), p, x0, keep_states=True)).states

@@ -105,7 +105,7 @@ def test_native_and_eager_agree(full, compiled) -> None:
 def test_native_and_odeint_agree(full, compiled, around) -> None:
     _, p, x0 = full
     model = attached(ARM, around, *EFFECTS)
-    records = records_of(60)
+    records = records_of(30)
     prepared = model.prepared(records, p)
     fine = compiled.run(prepared, Pass(whole_records(records), p, x0), substeps=16).y[0, :, 0]
     model.set_values(dict(zip(model.values(), p, strict=True)))

@@ -48,7 +48,7 @@ def run_of(model: GreyBoxModel) -> np.ndarray:
     given = [
         own.get(p.name, next((v for n, v in VALUES.items() if n in p.name), p.value)) for p in model.declared_parameters
     ]
-    records, p = records_of(250), np.array(given)
+    records, p = records_of(80), np.array(given)
     x0 = model.begun(starts(model, np.array([[1.0]])), model.prepared(records, p), np.zeros(1, dtype=np.int64), p)
     return free_run(model, records, p, x0)[0]
 

@@ -25,8 +25,8 @@ def test_bristle_only_stores_and_dissipates(law, rates, v, z) -> None:
 
 
 def test_bristle_dissipates_over_a_closed_cycle(law, rates) -> None:
-    step, bristle, work = 2e-4, 0.0, []
-    for t in step * np.arange(15_000):
+    step, bristle, work = 5e-4, 0.0, []
+    for t in step * np.arange(6_000):
         v, memory = np.array(3.0 * np.cos(2 * np.pi * t)), {"bristle": np.array(bristle)}
         work.append(float(law(PreslidingHysteresis(), BRISTLE, memory, speed=v) * v) * step)
         bristle += step * float(rates(PreslidingHysteresis(), BRISTLE, memory, speed=v)[0])

@@ -15,7 +15,7 @@ from greybox_torch.model import Signals
 from tests.mechanisms.attaching import STEP, Tank, at, attached, free_run, records_of, starts, values_of
 
 TANK = Tank()
-TIME = STEP * np.arange(1000)
+TIME = STEP * np.arange(450)
 
 
 def level(pump: np.ndarray, k: float = 0.3) -> np.ndarray:

@@ -74,7 +74,7 @@ def test_the_whole_reaction_conserves_energy(gear, share, conserved, harmonics) 
     value = dict(model.values()) | {"c": 0.0, "b": 0.0}
     value |= {f"{error.prefix}.{n}": v for n, v in {"a": 0.004, "b": 0.003, "reaction": share, **further}.items()}
     p = np.array([value[q.name] for q in model.declared_parameters])
-    records = replace(records_of(800, step=1e-4), u=np.zeros((1, 800)))
+    records = replace(records_of(300, step=1e-4), u=np.zeros((1, 300)))
     stepper = EagerStepper.of(model, (), "cpu", "double")
     states = stepper.run(records, Pass(whole_records(records), p, starts(model, MOVING), keep_states=True)).states
     assert states is not None

@@ -110,7 +110,7 @@ def test_slip_only_stores_and_dissipates(law, rates, rate, z) -> None:
 
 
 def test_hysteretic_spring_dissipates_over_a_closed_cycle_and_saturates(law, rates) -> None:
-    step, slip, work, forces = 1e-4, 0.0, 0.0, []
+    step, slip, work, forces = 5e-4, 0.0, 0.0, []
     for t in np.arange(0.0, 3.0, step):
         rate, memory = np.array(0.4 * np.cos(2 * np.pi * t)), {"slip": np.array(slip)}
         forces.append(float(law(HystereticSpring(), SLIP, memory, rate=rate)))

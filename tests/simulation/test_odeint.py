@@ -15,8 +15,8 @@ from tests.simulation.arm import PARAMETERS, X0, P, arm_records, arm_with, nativ
 @pytest.mark.parametrize("hold", ["zoh", "foh"])
 @pytest.mark.parametrize(("method", "tolerance"), [("rk4", 2e-6), ("dopri5", 2e-8)])
 def test_against_torchdiffeq(hold: str, method: str, tolerance: float) -> None:
-    records = arm_records((60, 45), hold)
-    windows = Windows(np.array([0, 20, 60]), np.array([59, 59, 104]), 40)
+    records = arm_records((30, 25), hold)
+    windows = Windows(np.array([0, 10, 30]), np.array([29, 29, 54]), 20)
     model = arm_with(P)
     x0 = X0 + np.array([[0, 0, 0, 0, 0], [0.01, 0, 1, 0, 0], [0, 0.02, -3, 2, 1]])
     outputs = solve(model, records, windows, torch.tensor(x0.T), method=method, rtol=1e-11, atol=1e-12)

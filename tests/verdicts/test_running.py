@@ -6,6 +6,7 @@ import json
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -72,13 +73,24 @@ def test_a_case_is_run_scored_by_the_command_and_passed_over_the_next_time(
     assert command.main(["compare", str(out), str(out)]) == 0
 
 
-def test_failures_are_said_counted_and_tried_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_failures_are_said_counted_and_tried_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The command fails in a process of its own once; when it is run again, it gets the same answer."""
+    process, ended = subprocess.run, []
+
+    def run(*arguments: Any, **options: Any) -> subprocess.CompletedProcess[str]:
+        ended.append(ended[0] if ended else process(*arguments, **options))
+        return ended[0]
+
+    monkeypatch.setattr(running.subprocess, "run", run)
     (tmp_path / "case").mkdir()
     (tmp_path / "case" / "dataset.toml").write_text('name = "no experiments"\n')
-    for _ in range(2):
+    for attempt in (1, 2):
         assert command.main(["run", str(tmp_path / "case" / "dataset.toml"), "--out", str(tmp_path / "out")]) == 1
         said = capsys.readouterr()
         assert "case" in said.err and "exit 2: " in said.out
+        assert len(ended) == attempt
     assert not has_verdict(tmp_path / "out" / "case")
     assert json.loads((tmp_path / "out" / "case" / "run.json").read_text())["failure"].startswith("exit 2: ")
 
