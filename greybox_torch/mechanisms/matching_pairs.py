@@ -19,6 +19,9 @@ LEAST_MATCH = 0.8
 LEAST_OF_EACH = 0.1
 """Share of it that each must add to the other."""
 
+LEAST_BESIDE_LINE = 0.01
+"""The same where one of the two may be a line, beside whose square an offset has a small one."""
+
 
 @dataclass(frozen=True)
 class Look:
@@ -45,13 +48,19 @@ def matching_pair(
     force: np.ndarray,
     weight: np.ndarray,
     but: Collection[str] = (),
+    *,
+    line_open: bool = True,
 ) -> PairMatch | None:
     """The two laws that match a learned force best together; None where one does as well, or no two come near it.
 
-    A straight line is left open: the model's own damping may have moved while the curve was learned. Arguments as for
-    :func:`greybox_torch.mechanisms.matching.matching_laws`.
+    Arguments as for :func:`greybox_torch.mechanisms.matching.matching_laws`, and:
+
+    Args:
+        line_open: whether a straight line is left open beside the two, as the model's own damping may have moved while the curve was
+            learned. Without it one of the two may be the line, such as an input's gain beside its offset.
     """
     root, line = np.sqrt(weight), next(iter(signals.values())).numpy()[:, None]
+    line, least = (line, LEAST_OF_EACH) if line_open else (line[:, :0], LEAST_BESIDE_LINE)
     total = _left(line, force, root)[1]
     if not total > 0.0:
         return None
@@ -63,9 +72,9 @@ def matching_pair(
             continue
         sizes, left = _left(np.hstack([line, a.columns, b.columns]), force, root)
         share = 1.0 - left / total
-        if share < max(LEAST_MATCH, LEAST_OF_EACH + max(of_a, of_b)) or (best is not None and share <= best.share):
+        if share < max(LEAST_MATCH, least + max(of_a, of_b)) or (best is not None and share <= best.share):
             continue
-        own = np.split(sizes[1:], [a.columns.shape[1]])
+        own = np.split(sizes[line.shape[1] :], [a.columns.shape[1]])
         if _within_bounds(a, own[0], around) and _within_bounds(b, own[1], around):
             told = [(a.law, _values(a, own[0])), (b.law, _values(b, own[1]))]
             (first, of_first), (second, of_second) = told if of_a >= of_b else told[::-1]

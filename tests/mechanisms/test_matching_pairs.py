@@ -54,6 +54,17 @@ def test_none_where_one_is_enough_or_no_two_come_near(around, force) -> None:
     assert matching_pair("body", around, {"speed": SPEED}, force, WEIGHT) is None
 
 
+def test_a_straight_line_is_one_of_the_two_where_it_is_not_left_open(around) -> None:
+    """Seen: an input's offset and a gain of 1.7 % less, told as unknown at the actuator."""
+    u = torch.linspace(-12.0, 9.0, 400, dtype=torch.float64)
+    force = -0.017 * u.numpy() - 0.027
+    assert matching_pair("actuator", around, {"input": u}, force, np.ones(400)) is None
+    found = matching_pair("actuator", around, {"input": u}, force, np.ones(400), line_open=False)
+    assert found is not None and found.share > 0.99
+    told = {law.name: values for law, values in zip(found.laws, found.values, strict=True)}
+    assert told == {"input_gain": {"gain_error": pytest.approx(-0.017)}, "input_bias": {"bias": pytest.approx(-0.027)}}
+
+
 def test_the_order_of_a_ripple_beside_a_bias_is_the_curves(around) -> None:
     """Seen: a pendulum's bias and ripple of order 7.3, told as unknown since pairs had ripples of the usual orders alone."""
     position = torch.linspace(-3.0, 5.0, 400, dtype=torch.float64)

@@ -55,9 +55,17 @@ def laws_on_curve(
 
 
 def two_laws_on_curve(
-    model: GreyBoxModel, fitted: Hypothesis, curve: Attachment, surroundings: Mapping[str, Surroundings]
+    model: GreyBoxModel,
+    fitted: Hypothesis,
+    curve: Attachment,
+    surroundings: Mapping[str, Surroundings],
+    *,
+    line_open: bool = True,
 ) -> tuple[tuple[Attachment, Attachment], dict[str, float]] | None:
-    """The two named laws that draw the curve together, and all values with them in its place; None where no two come near it."""
+    """The two named laws that draw the curve together, and all values with them in its place; None where no two come near it.
+
+    ``line_open`` as for :func:`greybox_torch.mechanisms.matching_pairs.matching_pair`.
+    """
     unknown, around = curve.mechanism, surroundings[curve.port]
     if not isinstance(unknown, Unknown) or unknown.factor:
         return None
@@ -65,7 +73,7 @@ def two_laws_on_curve(
     site = next(q for q in model.all_ports if q.name == curve.port)
     there = {e.mechanism.name for e in fitted.effects if e.port == curve.port}
     weight = _visited(around.ranges[unknown.signal].rms, grid.numpy())
-    match = matching_pair(site.kind, around, {unknown.signal: grid}, target, weight, there)
+    match = matching_pair(site.kind, around, {unknown.signal: grid}, target, weight, there, line_open=line_open)
     if match is None:
         return None
     first, second = (attach(model, curve.port, law) for law in match.laws)

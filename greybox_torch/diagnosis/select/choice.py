@@ -26,13 +26,19 @@ def least_gain(fitted: Hypothesis, settings: DiagnosisSettings) -> float:
     return settings.least_gain_far_above_noise if anything else settings.least_gain
 
 
-def chosen(ranked: Sequence[RankedCandidate], plain: Hypothesis, settings: DiagnosisSettings) -> RankedCandidate | None:
+def chosen(
+    ranked: Sequence[RankedCandidate],
+    plain: Hypothesis,
+    settings: DiagnosisSettings,
+    parent: Hypothesis | None = None,
+) -> RankedCandidate | None:
     """The best of the hypotheses that pay: a named mechanism, unless a free curve is better by a margin and much better.
 
     Args:
         plain: the model as it stands.
+        parent: what they build on, by default ``plain``.
     """
-    named = simplest([r for r in ranked if not r.unknown], plain, settings)
+    named = simplest([r for r in ranked if not r.unknown], plain, settings, parent)
     curve = next((r for r in ranked if r.unknown), None)
     if named is None or curve is None:
         return named or curve
@@ -82,7 +88,10 @@ def price_in_likelihood(fewer: Hypothesis, more: Hypothesis, settings: Diagnosis
 
 
 def simplest(
-    ranked: Sequence[RankedCandidate], plain: Hypothesis, settings: DiagnosisSettings
+    ranked: Sequence[RankedCandidate],
+    plain: Hypothesis,
+    settings: DiagnosisSettings,
+    parent: Hypothesis | None = None,
 ) -> RankedCandidate | None:
     """The best, or what it generalises where it is not better than that by more than chance, or by less than a finding is.
 
@@ -104,7 +113,7 @@ def simplest(
 
     def as_good(r: RankedCandidate) -> bool:
         by_chance = overall_significance(r.fitted, best.fitted, settings) < settings.least_significance
-        return by_chance or (not alone and _lacks_little(plain, r.fitted, best.fitted, settings))
+        return by_chance or (not alone and _lacks_little(parent or plain, r.fitted, best.fitted, settings))
 
     def the_same(r: RankedCandidate) -> bool:
         near = r.fitted.score < best.fitted.score + settings.score_tie
@@ -115,13 +124,14 @@ def simplest(
     return next((r for r in simpler if as_good(r)), next((r for r in ranked if the_same(r)), best))
 
 
-def _lacks_little(plain: Hypothesis, simpler: Hypothesis, better: Hypothesis, settings: DiagnosisSettings) -> bool:
-    """Whether a law lacks no more beside a better one than any law lacks to be the machine's, in parts of the mismatch of ``plain``.
+def _lacks_little(parent: Hypothesis, simpler: Hypothesis, better: Hypothesis, settings: DiagnosisSettings) -> bool:
+    """Whether a law lacks no more beside a better one than any law lacks to be the machine's, in parts of what it removes from ``parent``.
 
     Less than a finding is, unless it is more than that and most of what the law leaves. Seen: the LuGre friction of a table, told as
-    Coulomb friction (0.85) for a difference of 1.6 %, which was 78 % of what that left.
+    Coulomb friction (0.85) for a difference of 1.6 %, which was 78 % of what that left; a reducer's Stribeck friction, told as Coulomb
+    friction (0.85), for beside the wind on the antenna that was found first all of it was little.
     """
-    lacking = size(plain.fits, simpler.fits, better.fits, settings)
+    lacking = size(parent.fits, simpler.fits, better.fits, settings)
     most = size(simpler.fits, simpler.fits, better.fits, settings) > settings.most_of_the_mismatch
     return lacking < (settings.least_size_at_noise if most else settings.least_size)
 

@@ -102,7 +102,8 @@ def _take(study: Study, state: SearchState, screened: Screened, compared: Compar
     if state.has_curve:
         paying = [r for r in paying if completes(r.fitted, settings) or _more_than_a_curve_lacks(state, r, settings)]
     paying = unbent_first(paying, settings)
-    led = chosen([r for r in paying if not r.unknown or substantial(study, state, r)], state.plain, settings)
+    offered = [r for r in paying if not r.unknown or substantial(study, state, r)]
+    led = chosen(offered, state.plain, settings, compared.parent)
     if led is not None and part_of_a_curve(led, paying, settings):
         led = None
     if led is not None and as_unsure_as_a_name(led, state.current, in_turn, settings):

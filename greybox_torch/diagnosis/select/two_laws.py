@@ -20,17 +20,19 @@ from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
 
 
-def with_first_of_two(study: Study, start: SearchState, with_curve: SearchState) -> SearchState | None:
+def with_first_of_two(
+    study: Study, start: SearchState, with_curve: SearchState, *, line_open: bool = True
+) -> SearchState | None:
     """``start`` with the first of the two laws that draw the curve of ``with_curve``, and both as what was found before.
 
     None where no two laws do. The step with the second, beside its rivals, is to be made from there (:func:`second_step`).
+    ``line_open`` as for :func:`greybox_torch.mechanisms.matching_pairs.matching_pair`.
     """
     done = with_curve.steps[-1]
     if done.taken is None or len(with_curve.effects) >= study.budget.most_effects:
         return None
-    found = two_laws_on_curve(
-        study.problem.model, with_curve.current, with_curve.current.effects[-1], study.surroundings
-    )
+    curve = with_curve.current.effects[-1]
+    found = two_laws_on_curve(study.problem.model, with_curve.current, curve, study.surroundings, line_open=line_open)
     if found is None or any(study.beliefs.exclude(law) for law in found[0]):
         return None
     laws, values = found

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.hypothesis.significance import white_samples
+from greybox_torch.diagnosis.select import choice
 from greybox_torch.diagnosis.select.choice import price_in_likelihood
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import attach
@@ -21,3 +24,11 @@ def test_every_further_parameter_has_the_price_of_schwarz(motor_data, motor, beg
         0.5 * np.log(white_samples(curve, SETTINGS))
     )
     assert price_in_likelihood(curve, curve, SETTINGS) == 0.0
+
+
+@pytest.mark.parametrize(("parent", "lacks"), [(1e4, True), (10.0, False)])
+def test_a_law_that_another_contains_lacks_little_beside_what_was_missing_before_it(monkeypatch, parent, lacks) -> None:
+    """Seen: a reducer's Stribeck friction, told as Coulomb friction (0.85): little beside the wind on the antenna, found before."""
+    monkeypatch.setattr(choice, "size", lambda whole, without, full, settings: (without - full) / whole)
+    simpler, better = SimpleNamespace(fits=0.6), SimpleNamespace(fits=0.01)
+    assert choice._lacks_little(SimpleNamespace(fits=parent), simpler, better, SETTINGS) is lacks  # type: ignore[arg-type]

@@ -11,6 +11,7 @@ import pytest
 from greybox_torch.deadline import TimeIsUp
 from greybox_torch.diagnosis.select import explore as exploring
 from greybox_torch.diagnosis.select import forward as advancing
+from greybox_torch.diagnosis.select import names_for_curve
 from greybox_torch.diagnosis.select import search as searching
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
@@ -88,9 +89,9 @@ def test_among_names_in_the_place_of_a_curve_the_curve_stands_until_they_come_as
     monkeypatch.setattr(advancing, "take_best", yielding(names))
     monkeypatch.setattr(advancing, "take_effects", yielding(then=KeyboardInterrupt))
     monkeypatch.setattr(advancing, "with_richer_form", yielding(names))
-    monkeypatch.setattr(advancing, "alone_at_noise", lambda *args: False)
-    monkeypatch.setattr(advancing, "with_first_of_two", lambda *args: None)
-    monkeypatch.setattr(advancing, "joined_bodies", lambda model: [])
+    monkeypatch.setattr(names_for_curve, "alone_at_noise", lambda *args: False)
+    monkeypatch.setattr(advancing, "with_first_of_two", lambda *args, **line: None)
+    monkeypatch.setattr(names_for_curve, "joined_bodies", lambda model: [])
     best, ended = best_so_far(
         advancing._named_instead(stub(settings=SETTINGS, problem=stub(model=None)), before, with_curve), with_curve
     )

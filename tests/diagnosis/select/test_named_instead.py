@@ -6,16 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from greybox_torch.diagnosis.select import forward
-from greybox_torch.diagnosis.select.forward import (
-    _as_far,
-    _before_pieces,
-    _in_pieces,
-    _name_before_fine_curve,
-    _stands_again,
-    _within_reach,
-    _without_curves,
-)
+from greybox_torch.diagnosis.select import forward, names_for_curve
+from greybox_torch.diagnosis.select.forward import _name_before_fine_curve, _stands_again, _without_curves
+from greybox_torch.diagnosis.select.names_for_curve import as_far_as_curve, before_pieces, in_pieces, within_reach
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import result_of
@@ -27,13 +20,13 @@ from greybox_torch.diagnosis.stopping import result_of
 )
 def test_more_than_two_names_at_the_place_of_a_curve_are_pieces_of_it(monkeypatch, stub, ports, pieces) -> None:
     """Seen: a slack spring, outside the library, told as gravity, a stop, a bias and a ripple at the pivot."""
-    monkeypatch.setattr(forward, "_joined_with", lambda study, port: {port})
+    monkeypatch.setattr(names_for_curve, "_joined_with", lambda study, port: {port})
     law = stub(needs=())
     before, added = stub(port="pivot", mechanism=law), [stub(port=port, mechanism=law) for port in ports]
     taken = stub(candidate=stub(attachment=stub(port="pivot", mechanism=stub(signal="deflection"))))
     with_curve = stub(steps=(stub(parent=stub(effects=(before,)), taken=taken),))
     branch = stub(effects=(before, *added))
-    assert _in_pieces(stub(settings=DiagnosisSettings()), with_curve, branch) is pieces  # type: ignore[arg-type]
+    assert in_pieces(stub(settings=DiagnosisSettings()), with_curve, branch) is pieces  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -49,17 +42,17 @@ def test_two_names_of_the_curves_own_signal_stand_only_where_the_curve_takes_up_
     monkeypatch, stub, signals, further, pieces
 ) -> None:
     """Seen: the transpiration of plants, outside the library, told as a leak and a flow above a threshold (0.97 each)."""
-    monkeypatch.setattr(forward, "window_significance", lambda before, after, settings: further)
-    monkeypatch.setattr(forward, "_joined_with", lambda study, port: {port})
+    monkeypatch.setattr(names_for_curve, "window_significance", lambda before, after, settings: further)
+    monkeypatch.setattr(names_for_curve, "_joined_with", lambda study, port: {port})
     curve = stub(port="air", mechanism=stub(signal="level"))
     taken = stub(candidate=stub(attachment=curve))
     with_curve = stub(steps=(stub(parent=stub(effects=()), taken=taken),), current=stub(score=-2.2))
     added = tuple(stub(port="air", mechanism=stub(needs=needs)) for needs in signals)
     branch = stub(effects=added, current=stub(score=-2.1))
     study = stub(settings=DiagnosisSettings())
-    assert _in_pieces(study, with_curve, branch) is pieces  # type: ignore[arg-type]
+    assert in_pieces(study, with_curve, branch) is pieces  # type: ignore[arg-type]
     better = stub(effects=added, current=stub(score=-2.3))
-    assert _in_pieces(study, with_curve, better) is False  # type: ignore[arg-type]
+    assert in_pieces(study, with_curve, better) is False  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -69,26 +62,26 @@ def test_more_than_two_names_wherever_they_are_have_to_come_farther_than_the_cur
     monkeypatch, stub, names: int, score: float, as_far: bool
 ) -> None:
     """Seen: the heat of shear in an extruder, told as a lag of the room's temperature (0.97) beside the curve (0.50), after 137 s."""
-    monkeypatch.setattr(forward, "alone_at_noise", lambda *_: False)
-    monkeypatch.setattr(forward, "_joined_with", lambda study, port: {port})
+    monkeypatch.setattr(names_for_curve, "alone_at_noise", lambda *_: False)
+    monkeypatch.setattr(names_for_curve, "_joined_with", lambda study, port: {port})
     taken = stub(candidate=stub(attachment=stub(port="zone", mechanism=stub(signal="level"))))
     before = stub(effects=(), score=0.0)
     with_curve = stub(steps=(stub(parent=before, taken=taken),), current=stub(score=-2.0), plain=before)
     added = tuple(stub(port=f"elsewhere{k}", mechanism=stub(needs=())) for k in range(names))
     branch = stub(effects=added, current=stub(score=score))
-    assert _as_far(stub(settings=DiagnosisSettings()), with_curve, branch) is as_far  # type: ignore[arg-type]
+    assert as_far_as_curve(stub(settings=DiagnosisSettings()), with_curve, branch) is as_far  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("joined", "pieces"), [({"camera", "rotor"}, True), ({"camera"}, False)])
 def test_names_at_both_ends_of_a_spring_are_pieces_of_a_curve_at_one(monkeypatch, stub, joined, pieces) -> None:
     """Seen: a cable harness on a camera, told as gravity at the camera and a stop at the motor that turns it by a spring (0.97 each)."""
-    monkeypatch.setattr(forward, "window_significance", lambda before, after, settings: 5.0)
-    monkeypatch.setattr(forward, "joined_bodies", lambda model: [[stub(name=name) for name in joined]])
+    monkeypatch.setattr(names_for_curve, "window_significance", lambda before, after, settings: 5.0)
+    monkeypatch.setattr(names_for_curve, "joined_bodies", lambda model: [[stub(name=name) for name in joined]])
     taken = stub(candidate=stub(attachment=stub(port="camera", mechanism=stub(signal="position"))))
     with_curve = stub(steps=(stub(parent=stub(effects=()), taken=taken),), current=stub(score=-2.2))
     added = tuple(stub(port=port, mechanism=stub(needs=("position",))) for port in ("camera", "rotor"))
     study = stub(settings=DiagnosisSettings(), problem=stub(model=None))
-    assert _in_pieces(study, with_curve, stub(effects=added, current=stub(score=-2.1))) is pieces  # type: ignore[arg-type]
+    assert in_pieces(study, with_curve, stub(effects=added, current=stub(score=-2.1))) is pieces  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("gain", "followed"), [(0.05, False), (0.2, True)])
@@ -146,27 +139,27 @@ def test_names_are_looked_for_as_long_as_they_may_come_as_far_as_the_curve(stub,
     steps = (stub(parent=stub(score=gains[-1] - reached)),)
     branch = stub(effects=gains, current=stub(score=-reached), steps=steps)
     study = stub(settings=DiagnosisSettings(), budget=SearchBudget(most_effects=4))
-    assert _within_reach(study, with_curve, branch) is within  # type: ignore[arg-type]
+    assert within_reach(study, with_curve, branch) is within  # type: ignore[arg-type]
 
 
 def test_of_names_that_are_pieces_of_a_curve_the_first_is_asked_where_the_curve_does_not_hold(stub) -> None:
     """Seen: a pendulum's dry friction, which held-out recordings bear out and which was lost beside a warm-up and a ripple."""
     start, branch = grown(stub, {"dry": -1.0, "warmup": -1.1})
     curve = stub(current=stub(score=-2.0))
-    found = _before_pieces(start, curve, branch)
+    found = before_pieces(start, curve, branch)
     assert found is not None and found.current.effects == ("dry",) and found.steps == branch.steps[:2]
-    assert _before_pieces(start, curve, replace(start, steps=(*start.steps, stub(taken=None)))) is None
-    assert _before_pieces(start, curve, start) is None
+    assert before_pieces(start, curve, replace(start, steps=(*start.steps, stub(taken=None)))) is None
+    assert before_pieces(start, curve, start) is None
 
 
 def test_names_that_went_farther_than_the_curve_before_pieces_joined_them_are_asked_together(stub) -> None:
     """Seen: a stage's constant force and dry friction, with a ripple and a stop beside them: the constant force alone was told."""
     start, branch = grown(stub, {"bias": -0.5, "dry": -2.7, "ripple": -3.0, "stop": -3.5})
-    found = _before_pieces(start, stub(current=stub(score=-2.2)), branch)
+    found = before_pieces(start, stub(current=stub(score=-2.2)), branch)
     assert found is not None and found.current.effects == ("bias", "dry")
-    found = _before_pieces(start, stub(current=stub(score=-2.8)), branch)
+    found = before_pieces(start, stub(current=stub(score=-2.8)), branch)
     assert found is not None and found.current.effects == ("bias", "dry", "ripple")
-    found = _before_pieces(start, stub(current=stub(score=-3.4)), branch)
+    found = before_pieces(start, stub(current=stub(score=-3.4)), branch)
     assert found is not None and found.current.effects == ("bias",), "all of them are what is in pieces"
 
 

@@ -80,7 +80,7 @@ def test_not_where_one_law_does_or_no_effect_may_be_added(drawn) -> None:
 
 def test_two_that_do_not_come_as_far_as_the_curve_are_passed_over(drawn, monkeypatch) -> None:
     search, with_curve = drawn(uneven)
-    monkeypatch.setattr(forward, "_as_far", lambda *_: False)
+    monkeypatch.setattr(forward, "as_far_as_curve", lambda *_: False)
     monkeypatch.setattr(forward, "_without_curves", lambda *_: nothing(search.state))
     state = result_of(_named_instead(search.study, search.state, with_curve))
     assert state.effects == with_curve.effects
