@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from greybox_torch.data.asked_for import asked_for
 from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry, TimeEntry
+from greybox_torch.data.counts import check_counts
 from greybox_torch.data.checks import check_finite, check_length, check_time
 from greybox_torch.data.dataset import DataSet
 from greybox_torch.data.error_values import without_error_values
@@ -159,11 +160,13 @@ def _signal(
 def _in_unit(
     place: str, entry: ChannelEntry, formula: Expression, source: Source, values: NDArray[np.float64]
 ) -> NDArray[np.float64]:
+    found = source.unit(formula.text)
+    if "scale" not in entry.model_fields_set:
+        check_counts(place, formula, source.table(formula.text).path, entry.file_unit or found, entry.unit)
     if entry.file_unit is not None:
         rate = "" if entry.derivative is None else " / s"
         factor, offset = conversion(entry.file_unit + rate, entry.unit, f"{place}, file_unit")
         return values * factor + offset
-    found = source.unit(formula.text)
     if found and entry.unit and entry.derivative is None and "scale" not in entry.model_fields_set:
         factor = slip(found, entry.unit)
         if factor is not None:

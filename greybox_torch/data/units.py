@@ -130,8 +130,10 @@ def bare(unit: str) -> str:
 def slip(found: str, given: str) -> float | None:
     """The factor from the unit that a file says to the one that a card says, where both are known and the factor is not 1.
 
-    NaN where nobody can tell it, see TurnOrRadian.
+    NaN where nobody can tell it, see TurnOrRadian. None for the plain number that a file may say of an angle.
     """
+    if found == "1" and _ANGLE.search(_spelt(given)):
+        return None
     try:
         factor, offset = conversion(found, given, "")
     except TurnOrRadian:
