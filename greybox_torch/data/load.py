@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from greybox_torch.data.asked_for import asked_for
 from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry, TimeEntry
-from greybox_torch.data.counts import check_counts
 from greybox_torch.data.checks import check_finite, check_length, check_time
+from greybox_torch.data.counts import check_counts
 from greybox_torch.data.dataset import DataSet
 from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.expression import Expression

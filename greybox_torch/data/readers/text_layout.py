@@ -182,7 +182,7 @@ def _units(rows: list[list[str]], positions: dict[str, int]) -> dict[str, str] |
     """
     row = [cell.strip() for cell in rows[0]]
     given = {column: row[p] for column, p in positions.items() if p < len(row) and row[p]}
-    if not (given and all(map(_looks_like_unit, given.values())) or _are_units(row, rows[1:])):
+    if not ((given and all(map(_looks_like_unit, given.values()))) or _are_units(row, rows[1:])):
         return None
     told = {column: cell.strip("[]() ") for column, cell in given.items()}
     plain = {column: "1" if unit in _NO_UNIT[:5] else unit for column, unit in told.items()}
