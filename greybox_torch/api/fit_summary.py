@@ -97,7 +97,10 @@ def _print_correlations(console: Console, found: Estimation) -> None:
 
 def warnings(found: Estimation, given: Collection[str] = ()) -> list[str]:
     """What is doubtful about the estimate, in sentences; ``given`` are the states that the card gives a start value."""
-    lost = [name for name, deviation in found.parameter_deviations().items() if deviation == float("inf")]
+    elsewhere = {name for one in found.identifiability if one.kind == "start" for name in one.parameters}  # told below
+    lost = [
+        n for n, deviation in found.parameter_deviations().items() if deviation == float("inf") and n not in elsewhere
+    ]
     lines = [f"{told_at_bound(note.detail)}." for note in found.notes if note.kind is Termination.at_bound]
     if not found.problem.free.any():
         lines.append("All parameters are fixed, on the card or in the model: none is estimated.")
