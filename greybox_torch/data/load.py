@@ -201,7 +201,9 @@ def _processed(
         steps, gap = without_gaps(time), longest_gap(time)
         if gap is not None and card.resample is not None:
             done.notes.append(f"{gap}, filled with straight lines by resample")
-        if unevenness(time, gaps=False) > EVEN:
+        if (
+            unevenness(time, gaps=False, lost=card.resample is not None) > EVEN
+        ):  # lost samples are a warning of their own
             done.notes.append(
                 f"time stamps are uneven: steps between {steps.min():.6g} and {steps.max():.6g} s, median {sample_time:.6g} s"
                 + ("" if card.resample else f"; resample = {even_step(time)} at the top of the card makes them even")
