@@ -56,7 +56,8 @@ class Contradiction(InASentence):
 
     @property
     def found(self) -> str:
-        return f'{self.place}: column "{self.column}" is in {self.told} by its name, but the card says {self.said}'
+        said = "a plain number" if self.said == "1" else self.said
+        return f'{self.place}: column "{self.column}" is in {self.told} by its name, but the card says {said}'
 
 
 def contradictions(card: Path | None) -> list[Contradiction]:

@@ -1,4 +1,4 @@
-"""Counts of an encoder where an angle is wanted: nobody can tell how many make a turn."""
+"""Counts of an encoder where an angle is wanted, which nobody can tell the turns of; gravity beside accelerations."""
 
 from __future__ import annotations
 
@@ -95,3 +95,13 @@ def test_what_counts_are() -> None:
     assert [in_turns("e", unit) for unit in ("deg", "rev", "rad/s", "rpm")] == [
         "360*e/65536", "1*e/65536", "2*pi*e/65536", "60*e/65536",
     ]  # fmt: skip
+
+
+def test_gravity_in_a_line_of_units(tmp_path: Path) -> None:
+    """Seen: accelerations in m/s^2 were taken for multiples of gravity."""
+    for told, unit, factor in (("m/s^2", "g", 1 / 9.80665), ("g", "m/s^2", 9.80665)):
+        recorded(tmp_path, "acc", f"s;A;{told};deg\n")
+        with pytest.raises(UserError, match="expected file_unit = "):
+            load_dataset(card(tmp_path, f'column = "acc", unit = "{unit}"'))
+        data = load_dataset(card(tmp_path, f'column = "acc", unit = "{unit}", file_unit = "{told}"'))
+        assert data.recordings[0].signals["angle"][1] == pytest.approx(300.0 * factor)
