@@ -64,7 +64,8 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     formulas = {name: entry.expression(experiment.columns.get(name)) for name, entry in card.channels.items()}
     needed = [column for formula in formulas.values() for column in formula.columns]
     needed += [clock] if clock else []
-    with asked_for(place, formulas, clock, alone=len(card.experiment) == 1):
+    others = [path.parent / file for other in card.experiment if other is not experiment for file in other.file[:1]]
+    with asked_for(place, formulas, clock, others, read):
         known = without_error_values(read, card.channels, formulas)
         source = source_of(files, experiment.join, list(dict.fromkeys(needed)), clock, known)
     start, stop = _rows(place, source, experiment.rows)
