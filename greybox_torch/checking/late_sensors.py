@@ -28,8 +28,8 @@ class LateSensor(InASentence):
         """What is there, in a sentence."""
         return (
             f'[[experiment]] "{self.experiment}": no output has a sample in its first tenth, from which start states are estimated '
-            f"(the first one is {self.seconds:.4g} s after the start); it is simulated from those of the card or the model, which may be far "
-            "from where the machine was"
+            f"(the first one is {self.seconds:.4g} s after the start); it is simulated from those of the card or the model, which may be "
+            "far from where the machine was"
         )
 
 

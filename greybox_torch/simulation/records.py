@@ -142,7 +142,7 @@ def _other_unit(dataset: DataSet, name: str, found: str, wanted: str) -> str:
     try:
         of_one_quantity = dimensionality(found) == dimensionality(wanted)
     except ValueError:  # a unit of the user's own
-        return f"expected values and unit of the model{meant(found, wanted)}"
+        of_one_quantity = True
     if not of_one_quantity:
         return (
             f"{found} cannot be converted to {wanted}{gravity(found, wanted)}; expected a column whose values are in {wanted}, "
@@ -158,7 +158,7 @@ def _by_hand(name: str, found: str, wanted: str) -> str:
     try:
         factor, offset = conversion(found, wanted, "")
     except UserError:  # turns or radians, for example
-        return "expected values and unit of the model"
+        return f"expected values and unit of the model{meant(found, wanted)}"
     added = f" and add {offset:.9g}" if offset else ""
     return f'expected values in it: multiply those of "{name}" by {factor:.9g}{added}, and write units={{"{name}": "{wanted}"}}'
 
