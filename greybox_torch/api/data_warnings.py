@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from greybox_torch.checking.constant_channels import constant_channels
 from greybox_torch.checking.joined_files import joined_files
+from greybox_torch.checking.late_sensors import late_sensors
 from greybox_torch.checking.lone_samples import lone_samples
 from greybox_torch.checking.missing_inputs import missing_inputs
 from greybox_torch.checking.shared_rows import shared_rows
@@ -48,5 +49,6 @@ def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning
         *lone_samples(data, joined),
         *wrapped_channels(data),
         *(missing_inputs(data, model) if model is not None else ()),
+        *(late_sensors(data, model) if model is not None else ()),
         *(short_records(data, model) if model is not None else ()),
     ]

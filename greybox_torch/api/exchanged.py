@@ -102,7 +102,7 @@ def _changes(model: GreyBoxModel) -> Iterator[Change]:
             yield Change({one: other, other: one}, f"are the columns of {listed([one, other])} exchanged")
     for signals in sides:
         for signal in signals if len(signals) <= MOST_ALIKE else ():
-            yield Change({signal.name: signal.name}, f"has {signal.name} the other sign", -1.0)
+            yield Change({signal.name: signal.name}, f"is the sign of {signal.name} turned", -1.0)
 
 
 def _beginnings(data: DataSet) -> DataSet | None:

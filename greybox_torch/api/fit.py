@@ -27,7 +27,7 @@ from greybox_torch.estimate.identifiability import Unidentifiable, identifiabili
 from greybox_torch.estimate.levenberg_marquardt import DEFAULT
 from greybox_torch.estimate.precision import settings_for
 from greybox_torch.estimate.problem import Problem, make_problem
-from greybox_torch.estimate.profile import SETTINGS, check_profiled, profile
+from greybox_torch.estimate.profile import SETTINGS, Profile, check_profiled, profile
 from greybox_torch.estimate.simulators import fine_enough, simulator_for
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.simulator import SimulationOptions, Simulator
@@ -55,7 +55,8 @@ def fit(
         starts: how many sets of start values to try, drawn around those given; by default only those given, and many
             where these turn out poor.
         seed: of the random start values.
-        profiles: names of free parameters whose profile likelihood (95 % interval) is wanted too.
+        profiles: names of free parameters whose profile likelihood (95 % interval) is wanted too. Ctrl-C while they are computed ends them
+            alone: the estimate is returned, without the profiles that were not done.
         device: "cpu", "cuda" or "cuda:N".
         precision: "double" or "single".
         progress: is told what is being done.
@@ -88,10 +89,7 @@ def fit(
         starts=starts,
         seed=check_seed(seed),
     )
-    drawn = {}
-    for name in names:
-        drawn[name] = profile(found, simulator, name, settings=settings_for(precision, SETTINGS))
-        progress(f"profile of {name}: {len(drawn[name].values)} points")
+    drawn = _profiles(found, simulator, names, precision, progress)
     comparisons = _compared(data, given, found, simulator)
     question = _question(data, given, comparisons["refit"], simulator, progress)
     seconds = time.perf_counter() - began
@@ -102,6 +100,22 @@ def _at_start(problem: Problem, simulator: Simulator) -> tuple[Unidentifiable, .
     """What the data do not determine, as far as the start values tell."""
     start = FreeRun(problem, simulator)
     return identifiability(start, start.start)
+
+
+def _profiles(
+    found: Estimation, simulator: Simulator, names: tuple[str, ...], precision: str, progress: Callable[[str], None]
+) -> dict[str, Profile]:
+    """Those that were done before Ctrl-C, if it came: the estimate would be lost with them."""
+    drawn: dict[str, Profile] = {}
+    try:
+        for name in names:
+            progress(f"profile of {name}: Ctrl-C leaves it out, and keeps the estimate")
+            drawn[name] = profile(found, simulator, name, settings=settings_for(precision, SETTINGS))
+            progress(f"profile of {name}: {len(drawn[name].values)} points")
+    except KeyboardInterrupt:
+        left = ", ".join(name for name in names if name not in drawn)
+        progress(f"interrupted: the estimate is kept, without the profile of {left}")
+    return drawn
 
 
 def _question(

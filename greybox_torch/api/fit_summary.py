@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.api.estimated import EstimatedStart, estimated_parameters, estimated_starts
-from greybox_torch.api.scores import print_substeps
+from greybox_torch.api.scores import print_substeps, squared_unit
 from greybox_torch.estimate.brief_lists import brief_pairs, brief_sentences
 from greybox_torch.estimate.far_starts import far_starts, told_far
 from greybox_torch.estimate.fit import Estimation
@@ -39,13 +39,13 @@ def print_estimate(
 
 def statistics(found: Estimation) -> dict[str, str]:
     """How the estimation ended, in words."""
-    fpe = f"{found.fpe:.6g}" if found.fpe < float("inf") else "undetermined: no more samples than unknowns"
-    several = " (each output's error over its spread)" if len(found.problem.model.outputs) > 1 else ""
+    unit = squared_unit(found.problem.model.outputs)
+    fpe = f"{found.fpe:.6g}{unit}" if found.fpe < float("inf") else "undetermined: no more samples than unknowns"
     return {
         "termination": found.termination.value,
         "iterations": f"{found.iterations} (of the descent that ended here; not of windows, of a search, or of descents that were left)",
         "evaluations": str(found.evaluations),
-        "mean squared error": f"{found.mse:.6g}{several}",
+        "mean squared error": f"{found.mse:.6g}{unit}",
         "final prediction error": fpe,
         "samples": str(found.samples),
     }
@@ -97,7 +97,10 @@ def _print_correlations(console: Console, found: Estimation) -> None:
 
 def warnings(found: Estimation, given: Collection[str] = ()) -> list[str]:
     """What is doubtful about the estimate, in sentences; ``given`` are the states that the card gives a start value."""
-    lost = [name for name, deviation in found.parameter_deviations().items() if deviation == float("inf")]
+    elsewhere = {name for one in found.identifiability if one.kind == "start" for name in one.parameters}  # told below
+    lost = [
+        n for n, deviation in found.parameter_deviations().items() if deviation == float("inf") and n not in elsewhere
+    ]
     lines = [f"{told_at_bound(note.detail)}." for note in found.notes if note.kind is Termination.at_bound]
     if not found.problem.free.any():
         lines.append("All parameters are fixed, on the card or in the model: none is estimated.")

@@ -16,6 +16,7 @@ from greybox_torch.api.data_warnings import all_warnings
 from greybox_torch.api.result import HELD_OUT, Result
 from greybox_torch.data import DataSet
 from greybox_torch.data.data_warning import DataWarning
+from greybox_torch.name_lists import brief
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
 
@@ -125,12 +126,25 @@ class InspectionResult(Result):
         return rows
 
     def _notes(self) -> list[str]:
-        notes = [f"{recording.name}: {note}." for recording in self.data.recordings for note in recording.notes]
+        alike: dict[str, list[str]] = {}
+        for recording in self.data.recordings:
+            for note in recording.notes:
+                alike.setdefault(note, []).append(recording.name)
+        notes = [f"{brief(names)}: {note}." for note, names in alike.items()]
         notes += [f"warning: {self.data.place()}: {found}" for found in self.warnings]
+        notes += self._without_unit()
         notes += [HELD_OUT] if self.data.held_out_by_default else []
         if self.model is not None:
             notes.append(f"Channels, parameters and start states fit the model {self.model}.")
         return notes
+
+    def _without_unit(self) -> list[str]:
+        """What units the model takes channels in that have none: in Python nothing else says it."""
+        signals = [] if self.checked is None else [*self.checked.inputs, *self.checked.outputs]
+        taken = [
+            f"{s.name} as {s.unit}" for s in signals if s.unit not in ("", "1") and not self.data.channels[s.name].unit
+        ]
+        return [f"Channels without a unit are taken in the model's units: {', '.join(taken)}."] if taken else []
 
 
 def inspect(data: DataSet, model: GreyBoxModel | str | None = None) -> InspectionResult:

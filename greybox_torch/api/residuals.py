@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 FIGURE = "residuals.png"
 
 _EXPLANATION = (
-    "whiteness: largest autocorrelation at lags 1 to 25; correlation with an input: largest at lags 0 to 25.",
+    "Autocorrelation: the largest at lags 1 to 25, near 0 where errors are as random as noise; correlation with an input: the largest at "
+    "lags 0 to 25. The bounds are those of one lag; white: no autocorrelation is beyond what chance gives over all lags together.",
     "Above the bound, something repeatable is left in the residual. What correlates with the input a better model can remove.",
 )
 
@@ -101,11 +102,12 @@ class ResidualResult(Result):
         return f"{self.run.data.name}: residuals of {self.run.problem.model.title}, {self.name}"
 
     def _table(self) -> tuple[list[str], list[list[str | float]]]:
-        columns = ["experiment", "role", "output", "rmse", "unit", "whiteness", "99 %\nbound"]
+        columns = ["experiment", "role", "output", "rmse", "unit", "largest auto-\ncorrelation", "99 %\nbound"]
         columns += [
             heading for name in self.tests[0].inputs for heading in (f"correlation\nwith {name}", "99 %\nbound")
         ]
-        return columns, [list(row.values()) for row in self.scores]
+        white = ["yes" if test.whiteness.within_chance else "no" for test in self.tests]
+        return [*columns, "white"], [[*row.values(), w] for row, w in zip(self.scores, white, strict=True)]
 
 
 def residuals(

@@ -12,11 +12,20 @@ from rich.text import Text
 from greybox_torch.api.result import HELD_OUT
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Score
+from greybox_torch.model import Output
 from greybox_torch.report.tables import print_table
 from greybox_torch.simulation.substeps import LARGEST
 
 Scores = Mapping[str, Sequence[Score]]
 """By model ("start", "refit", "augmented", …), all in the order of the data set's experiments."""
+
+
+def squared_unit(outputs: Sequence[Output]) -> str:
+    """The unit of a mean squared error, behind the number: of several outputs each one's error is divided by the output's spread."""
+    if len(outputs) > 1:
+        return " (each output's error over its spread)"
+    unit = outputs[0].unit if outputs else ""
+    return "" if unit in ("", "1") else f" {unit}^2" if unit.isalpha() else f" ({unit})^2"
 
 
 def score_rows(data: DataSet, scores: Scores) -> list[dict[str, Any]]:

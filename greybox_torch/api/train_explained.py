@@ -72,7 +72,9 @@ def print_explanation(console: Console, explained: Explanation, scores: Scores) 
 
 def _row(term: NamedTerm) -> list[str]:
     matched = "" if term.match is None else f"{100 * term.match:.0f} %"
-    values = ", ".join(f"{name} {value:.4g}" for name, value in term.parameters.items())
+    units = term.attachment.own({p.name: p.unit for p in term.problem.model.declared_parameters})
+    told = (f"{name} {value:.4g} {units[name]}".rstrip() for name, value in term.parameters.items())
+    values = ", ".join(told)
     return [term.attachment.mechanism.name, matched, _beside(term.lost), values]
 
 

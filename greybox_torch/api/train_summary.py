@@ -8,7 +8,7 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.api.scores import Scores, print_scores, print_substeps
+from greybox_torch.api.scores import Scores, print_scores, print_substeps, squared_unit
 from greybox_torch.api.train_explained import print_explanation
 from greybox_torch.data import DataSet
 from greybox_torch.model import GreyBoxModel
@@ -55,7 +55,7 @@ def training_sentence(found: Trained) -> str:
         return f"A network at {network.port} predicts the held-out stretches no better than the physics alone: it is left at zero."
     return (
         f"With a network at {network.port} the mean squared error of the estimation experiments falls from "
-        f"{found.physics.mse:.4g} to {found.result.mse:.4g}."
+        f"{found.physics.mse:.4g} to {found.result.mse:.4g}{squared_unit(found.result.problem.model.outputs)}."
     )
 
 
@@ -89,4 +89,9 @@ def choice_rows(found: Trained) -> list[list[str | float]]:
 
 
 def _print_choices(console: Console, found: Trained) -> None:
-    print_table(console, ["free run on the held-out stretches", "mean squared error", ""], choice_rows(found))
+    unit = squared_unit(found.result.problem.model.outputs)
+    print_table(
+        console,
+        ["free run on the held-out stretches", f"mean squared error\n{unit.strip()}".strip(), ""],
+        choice_rows(found),
+    )

@@ -82,7 +82,11 @@ def rests(recording: Recording, name: str) -> bool:
 def resting_at(recordings: Sequence[Recording], name: str, unit: str | None) -> str:
     """In words, where a channel rests in recordings."""
     values = _values(recordings, name)
-    return " ".join(filter(None, [f"{values[0]:.6g}", unit])) if len(values) == 1 else "at a value of its own in each"
+    return (
+        " ".join(filter(None, [f"{values[0]:.6g}", "" if unit == "1" else unit]))
+        if len(values) == 1
+        else "at a value of its own in each"
+    )
 
 
 def _values(recordings: Sequence[Recording], name: str) -> list[float]:

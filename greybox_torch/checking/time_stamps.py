@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,11 +32,14 @@ def odd_time_stamps(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterato
     and experiments whose sample times differ by a thousand, as seconds and milliseconds do.
     """
     for recording in data.recordings:
-        gap, lost = longest_gap(recording.time), lost_samples(recording.time)
+        gap = longest_gap(recording.time)
         if gap is not None:
             yield _gap(recording, gap, _rows_on_the_card(data, recording))
-        if lost:
-            yield _lost(recording, lost)
+    of_step: dict[str, list[tuple[Recording, tuple[Lost, ...]]]] = {}
+    for recording in data.recordings:
+        if lost := lost_samples(recording.time):
+            of_step.setdefault(even_step(recording.time), []).append((recording, lost))
+    yield from (_lost(step, losing) for step, losing in of_step.items())
     for name, files in joined.items():
         held_out = joined.get(f"{name} (held out)") if data.held_out_by_default else None
         for table in files.source.joined:
@@ -71,20 +74,36 @@ def _gap(recording: Recording, gap: Gap, rows: tuple[int, int]) -> OddTime:
     )
 
 
-def _lost(recording: Recording, lost: tuple[Lost, ...]) -> OddTime:
-    """Up to a few places are told; what is written are samples of the file."""
+def _lost(step: str, losing: Sequence[tuple[Recording, tuple[Lost, ...]]]) -> OddTime:
+    """Experiments of one ``step`` in one warning, the first ones with up to a few places; what is written are samples of the file."""
+    shown, others = losing[:_SHOWN], len(losing) - _SHOWN
+    found = "; ".join(f'"{recording.name}": {_places(lost)}' for recording, lost in shown)
+    more = f"; and {others} more experiment{'s' if others > 1 else ''}" if others > 0 else ""
+    pieces = [f"{_beginnings(*one)} of {_file(one[0], alone=not losing[1:])}" for one in shown]
+    return OddTime(
+        f"[[experiment]] {found} (from the start){more}, as where messages were lost; what drove the machine there is not known, which "
+        "under feedback may be much of a free run's error",
+        f"resample = {step} at the top of the card, which fills them with straight lines; or an experiment for each piece between them "
+        f"(pieces begin with the rows {'; '.join(pieces)})",
+    )
+
+
+def _places(lost: tuple[Lost, ...]) -> str:
     total, shown = sum(one.count for one in lost), lost[:_SHOWN]
     more = [f"{len(lost) - _SHOWN} more"] if len(lost) > _SHOWN else []
     where = listed([*(f"{one.count} after {one.seconds:.6g} s" for one in shown), *more])
-    first = listed([*(str(recording.rows[0] + one.after + 1) for one in shown), *(["…"] * bool(more))])
     samples = "1 sample is" if total == 1 else f"{total} samples are"
     places = "1 place" if len(lost) == 1 else f"{len(lost)} places"
-    return OddTime(
-        f'[[experiment]] "{recording.name}": {samples} missing in {places}, as where messages were lost: {where} (from the start); what '
-        "drove the machine there is not known, which under feedback may be much of a free run's error",
-        f"resample = {even_step(recording.time)} at the top of the card, which fills them with straight lines; or an experiment for each "
-        f"piece between them (pieces begin with the rows {first} of the file)",
-    )
+    return f"{samples} missing in {places}: {where}"
+
+
+def _beginnings(recording: Recording, lost: tuple[Lost, ...]) -> str:
+    more = ["…"] * (len(lost) > _SHOWN)
+    return listed([*(str(recording.rows[0] + one.after + 1) for one in lost[:_SHOWN]), *more])
+
+
+def _file(recording: Recording, *, alone: bool) -> str:
+    return "the file" if alone or recording.source is None else recording.source.name
 
 
 def _gap_of_joined(files: JoinedFiles, table: Table, gap: Gap) -> OddTime:

@@ -83,6 +83,8 @@ def _interruptible(snapshot: Path) -> Iterator[None]:
     except KeyboardInterrupt:
         if snapshot.is_file():
             Console(stderr=True, highlight=False).print(
-                f"stopped; the same command with --resume goes on from {snapshot}"
+                f"stopped; the same command with --resume goes on from {snapshot}, which has the epochs on windows; "
+                "Gauss-Newton and what follows are done again",
+                soft_wrap=True,
             )
         raise

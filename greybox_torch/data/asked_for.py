@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 
 from greybox_torch.data.expression import Expression
 from greybox_torch.data.readers.table import NoSuchColumn
@@ -17,21 +18,36 @@ def left_out(channel: str) -> str:
 
 
 @contextmanager
-def asked_for(place: str, channels: Mapping[str, Expression], clock: str | None, *, alone: bool) -> Iterator[None]:
+def asked_for(
+    place: str,
+    channels: Mapping[str, Expression],
+    clock: str | None,
+    others: Sequence[Path],
+    read: Callable[..., object],
+) -> Iterator[None]:
     """What the readers refuse within the block is told with the place on the card that asks for it.
 
     Args:
         place: the card and the experiment.
         channels: by name, what each is made of.
         clock: the column of time stamps, if there is one.
-        alone: whether it is the only experiment, so that it cannot be left out.
+        others: files of the other experiments, by ``read`` of which it is known whether one has what this one lacks.
     """
     try:
         yield
     except NoSuchColumn as error:
         wanting = [name for name, formula in channels.items() if error.column in formula.columns]
-        advice = f"; where only this experiment lacks it, {left_out(wanting[0])}" if wanting and not alone else ""
+        elsewhere = wanting and any(_has(read, file, error.column) for file in others)
+        advice = f"; other experiments have it: {left_out(wanting[0])}" if elsewhere else ""
         where = "".join(f', channel "{name}"' for name in wanting) or (", time" if error.column == clock else "")
         raise NoSuchColumn(f"{place}{where}: {error}{advice}", error.column) from None
     except UserError as error:
         raise UserError(f"{place}: {error}") from None
+
+
+def _has(read: Callable[..., object], file: Path, column: str) -> bool:
+    try:
+        read(file, (column,))
+    except UserError:
+        return False
+    return True

@@ -19,4 +19,4 @@ class InASentence:
     """A :class:`DataWarning` that as text is both in a sentence."""
 
     def __str__(self: DataWarning) -> str:
-        return f"{self.found}; expected {self.write}"
+        return f"{self.found}; write: {self.write}"

@@ -15,6 +15,7 @@ from greybox_torch.data.asked_for import asked_for
 from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry, TimeEntry
 from greybox_torch.data.checks import check_finite, check_length, check_time
+from greybox_torch.data.counts import check_counts
 from greybox_torch.data.dataset import DataSet
 from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.expression import Expression
@@ -63,7 +64,8 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     formulas = {name: entry.expression(experiment.columns.get(name)) for name, entry in card.channels.items()}
     needed = [column for formula in formulas.values() for column in formula.columns]
     needed += [clock] if clock else []
-    with asked_for(place, formulas, clock, alone=len(card.experiment) == 1):
+    others = [path.parent / file for other in card.experiment if other is not experiment for file in other.file[:1]]
+    with asked_for(place, formulas, clock, others, read):
         known = without_error_values(read, card.channels, formulas)
         source = source_of(files, experiment.join, list(dict.fromkeys(needed)), clock, known)
     start, stop = _rows(place, source, experiment.rows)
@@ -159,11 +161,13 @@ def _signal(
 def _in_unit(
     place: str, entry: ChannelEntry, formula: Expression, source: Source, values: NDArray[np.float64]
 ) -> NDArray[np.float64]:
+    found = source.unit(formula.text)
+    if "scale" not in entry.model_fields_set:
+        check_counts(place, formula, source.table(formula.text).path, entry.file_unit or found, entry.unit)
     if entry.file_unit is not None:
         rate = "" if entry.derivative is None else " / s"
         factor, offset = conversion(entry.file_unit + rate, entry.unit, f"{place}, file_unit")
         return values * factor + offset
-    found = source.unit(formula.text)
     if found and entry.unit and entry.derivative is None and "scale" not in entry.model_fields_set:
         factor = slip(found, entry.unit)
         if factor is not None:
@@ -198,7 +202,9 @@ def _processed(
         steps, gap = without_gaps(time), longest_gap(time)
         if gap is not None and card.resample is not None:
             done.notes.append(f"{gap}, filled with straight lines by resample")
-        if unevenness(time, gaps=False) > EVEN:
+        if (
+            unevenness(time, gaps=False, lost=card.resample is not None) > EVEN
+        ):  # lost samples are a warning of their own
             done.notes.append(
                 f"time stamps are uneven: steps between {steps.min():.6g} and {steps.max():.6g} s, median {sample_time:.6g} s"
                 + ("" if card.resample else f"; resample = {even_step(time)} at the top of the card makes them even")

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from greybox_torch.data.gaps import gap_steps, without_gaps
+from greybox_torch.data.gaps import gap_steps, lost_samples, without_gaps
 
 EVEN = 0.01
 """Time stamps are even where no step differs from the usual one by more than this share."""
@@ -29,11 +29,15 @@ def steps_of(time: NDArray[np.float64]) -> NDArray[np.float64]:
     return steps if mean is None else np.where(np.abs(steps - mean) <= _rounded(time), mean, steps)
 
 
-def unevenness(time: NDArray[np.float64], *, gaps: bool = True) -> float:
-    """The largest deviation of a step from the usual one, as a share of it. Without `gaps`, steps that are gaps do not count."""
+def unevenness(time: NDArray[np.float64], *, gaps: bool = True, lost: bool = True) -> float:
+    """The largest deviation of a step from the usual one, as a share of it. Without `gaps`, steps that are gaps do not count; without
+    `lost`, those over single samples that are missing do not.
+    """
     step, steps = usual_step(time), steps_of(time)
-    counted = steps if gaps else steps[~gap_steps(time)]
-    return float(np.max(np.abs(counted - step)) / step)
+    counted = np.ones(len(steps), dtype=bool) if gaps else ~gap_steps(time)
+    if not lost:
+        counted[[one.after for one in lost_samples(time)]] = False
+    return float(np.max(np.abs(steps[counted] - step), initial=0.0) / step)
 
 
 def even_step(time: NDArray[np.float64]) -> str:

@@ -38,28 +38,29 @@ class TurnOrRadian(UserError):
 def conversion(source: str, target: str, place: str) -> tuple[float, float]:
     """Factor and offset: value in `target` = factor × value in `source` + offset.
 
-    A hertz beside turns is a turn per second. Raises UserError, beginning with `place`, where a unit is unknown or they are not of one
-    quantity, and TurnOrRadian where they are but nobody can tell the factor: hertz beside rad/s, 1/s beside rpm.
+    A hertz beside turns is a turn per second; a "g" beside an acceleration one of gravity. Raises UserError, beginning with `place`, where
+    a unit is unknown or they are not of one quantity, and TurnOrRadian where they are but nobody can tell the factor: hertz beside rad/s,
+    1/s beside rpm.
     """
     import pint
 
     registry = _registry()
     try:
-        pair = (_turns(source, target), _turns(target, source))
+        pair = (_as_meant(source, target), _as_meant(target, source))
         units = [registry.Unit(_written(unit)) for unit in pair]
         of_hertz = _hertz_in_turns(source, target, units, place)
         zero, one = (registry.Quantity(value, units[0]).to(units[1]).magnitude for value in (0.0, 1.0))
     except pint.DimensionalityError:
-        meant = (gravity(source, target) or _meant(source, target, capitals=True)) if place else ""
+        hint = meant(source, target, capitals=True) if place else ""
         raise UserError(
-            f'{place}: "{source}" cannot be converted to "{target}"{meant}; expected units of one quantity'
+            f'{place}: "{source}" cannot be converted to "{target}"{hint}; expected units of one quantity'
         ) from None
     except UserError:
         raise
     except Exception as error:  # pint's parser raises what its tokenizer does
-        meant = (_meant(source, target) or _meant(target, source)) if place else ""
+        hint = (meant(source, target) or meant(target, source)) if place else ""
         raise UserError(
-            f'{place}: cannot convert "{source:.40}" to "{target:.40}": {" ".join(str(error).split()):.100}{meant}; '
+            f'{place}: cannot convert "{source:.40}" to "{target:.40}": {" ".join(str(error).split()):.100}{hint}; '
             'expected units such as "deg/s", "rpm" or "N cm", or a scale'
         ) from None
     return float(one - zero) * of_hertz, float(zero)
@@ -87,7 +88,7 @@ def _counted(unit: Any) -> str:
     return next((kind for word, kind in words.items() if word in str(unit)), "")
 
 
-def _meant(unit: str, other: str, *, capitals: bool = False) -> str:
+def meant(unit: str, other: str, *, capitals: bool = False) -> str:
     """A usual unit of the quantity of `other`, to end a message about `unit`; with `capitals`, one that differs in them alone."""
     if not capitals and _dimension(unit) is not None:
         return ""
@@ -130,8 +131,10 @@ def bare(unit: str) -> str:
 def slip(found: str, given: str) -> float | None:
     """The factor from the unit that a file says to the one that a card says, where both are known and the factor is not 1.
 
-    NaN where nobody can tell it, see TurnOrRadian.
+    NaN where nobody can tell it, see TurnOrRadian. None for the plain number that a file may say of an angle.
     """
+    if found == "1" and _ANGLE.search(_spelt(given)):
+        return None
     try:
         factor, offset = conversion(found, given, "")
     except TurnOrRadian:
@@ -169,8 +172,11 @@ def per_minute(unit: str) -> bool:
     return bool(_TURNS.fullmatch(unit.strip("[]() ")))
 
 
-def _turns(unit: str, other: str) -> str:
-    """Turns per minute where that is meant: "1/min" beside an angle or turns."""
+def _as_meant(unit: str, other: str) -> str:
+    """Gravity where "g" is meant as that, beside an acceleration; turns per minute where "1/min" is, beside an angle or turns."""
+    plain = bare(unit.strip("[]() "))
+    if plain in _GRAVITY and _dimension(other) == _dimension("m/s^2"):
+        return "mg0" if plain == "mg" else "g0"
     plain = unit.removesuffix(_RATE)
     return "rpm" + unit[len(plain) :] if per_minute(plain) and _ANGLE.search(_spelt(other)) else unit
 

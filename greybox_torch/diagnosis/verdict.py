@@ -36,7 +36,7 @@ NOISE_SHOWN = "that the recordings' highest frequencies show"
 OF_ESTIMATION = "On the experiments that it was estimated from"
 """How the second sentence of what is left begins."""
 
-STOPPED = "The search was stopped before it was done (time limit or interruption): the best verdict so far."
+STOPPED = "The search was stopped before it was done (time limit or interruption): this is what it had found by then."
 
 MOST_NAMED = 12
 """Candidates not tried any more up to which a sentence names them all."""
@@ -55,7 +55,7 @@ class NotTried:
         """For a reader."""
         told = []
         if self.stages:
-            told.append(f"Cut short: {'; '.join(self.stages)}.")
+            told.append(f"Not finished: {'; '.join(stage.partition(':')[0] for stage in self.stages)}.")
         if len(self.candidates) > MOST_NAMED:
             told.append(
                 f"Not tried any more: {len(self.candidates)} mechanisms at ports, which verdict.json lists (not_tried)."

@@ -90,10 +90,8 @@ def _channels(table: Drafted, model: GreyBoxModel | None) -> list[str]:
 
 
 def _channel(draft: Draft) -> str:
-    entry = [
-        f"column = {toml_text(draft.column if draft.column is not None else '…')}",
-        f"unit = {toml_text(draft.unit)}",
-    ]
+    column = f"column = {toml_text(draft.column if draft.column is not None else '…')}"
+    entry = [f"expr = {toml_text(draft.expr)}" if draft.expr else column, f"unit = {toml_text(draft.unit)}"]
     entry += [f"file_unit = {toml_text(draft.file_unit)}"] if draft.file_unit else []
     line = f"{toml_key(draft.name)} = {{ {', '.join(entry)} }}" + (f"    # {draft.remark}" if draft.remark else "")
     return line if draft.column is not None else f"# {line}"

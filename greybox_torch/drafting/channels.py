@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from greybox_torch.data.counts import ends_in_counts, in_turns, is_angle, is_count, named_as_count
 from greybox_torch.data.units import slip
 from greybox_torch.data.unwrapping import turn_within, unwrapped
 from greybox_torch.drafting.clock import SECONDS, Clock
@@ -22,13 +23,16 @@ _SAME_TURN = 1e-6
 
 @dataclass(frozen=True)
 class Draft:
-    """A line of [channels]: ``column`` is None where none was found, ``file_unit`` empty where it is the channel's."""
+    """A line of [channels]: ``column`` is None where none was found, ``file_unit`` empty where it is the channel's. ``expr`` is what may be
+    meant of counts, to be completed.
+    """
 
     name: str
     unit: str
     column: str | None
     file_unit: str = ""
     remark: str = ""
+    expr: str = ""
 
 
 @dataclass(frozen=True)
@@ -87,6 +91,10 @@ def _draft(
     channel: Wanted, found: dict[str, str], units: dict[str, str], suspected: dict[str, str], columns: Sequence[str]
 ) -> Draft:
     column = found.get(channel.name)
+    if is_angle(channel.unit) and (counts := _counts(column, found, units, columns)):
+        told = "how many counts has a turn? Write them for 65536"
+        doubt = "" if column else "; please check the column: guessed from its name"
+        return Draft(channel.name, channel.unit, None, remark=f"{told}{doubt}", expr=in_turns(counts, channel.unit))
     if column is None:
         free = [name for name in columns if name not in found.values()]
         left = f"; left over: {', '.join(free)}" if free else ""
@@ -101,6 +109,15 @@ def _draft(
         guess = suspected[channel.name]
         return Draft(channel.name, channel.unit, column, remark=f'its size suggests {guess}: add file_unit = "{guess}"')
     return Draft(channel.name, channel.unit, column, remark=doubt)
+
+
+def _counts(column: str | None, found: dict[str, str], units: dict[str, str], columns: Sequence[str]) -> str:
+    """The column of an angle that holds an encoder's counts: that which was found, or the only one left; else ""."""
+    if column is not None:
+        return column if is_count(units.get(column, "counts" if ends_in_counts(column) else "")) else ""
+    free = [name for name in columns if name not in found.values()]
+    counting = [n for n in free if is_count(units.get(n, "counts" if named_as_count(n) else ""))]
+    return counting[0] if len(counting) == 1 else ""
 
 
 def _gravity(column: str, wanted: str) -> str:

@@ -9,10 +9,12 @@ from pathlib import Path
 
 from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry
+from greybox_torch.data.counts import ends_in_counts, in_turns, is_angle
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.units import conversion, dimensionality, per_minute
 from greybox_torch.drafting.column_units import unit_in
 from greybox_torch.errors import UserError
+from greybox_torch.files import toml_text
 
 _KNOWN = re.compile(
     "s|ms|us|µs|ns|h|m|mm|cm|km|um|µm|kg|N|kN|mN|Nm|kNm|mNm|rad|mrad|deg|degrees|degC|degF|K|V|mV|kV|A|mA|W|kW|MW|mW|J|kJ|Pa|hPa|kPa|MPa|bar|mbar|psi|"
@@ -54,7 +56,8 @@ class Contradiction(InASentence):
 
     @property
     def found(self) -> str:
-        return f'{self.place}: column "{self.column}" is in {self.told} by its name, but the card says {self.said}'
+        said = "a plain number" if self.said == "1" else self.said
+        return f'{self.place}: column "{self.column}" is in {self.told} by its name, but the card says {said}'
 
 
 def contradictions(card: Path | None) -> list[Contradiction]:
@@ -85,6 +88,11 @@ def _of_channel(place: str, column: str, entry: ChannelEntry, columns: set[str])
     if "scale" in entry.model_fields_set:  # whoever gives a factor has thought of the unit
         return
     said = entry.file_unit or entry.unit
+    if ends_in_counts(column) and is_angle(said):
+        write = (
+            f"expr = {toml_text(in_turns(column, said))} for 65536 counts a turn; or, if the name is wrong, scale = 1.0"
+        )
+        yield Contradiction(place, column, "counts", said, write)
     rate = "" if entry.derivative is None or entry.file_unit else "/s"
     told, sure = _unit_of(column, columns, _dimension(said) == _TEMPERATURE)
     if not (told and said and _differ(told + rate, said)):

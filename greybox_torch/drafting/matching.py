@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 
+from greybox_torch.data.counts import is_angle, is_count, named_as_count
 from greybox_torch.data.units import conversion
 from greybox_torch.errors import UserError
 
@@ -67,13 +68,19 @@ def _only_ones_left(
 ) -> dict[str, str]:
     """Channels for which one column alone is left whose unit fits, and which that column alone fits."""
     open_ones = [channel for channel in wanted if channel.name not in found and channel.unit]
-    left = [column for column in columns if column not in found.values() and units.get(column)]
-    fitting = {channel.name: [c for c in left if fits(units[c], channel.unit)] for channel in open_ones}
+    left = [column for column in columns if column not in found.values()]
+    fitting = {ch.name: [c for c in left if _may_be(c, units.get(c, ""), ch.unit)] for ch in open_ones}
     return {
         name: mine[0]
         for name, mine in fitting.items()
-        if len(mine) == 1 and sum(mine[0] in others for others in fitting.values()) == 1
+        if len(mine) == 1 and units.get(mine[0]) and sum(mine[0] in others for others in fitting.values()) == 1
     }
+
+
+def _may_be(column: str, unit: str, wanted: str) -> bool:
+    """Whether a column's unit fits, or it holds counts that may be of the angle that is wanted."""
+    counts = is_count(unit) or (not unit and named_as_count(column))
+    return fits(unit, wanted) if unit and not counts else counts and is_angle(wanted)
 
 
 def _score(channel: Wanted, column: str, unit: str, wanted: Sequence[Wanted]) -> float:
@@ -110,7 +117,9 @@ def letter_unit(column: str, wanted: str) -> str:
 
 
 def fits(unit: str, wanted: str) -> bool:
-    """Whether one unit can be converted to the other."""
+    """Whether one unit can be converted to the other; counts, or a plain number, to an angle not without knowing how many make a turn."""
+    if is_angle(wanted) and (unit == "1" or is_count(unit)):
+        return False
     try:
         conversion(unit, wanted, "")
     except UserError:

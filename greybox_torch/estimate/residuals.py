@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from statistics import NormalDist
 
 import numpy as np
 
@@ -44,6 +45,11 @@ class Correlation:
     def outside(self) -> int:
         """How many of the tested lags exceed the bound."""
         return int((np.abs(self._tested) > self.bound).sum())
+
+    @property
+    def within_chance(self) -> bool:
+        """Whether the largest is no more than chance gives in one of a hundred records where there is nothing to find, over all lags."""
+        return self.largest <= self.bound * NormalDist().inv_cdf(1.0 - 0.005 / self.tested) / NORMAL_99
 
     @property
     def tested(self) -> int:

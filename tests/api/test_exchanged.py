@@ -60,7 +60,7 @@ def fitted(read: dict[str, str] | None = None, **sign: float) -> gt.FitResult:
     [
         ({"P1": "P2", "P2": "P1"}, {}, "re the columns of P1 and P2 exchanged"),
         ({"T1": "T2", "T2": "T1"}, {}, "re the columns of T1 and T2 exchanged"),
-        ({}, {"P2": -1.0}, "as P2 the other sign"),
+        ({}, {"P2": -1.0}, "s the sign of P2 turned"),
     ],
 )
 def test_a_slip_among_the_channels_is_asked_for(read: dict[str, str], sign: dict[str, float], asked: str) -> None:

@@ -150,3 +150,13 @@ def test_a_frame_with_further_columns_is_told_how_to_leave_them_out() -> None:
     named = {"voltage": "voltage", "speed": "speed"}
     made = gt.Recording.from_dataframe("steps", samples, sample_time=0.01, units=units, columns=named)
     assert "steps" in gt.simulate(Motor(), gt.DataSet([made]))
+
+
+def test_channels_without_a_unit_are_told() -> None:
+    """Seen: a speed in rpm was taken for rad/s without a word."""
+    samples = {name: np.linspace(0.0, 1.0, 30) for name in ("voltage", "speed")}
+    one = gt.Recording.from_arrays("steps", samples, sample_time=0.01, units={"voltage": "V"})
+    said = "Channels without a unit are taken in the model's units: speed as rad/s."
+    assert said in str(gt.inspect(gt.DataSet([one]), Motor()))
+    both = gt.Recording.from_arrays("steps", samples, sample_time=0.01, units={"voltage": "V", "speed": "rad/s"})
+    assert "without a unit" not in str(gt.inspect(gt.DataSet([both]), Motor()))

@@ -13,7 +13,7 @@ from greybox_torch.report.sections.effects import Effects
 from greybox_torch.report.sections.headline import Headline
 from tests.diagnosis.test_verdict import BACKLASH, verdict
 
-CUT = NotTried(("searching",), (("rotor", "quadratic_drag"), ("rotor", "constant_bias")))
+CUT = NotTried(("searching: screen, refit, select",), (("rotor", "quadratic_drag"), ("rotor", "constant_bias")))
 
 
 @pytest.mark.parametrize("effects", [(), (BACKLASH,)])
@@ -22,7 +22,7 @@ def test_a_search_that_was_stopped_says_so_and_what_was_not_tried(effects) -> No
     told = notes(replace(verdict(*effects, complete=False), evidence=("some tests", STOPPED), not_tried=CUT))
     assert told.count(STOPPED) == 1
     assert told[-2:] == [
-        "Cut short: searching.",
+        "Not finished: searching.",
         "Not tried any more: quadratic drag at rotor, constant bias at rotor.",
     ]
 

@@ -108,7 +108,7 @@ def test_a_gap_that_the_rows_begin_in(card: Path) -> None:
     card.write_text(card.read_text() + "rows = [275, 800]\n")
     (gap,) = told(card)
     assert "no sample for 100 s, from 0 to 100 s after the start" in gap and gap.endswith(
-        "expected rows = [300, 800], if an input is among these"
+        "write: rows = [300, 800], if an input is among these"
     )
 
 

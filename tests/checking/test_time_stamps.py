@@ -16,6 +16,7 @@ from greybox_torch.checking.time_stamps import OddTime, odd_time_stamps
 from greybox_torch.cli import app
 from greybox_torch.data import DataSet, Recording, load_dataset
 from greybox_torch.data.gaps import longest_gap, lost_samples, without_gaps
+from greybox_torch.data.steps import unevenness
 
 EVEN: np.ndarray = np.arange(400) * 0.01
 
@@ -125,3 +126,13 @@ def test_lost_samples_are_told_with_places_and_what_to_write() -> None:
 )
 def test_no_lost_samples(time: np.ndarray) -> None:
     assert lost_samples(time) == ()
+
+
+def test_lost_samples_of_several_experiments_are_one_warning() -> None:
+    """Seen: the same advice three times, beside "time stamps are uneven" three times."""
+    time = np.delete(EVEN, [100, 300])
+    data = DataSet([recorded(name, time) for name in ("A", "B", "C", "D")], held_out_by_default=False)
+    (odd,) = odd_time_stamps(data, {})
+    assert odd.found.count("2 samples are missing in 2 places") == 3 and "and 1 more experiment," in odd.found
+    assert "; write: resample = 0.01" in str(odd) and odd.write.count("100 and 299") == 3
+    assert unevenness(time) == 1.0 and unevenness(time, lost=False) < 1e-6

@@ -71,6 +71,7 @@ def test_summary(motor_folder: Make, edit: Edit) -> None:
         "final prediction error: ",
     ):
         assert any(line.startswith(name) for line in lines), name
+    assert sum(line.endswith(" (rad/s)^2") for line in lines) == 2
     assert any(line.startswith("Sweep validation speed") for line in lines)
     assert "iteration 1: mean squared error" in result.stderr
     assert "iteration 2: mean squared error" in result.stderr

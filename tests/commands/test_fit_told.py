@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 
 import greybox_torch as gt
+from greybox_torch.api.fit_summary import warnings
+from greybox_torch.estimate.identifiability import Unidentifiable
 from greybox_torch.estimate.termination import Termination
 from tests.commands.fitting import Edit, Make, fit
 
@@ -126,6 +129,30 @@ def test_profiles(motor_folder: Make) -> None:
         assert (folder / "out" / f"profile_{name}.png").read_bytes().startswith(b"\x89PNG")
         assert f"{name}: {row['lower']:.5g}" in result.stderr
     assert json.loads((folder / "out" / "fit.json").read_text()) == found
+
+
+def test_one_advice_where_another_parameter_hides_the_others(motor_folder: Make) -> None:
+    """Seen: "do not determine J and k, alone or together: fix one" before "they can elsewhere; an estimate is possible"."""
+    data = gt.load_dataset(motor_folder() / "dataset.toml")
+    found = gt.fit(gt.load_model(data.model), data).estimation
+    assert found.uncertainty is not None
+    start = Unidentifiable("start", ("J",), (1.0,), "J: has no effect at these values, but it has elsewhere")
+    lost = replace(found, uncertainty=replace(found.uncertainty, undetermined=(0,)), identifiability=(start,))
+    assert [line for line in warnings(lost) if line.startswith(("The data do not", "J:"))] == [f"{start.sentence}."]
+
+
+def test_ctrl_c_in_a_profile_keeps_the_estimate(motor_folder: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seen: the estimate was lost with the profile."""
+
+    def stopped(*given: object, **settings: object) -> None:
+        raise KeyboardInterrupt
+
+    folder = motor_folder()
+    monkeypatch.setattr("greybox_torch.api.fit.profile", stopped)
+    result = fit(folder, "--profile", "J", "--profile", "b")
+    assert result.exit_code == 0
+    assert "interrupted: the estimate is kept, without the profile of J, b" in result.stderr
+    assert json.loads((folder / "out" / "fit.json").read_text())["profiles"] == {}
 
 
 def test_substeps_are_told(motor_folder: Make, edit: Edit) -> None:

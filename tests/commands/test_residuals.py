@@ -42,6 +42,17 @@ def test_residuals_for_people(motor_folder: Make) -> None:
     assert any(line.split()[:3] == ["Sweep", "validation", "speed"] for line in result.stdout.splitlines())
 
 
+def test_the_table_says_what_is_white(motor_folder: Make) -> None:
+    """Seen: 0.999 under "whiteness" was read as very white."""
+    folder = motor_folder()
+    wrong, right = (
+        greybox("residuals", folder, *more).stdout for more in ((), ("--checkpoint", saved(folder, "good")))
+    )
+    assert "correlation" in wrong and "whiteness" not in wrong
+    told = [[line.split()[-1] for line in text.splitlines() if " rad/s " in line] for text in (wrong, right)]
+    assert told == [["no"] * 3, ["yes"] * 3]
+
+
 def test_residuals_of_a_model_without_inputs(motor_folder: Make, edit: Edit) -> None:
     folder = motor_folder()
     edit(folder / "my_motor.py", '    inputs = [Input("voltage", "V")]\n', "")

@@ -24,10 +24,11 @@ def told(card: Path) -> str:
 def test_a_column_that_is_not_there(bench: Path, edit: Edit) -> None:
     card = bench / "dataset.toml"
     edit(card, 'column = "y"', 'column = "Y"')
-    assert told(card) == (
-        f'{card}, [[experiment]] "Steps", channel "speed": {bench / "steps.csv"}: no column "Y" (did you mean "y"?); found t, u, y; '
-        f"where only this experiment lacks it, {OUT}"
-    )
+    said = f'{card}, [[experiment]] "Steps", channel "speed": {bench / "steps.csv"}: no column "Y" (did you mean "y"?); found t, u, y'
+    assert told(card) == said, "seen: what to do where only this experiment lacks it, though no file has it"
+    (bench / "steps.csv").write_text((bench / "steps.csv").read_text().replace("t,u,y", "t,u,z"))
+    edit(card, 'column = "Y"', 'column = "y"')
+    assert told(card).endswith(f'no column "y"; found t, u, z; other experiments have it: {OUT}')
 
 
 def test_the_column_of_the_only_experiment(bench: Path, edit: Edit) -> None:

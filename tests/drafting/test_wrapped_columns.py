@@ -25,7 +25,7 @@ class Motor(GreyBoxModel):
 """
 
 
-@pytest.mark.parametrize(("together", "expected"), [(True, "motor_counts"), (False, "motor_raw")])
+@pytest.mark.parametrize(("together", "expected"), [(True, "2*pi*motor_counts/65536"), (False, "motor_raw")])
 def test_the_column_that_counts_on(tmp_path: Path, together: bool, expected: str) -> None:
     """Seen: the raw angle of 14 bits was taken, beside the same counts with the turns added up."""
     time = 0.001 * np.arange(4000)
@@ -36,5 +36,5 @@ def test_the_column_that_counts_on(tmp_path: Path, together: bool, expected: str
     np.savetxt(tmp_path / "run.csv", rows, "%.6g", ",", header=names, comments="")
     (tmp_path / "motor.py").write_text(MODEL)
     text = gt.card([tmp_path / "run.csv"], f"{tmp_path / 'motor.py'}:Motor").text
-    (line,) = [line for line in text.splitlines() if line.startswith("motor")]
-    assert f'column = "{expected}"' in line
+    (line,) = [line for line in text.splitlines() if line.lstrip("# ").startswith("motor =")]
+    assert f' = "{expected}"' in line

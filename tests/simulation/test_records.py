@@ -79,6 +79,22 @@ def test_channels_that_are_not_the_models(
         make_records(data, motor, data.recordings)
 
 
+@pytest.mark.parametrize(
+    ("unit", "told"),
+    [
+        ("rpm", 'multiply those of "speed" by 0.104719755, and write units={"speed": "rad/s"}'),
+        ("rmp", 'did you mean "rpm"?'),
+        ("Hz", "expected values and unit of the model"),
+    ],
+)
+def test_values_of_python_in_another_unit(motor: GreyBoxModel, unit: str, told: str) -> None:
+    """Seen: "expected values and unit of the model", and no word of how to come there."""
+    signals = {"voltage": np.ones(20), "speed": np.ones(20)}
+    data = DataSet([Recording.from_arrays("run", signals, sample_time=0.1, units={"speed": unit})])
+    with pytest.raises(UserError, match=re.escape(told)):
+        make_records(data, motor, data.recordings)
+
+
 def test_a_model_in_multiples_of_gravity_that_are_written_as_grams() -> None:
     """Seen: "expected a column whose values are in g", and not a word that g is the gram."""
     sensor = type(

@@ -7,7 +7,7 @@ one of a file, whether or not it has a line of names.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
@@ -22,6 +22,8 @@ HEAD = 300  # lines among which the line of names stands
 _LONGEST_LINE = 2**20
 _POSITION = re.compile(r"#([1-9]\d{0,5})")
 _MISSING = {"na", "n/a", "null", "none", "-", "--", "?", "missing", "nil", "#n/a"}
+_NO_UNIT = ("1", "-", "--", "–", "—", "none", "n/a", "na")
+"""What stands in a line of units for a column that has none; the first five say that it is a plain number."""
 _UNIT = re.compile(r"[\[(]?[\w°%/·*^².\-–\s]{1,24}[\])]?")
 
 
@@ -88,7 +90,7 @@ def layout_of(path: Path, file: TextIO, columns: Collection[str]) -> Layout:
     _check_once(path, line, wanted, names)
     positions = {column: numbered[column] if column in numbered else names.index(column) for column in columns}
     after = [row for _, row in rows_of(iter(head[line:]), delimiter, line, strict=False)]
-    units = _units(after[0], positions) if line and after else None
+    units = _units(after, positions) if line and after else None
     samples = after[units is not None :]
     least = max(positions.values()) + 1
     width = len(names) if line else least
@@ -174,14 +176,29 @@ def _check_once(path: Path, line: int, wanted: list[str], names: list[str]) -> N
             raise UserError(f'{path}, line {line}: {names.count(column)} columns are named "{column}"; expected one')
 
 
-def _units(row: list[str], positions: dict[str, int]) -> dict[str, str] | None:
-    """The units in the line beneath the names: text in every column that is not empty there, and no mark of a missing sample."""
-    cells = {column: row[p].strip() for column, p in positions.items() if p < len(row)}
-    given = {column: cell for column, cell in cells.items() if cell}
-    looks: Callable[[str], bool] = lambda cell: not is_number(cell, "") and cell.lower() not in _MISSING  # noqa: E731
-    if not given or not all(looks(cell) and _UNIT.fullmatch(cell) for cell in given.values()):
+def _units(rows: list[list[str]], positions: dict[str, int]) -> dict[str, str] | None:
+    """The units in the line beneath the names: text in every column that is not empty there, and no mark of a missing sample. Where columns
+    without a unit have such a mark, text above numbers elsewhere in the line tells that it has units.
+    """
+    row = [cell.strip() for cell in rows[0]]
+    given = {column: row[p] for column, p in positions.items() if p < len(row) and row[p]}
+    if not ((given and all(map(_looks_like_unit, given.values()))) or _are_units(row, rows[1:])):
         return None
-    return {column: cell.strip("[]() ") for column, cell in given.items()}
+    told = {column: cell.strip("[]() ") for column, cell in given.items()}
+    plain = {column: "1" if unit in _NO_UNIT[:5] else unit for column, unit in told.items()}
+    return {column: unit for column, unit in plain.items() if unit and unit.lower() not in _NO_UNIT[5:]}
+
+
+def _are_units(row: list[str], beneath: list[list[str]]) -> bool:
+    """Whether all cells that are not empty are units or say that there is none, and numbers stand beneath one of the units."""
+    units = [p for p, cell in enumerate(row) if cell and _looks_like_unit(cell)]
+    others = [cell for cell in row if cell and not _looks_like_unit(cell)]
+    above_numbers = any(is_number(cell, "") for p in units if (cell := _first(beneath, p)))
+    return above_numbers and all(cell.lower() in _NO_UNIT for cell in others)
+
+
+def _looks_like_unit(cell: str) -> bool:
+    return not is_number(cell, "") and cell.lower() not in _MISSING and _UNIT.fullmatch(cell) is not None
 
 
 def _decimal(delimiter: str, rows: list[list[str]], positions: dict[str, int]) -> str:

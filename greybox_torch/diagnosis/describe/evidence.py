@@ -9,6 +9,7 @@ import numpy as np
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest
+from greybox_torch.diagnosis.describe.unit_of_errors import unit_of_errors
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
@@ -48,7 +49,7 @@ def sentences(
         "Root mean square error over those windows, model as it stands: "
         + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in plain)
         + ("; with the effects: " + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in final) if effects else "")
-        + " (weighted output units).",
+        + f"{unit_of_errors(study)}.",
     ]
     lines += [_noise(study, state), *_negligible(study, state), *detection_sentences(detected, bool(effects))]
     lines += [_step_sentence(done, study, state.plain) for done in state.steps]

@@ -142,3 +142,22 @@ def test_a_heading_among_the_samples_says_what_to_do(tmp_path: Path, heading: st
     (tmp_path / "a.csv").write_text(f"{heading}\n{times[0]},1,2\n{heading}\n{times[1]},3,4\n")
     with pytest.raises(UserError, match=r"line 3: found the names of the columns again.*; expected the file divided"):
         read_csv(tmp_path / "a.csv", (first, "u", "y"))
+
+
+@pytest.mark.parametrize(
+    ("mark", "unit"), [("-", "1"), ("1", "1"), ("--", "1"), ("none", ""), ("n/a", ""), ("[-]", "1")]
+)
+def test_a_column_without_a_unit_in_a_line_of_units(tmp_path: Path, mark: str, unit: str) -> None:
+    """Seen: the column was lost for "-", and with "1" another one "found "V", expected a number"."""
+    (tmp_path / "a.csv").write_text(f"t;duty;battery\nus;{mark};V\n0;0.5;15.1\n5000;0.6;15.2\n")
+    for asked in (("duty",), ("duty", "battery"), ("t", "duty", "battery")):
+        table = read_csv(tmp_path / "a.csv", asked)
+        assert table.columns["duty"].tolist() == [0.5, 0.6]
+        assert table.units.get("duty", "") == unit
+
+
+@pytest.mark.parametrize("row", ["0;-;5", "1;-;1", "1;-;RUN"])
+def test_samples_are_no_line_of_units(tmp_path: Path, row: str) -> None:
+    (tmp_path / "a.csv").write_text(f"t;duty;state\n{row}\n2;3;STOP\n")
+    with pytest.raises(UserError, match='line 2, column "duty": found "-"'):
+        read_csv(tmp_path / "a.csv", ("duty",))
