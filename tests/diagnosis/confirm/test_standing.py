@@ -175,30 +175,6 @@ def test_small_effects_are_findings_only_where_noise_alone_is_left(motor, begun,
 
 
 @pytest.mark.parametrize(
-    ("port", "of_the_rest", "size_of_it", "told"),
-    [
-        ("sensor", 0.92, 0.0104, True),
-        ("sensor", 0.6, 0.0104, False),
-        ("arm", 0.92, 0.0104, False),
-        ("sensor", 0.92, 0.002, False),
-    ],
-    ids=["nearly all of the rest", "a part of the rest", "at one port", "next to nothing"],
-)
-def test_what_removes_nearly_all_that_the_others_leave_elsewhere_is_no_part_of_what_they_lack(
-    dead_zone_search, stub, port, of_the_rest, size_of_it, told
-) -> None:
-    """Seen: a gyro that shows 8 % too little, 1 % of the mismatch beside uneven friction with 21 times the noise left: a refinement."""
-    effects = (Attachment("arm", CoulombFriction()), Attachment(port, ConstantBias()))
-    large, small = (e.prefix for e in effects)
-    plain = dead_zone_search.plain
-    state = stub(effects=effects, prefixes={large, small}, plain=plain, current=plain)
-    others = stub(times_noise=lambda hypothesis: np.array([21.0]), fits=lambda hypothesis: ())
-    gains = {large: Gain(0.99, 1e-3, size=0.9), small: Gain(of_the_rest, 0.01, size=size_of_it)}
-    some = refinements(dead_zone_search.study, state, others, gains, {large: 0.9, small: size_of_it})
-    assert some == (set() if told else {small})
-
-
-@pytest.mark.parametrize(
     ("sizes_beside", "all_of_it", "taken_back"),
     [((0.001, 0.002), 1.0, "actuator.input_lag"), ((0.001, 0.002), 0.004, None), ((0.001, 0.3), 1.0, None)],
 )
