@@ -9,7 +9,7 @@ import pytest
 
 from greybox_torch.mechanisms.library import LEARNED, LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism
-from greybox_torch.mechanisms.surroundings import Range, Surroundings
+from greybox_torch.mechanisms.surroundings import Surroundings
 from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
@@ -48,19 +48,6 @@ def law_of(name: str) -> Mechanism:
 
 def small(values: dict[str, float]) -> dict[str, float]:
     return {name: 0.01 * abs(value) + 1e-9 for name, value in values.items()}
-
-
-def test_friction_that_was_never_seen_to_fall_is_no_stribeck_friction(around: Surroundings) -> None:
-    law = LIBRARY["stribeck_friction"]()
-    values = {"F_c": 1.0, "F_s": 0.5, "c": 0.1, "v_s": 8.0, "v_0": 0.1}
-    fast = replace(around, ranges={**around.ranges, "speed": Range(4.0, 20.0, 12.0)})
-    assert law.degenerate(around, values, small(values)) is None  # standstill was recorded
-    assert "only grows" in (law.degenerate(fast, values, small(values)) or "")
-    assert law.degenerate(fast, values, {}) is None  # two laws are tried in its place first
-    falling = {**values, "c": 0.01}
-    assert law.degenerate(fast, falling, small(values)) is None
-    assert [mechanism.name for mechanism, _ in law.as_two(values)] == ["coulomb_friction", "viscous_friction"]
-    assert law.as_two(falling) == ()
 
 
 @pytest.mark.parametrize("name", SOUND)
