@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from greybox_torch.api.arguments import (
@@ -16,14 +18,18 @@ from greybox_torch.api.arguments import (
 )
 from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.diagnosis_result import DiagnosisResult
+from greybox_torch.api.exchanged import asked_where_poor
 from greybox_torch.codegen.build import check_compiler
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis import pipeline
 from greybox_torch.diagnosis.beliefs import beliefs_from_mapping
 from greybox_torch.diagnosis.progress import Progress
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, settings_from_mapping
+from greybox_torch.diagnosis.stopping import or_else
 from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 
 
 def diagnose(
@@ -50,7 +56,8 @@ def diagnose(
         data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
         time_limit: seconds after which the best answer so far is given, with a list of what was not tried. Only two
             steps may take longer, as no answer is possible without them: the fit of the model as it stands, and the
-            comparison of the result with all experiments.
+            comparison of the result with all experiments. Where the re-estimated model is poor, a few short refits ask besides
+            whether channels are exchanged or turned.
         settings: the thresholds of its decisions; by default those of the card's table [diagnosis], else the defaults.
         budget: how much it may compute; by default likewise.
         beliefs: what is known beforehand, by "port/mechanism" (* for any): "likely", "unlikely", or a probability; 0 takes a hypothesis out
@@ -90,4 +97,22 @@ def diagnose(
         progress=progress,
         on_progress=on_progress,
     )
-    return DiagnosisResult(data, given, found, device)
+    return DiagnosisResult(data, given, _with_question(found, data, given, device, progress), device)
+
+
+def _with_question(
+    found: pipeline.Diagnosis, data: DataSet, model: GreyBoxModel, device: str, progress: Callable[[str], None]
+) -> pipeline.Diagnosis:
+    """The findings with the question of a fit, whether channels are exchanged or turned; Ctrl-C leaves it out.
+
+    It changes nothing that was found: a machine may lack that much.
+    """
+    began, refit = time.perf_counter(), found.verdict.scores["refit"]
+    options = SimulationOptions(device)
+
+    def simulator() -> Simulator:
+        return simulator_for(make_problem(data, model, data.estimation()), options)
+
+    question, _ = or_else(lambda: asked_where_poor(data, model, refit, simulator, progress), lambda: None)
+    seconds = found.verdict.seconds + time.perf_counter() - began
+    return replace(found, verdict=replace(found.verdict, question=question, seconds=seconds))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.errors import NumericalError, UserError
-from greybox_torch.estimate.comparison import compare, held_out_scores, mean_fit
+from greybox_torch.estimate.comparison import Score, compare, held_out_scores, mean_fit
 from greybox_torch.estimate.fit import fit_records
 from greybox_torch.estimate.levenberg_marquardt import ROUGH
 from greybox_torch.estimate.problem import make_problem
@@ -56,6 +56,26 @@ class Change:
 
 
 AS_IT_IS = Change({}, "")
+
+
+def asked_where_poor(
+    data: DataSet,
+    model: GreyBoxModel,
+    refit: Sequence[Score],
+    simulator: Callable[[], Simulator],
+    progress: Callable[[str], None],
+) -> str | None:
+    """The question of :func:`exchanged`, where the re-estimated model, with the scores ``refit``, is poor on the validation experiments.
+
+    Args:
+        simulator: makes the one that is needed then.
+        progress: is told of it, as it takes as long as a few short refits.
+    """
+    achieved = mean_fit(held_out_scores(refit))
+    if achieved >= POOR:
+        return None
+    progress("The validation fit is poor: short refits with channels exchanged, or of the other sign")
+    return exchanged(data, model, simulator(), achieved)
 
 
 def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:

@@ -148,6 +148,8 @@ class Verdict:
     """A sentence for each validation experiment that was taken to choose with, and so is not in the validation fit."""
     short_validation: tuple[str, ...] = ()
     """A sentence where the validation experiments are short beside those of estimation or beside times of the machine."""
+    question: str | None = None
+    """Whether channels are exchanged or turned, without its full stop, where that would explain much of the mismatch."""
     settings: DiagnosisSettings = DiagnosisSettings()
     """By what it was decided, and with ``budget`` how much was computed for it."""
     budget: SearchBudget = SearchBudget()
@@ -188,6 +190,11 @@ class Verdict:
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
         start = "The mismatch is" if all(e.one_of is None for e in self.effects) else "The mismatch:"
         return f"{start} {found}{self._gain()}."
+
+    @property
+    def asked(self) -> tuple[str, ...]:
+        """The question as a sentence, where there is one."""
+        return () if self.question is None else (f"{self.question}.",)
 
     def counted(self, model: str) -> tuple[Score, ...]:
         """The scores of a model ("start", "refit", "augmented") but for those on experiments that do not count (``unstable``)."""
@@ -232,6 +239,7 @@ class Verdict:
             else {n: getattr(self.left, n) for n in ("share", "times_noise", "sentence")},
             "fit": fit_rows(self.scores),
             **({"unstable": sorted(self.unstable)} if self.unstable else {}),
+            **({"question": self.question} if self.question else {}),
             "evidence": list(self.evidence),
             **({"short_validation": list(self.short_validation)} if self.short_validation else {}),
             "stages": dict(self.stages),

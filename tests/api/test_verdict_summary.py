@@ -78,7 +78,7 @@ def test_validation_experiments_that_are_short_are_told_of_whatever_is_found() -
     assert notes(replace(verdict(BACKLASH), short_validation=(told,)))[:2] == [told, SIZE]
     short = replace(verdict(), short_validation=(told,))
     assert notes(short)[0] == told and short.as_json()["short_validation"] == [told]
-    assert Headline.of(short).of_validation == (told,)
+    assert Headline.of(short).beside == (told,)
 
 
 def test_the_size_of_an_effect_is_told_and_its_equation() -> None:
