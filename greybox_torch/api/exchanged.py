@@ -9,6 +9,7 @@ from itertools import combinations
 import numpy as np
 
 from greybox_torch.data import DataSet, Recording
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.comparison import Score, compare, held_out_scores, mean_fit
 from greybox_torch.estimate.fit import fit_records
@@ -100,7 +101,7 @@ def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved
         return None
     asked = [changes[k].question for k, one in lefts.items() if one <= AS_GOOD * least]
     question = ", or ".join(asked)
-    as_it_is = f" ({100.0 - left:.3g} % as it is)" if np.isfinite(left) else ""
+    as_it_is = f" ({digits(100.0 - left, 3)} % as it is)" if np.isfinite(left) else ""
     return (
         f"{question[0].upper()}{question[1:]}? So changed, a short refit reaches a mean fit of {100.0 - least:.3g} % on "
         f"{_judging(data)}{as_it_is}. If so, mend the card's columns or scale; if not, disregard this"

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
-from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
+from greybox_torch.diagnosis.without_effects import WithoutEffects
 from greybox_torch.estimate.comparison import Score, fit_rows, mostly_in
 from greybox_torch.estimate.metrics import digits_between
 
@@ -29,9 +29,6 @@ class Left:
     times_noise: float
     sentence: str
 
-
-NOISE_SHOWN = "that the recordings' highest frequencies show"
-"""What is meant by the noise: not all that disturbs, but the sensors' own, which is little where an encoder has fine steps."""
 
 OF_ESTIMATION = "On the experiments that it was estimated from"
 """How the second sentence of what is left begins."""
@@ -148,6 +145,8 @@ class Verdict:
     """A sentence for each validation experiment that was taken to choose with, and so is not in the validation fit."""
     short_validation: tuple[str, ...] = ()
     """A sentence where the validation experiments are short beside those of estimation or beside times of the machine."""
+    too_short: str = ""
+    """A clause where the recordings to choose with are too short to tell anything from chance."""
     question: str | None = None
     """Whether channels are exchanged or turned, without its full stop, where that would explain much of the mismatch."""
     settings: DiagnosisSettings = DiagnosisSettings()
@@ -168,24 +167,9 @@ class Verdict:
     @property
     def sentence(self) -> str:
         """The verdict in one sentence."""
-        if not self.effects and self.unexplained is not None:
-            why = (
-                "What it is was not looked for, as the beliefs exclude every hypothesis."
-                if not self.looked
-                else "No law of the library and no curve of one signal explains it, with or without memory."
-                if self.complete
-                else "The search was stopped before it could say what."
-            )
-            output = mostly_in(self.counted("refit"))
-            its = f"its error, mostly in {output}," if output else "its error"
-            times = f"at least {digits(self.unexplained, 3)} times the noise {NOISE_SHOWN}, over short windows and in free runs alike"
-            return f"Something is missing from {self.model}: {its} is {times}. {why}"
-        if not self.effects and not self.looked:
-            return f"Nothing was looked for in {self.model}: the beliefs exclude every hypothesis."
-        if not self.effects and not self.complete:
-            return f"Nothing was found to be missing from {self.model} before the search was stopped: no answer yet."
         if not self.effects:
-            return f"Nothing is missing from {self.model} that these recordings can show (confidence {self.confidence:.2f})."
+            known = (self.unexplained, mostly_in(self.counted("refit")), self.looked, self.complete, self.too_short)
+            return WithoutEffects(self.model, self.confidence, *known).sentence
         parts = [e.headline for e in self.effects]
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
         start = "The mismatch is" if all(e.one_of is None for e in self.effects) else "The mismatch:"

@@ -15,6 +15,7 @@ from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share, negligible
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
+from greybox_torch.diagnosis.hypothesis.significance import too_few_windows
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.select.choice import least_gain
@@ -128,9 +129,14 @@ def _step_sentence(done: SelectionStep, study: Study, plain: Hypothesis) -> str:
     best = done.ranked[0]
     if best.of_errors <= 0:
         return f"The best further candidate, {_name(best.candidate.attachment)}, would not lower it."
+    away = (
+        "too few windows for a standard error"
+        if too_few_windows(best.fitted, settings)
+        else f"{best.significance:.1f} standard errors"
+    )
     lowers = (
-        f"The best further candidate, {_name(best.candidate.attachment)}, would lower it by {100 * (1 - np.exp(-best.of_errors)):.2g} % "
-        f"({best.significance:.1f} standard errors)"
+        f"The best further candidate, {_name(best.candidate.attachment)}, would lower it by "
+        f"{digits(100 * (1 - np.exp(-best.of_errors)))} % ({away})"
     )
     if little:
         return f"{lowers}. {_little(settings)}, of which only what leaves noise alone is claimed."
@@ -237,7 +243,7 @@ def _negligible(study: Study, state: SearchState) -> list[str]:
     if not negligible(study, state.plain):
         return []
     return [
-        f"Beyond the noise it is {100 * mismatch_share(state.plain, study.settings):.2g} % of the outputs' spread. A shift in time by "
+        f"Beyond the noise it is {digits(100 * mismatch_share(state.plain, study.settings))} % of the outputs' spread. A shift in time by "
         f"{100 * study.settings.least_shift:.2g} % of a sampling interval, or another simulator of the same model, may do as much: "
         "nothing was looked for."
     ]
