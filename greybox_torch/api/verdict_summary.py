@@ -77,7 +77,7 @@ def notes(verdict: Verdict) -> list[str]:
     small = [f"Refinement: {refinement.sentence}." for refinement in verdict.refinements]
     by_effect = (line for effect in verdict.effects for line in _notes(effect))
     of_validation = (*verdict.no_longer_validation, *verdict.short_validation)
-    return [*verdict.asked, *of_validation, SIZE, *by_effect, *left, *small, *stopped]
+    return [*verdict.asked, *of_validation, SIZE, *verdict.made_up, *by_effect, *left, *small, *stopped]
 
 
 def verdict_scores(verdict: Verdict) -> dict[str, tuple[Score, ...]]:
