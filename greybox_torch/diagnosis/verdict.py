@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
-from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import spoken_at
+from greybox_torch.diagnosis.parts import small_parts
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
 from greybox_torch.diagnosis.without_effects import WithoutEffects
 from greybox_torch.estimate.comparison import Score, fit_rows, mostly_in
@@ -35,9 +35,6 @@ OF_ESTIMATION = "On the experiments that it was estimated from"
 """How the second sentence of what is left begins."""
 
 STOPPED = "The search was stopped before it was done (time limit or interruption): the best verdict so far."
-
-SMALL_PARTS = 0.5
-"""Share of what effects account for together below which the sum of their sizes is told to be small."""
 
 MOST_NAMED = 12
 """Candidates not tried any more up to which a sentence names them all."""
@@ -182,17 +179,8 @@ class Verdict:
     @property
     def made_up(self) -> tuple[str, ...]:
         """A sentence where the sizes of several effects are much less together than what these account for together."""
-        own, sizes = (*self.effects, *self.refinements), [e.size for e in (*self.effects, *self.refinements)]
-        if len(own) < 2 or self.left is None or not np.isfinite(sizes).all():
-            return ()
-        account, parts = 1.0 - self.left.share, sum(sizes)
-        if parts > SMALL_PARTS * account:
-            return ()
-        named = ", ".join(spoken_at(e.mechanism, e.port) for e in own)
-        return (
-            f"The sizes of {named} come to {digits(100 * parts)} % where together they account for {digits(100 * account)} % of the mismatch: "
-            "where one is left out, the others and the model's parameters, estimated anew, make up for most of what it explains.",
-        )
+        left = None if self.left is None else self.left.share
+        return small_parts([(e.mechanism, e.port, e.size) for e in (*self.effects, *self.refinements)], left)
 
     @property
     def asked(self) -> tuple[str, ...]:
@@ -216,8 +204,8 @@ class Verdict:
         before, after = (float(np.mean(side)) for side in zip(*pairs, strict=True))
         them = "it" if len(self.effects) == 1 else "them"
         but = f" (without {', '.join(sorted(self.unstable))}, which no free run follows)" if self.unstable else ""
-        shown = digits_between(before, after)
-        return f"; with {them} the validation fit goes from {before:.{shown}f} % to {after:.{shown}f} %{but}"
+        digits = digits_between(before, after)
+        return f"; with {them} the validation fit goes from {before:.{digits}f} % to {after:.{digits}f} %{but}"
 
     def as_json(self) -> dict[str, Any]:
         """The dictionary of `verdict.json` (contract sections 4 and 8).

@@ -98,7 +98,7 @@ def test_sizes_that_are_small_as_others_make_up_for_each_are_explained() -> None
     both = replace(verdict(replace(BACKLASH, size=0.16)), refinements=(small,), left=Left(0.02, 5.0, "2 % remains."))
     told = notes(both)[1]
     assert (
-        told.startswith("The sizes of backlash at gear_spring, sensor lag at gear_spring come to 18 %")
+        told.startswith("The sizes of backlash at gear_spring and sensor lag at gear_spring come to 18 %")
         and "98 %" in told
     )
     assert Effects.of(both).made_up == (told,)  # type: ignore[union-attr]

@@ -129,11 +129,8 @@ def _step_sentence(done: SelectionStep, study: Study, plain: Hypothesis) -> str:
     best = done.ranked[0]
     if best.of_errors <= 0:
         return f"The best further candidate, {_name(best.candidate.attachment)}, would not lower it."
-    away = (
-        "too few windows for a standard error"
-        if too_few_windows(best.fitted, settings)
-        else f"{best.significance:.1f} standard errors"
-    )
+    few = too_few_windows(best.fitted, settings)
+    away = "too few windows for a standard error" if few else f"{best.significance:.1f} standard errors"
     lowers = (
         f"The best further candidate, {_name(best.candidate.attachment)}, would lower it by "
         f"{digits(100 * (1 - np.exp(-best.of_errors)))} % ({away})"
