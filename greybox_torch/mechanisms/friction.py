@@ -122,6 +122,9 @@ class StribeckFriction(Mechanism):
         level = {"F_c": values["F_c"] + values["F_s"], "v_0": values["v_0"]}
         return ((CoulombFriction(), level), (ViscousFriction(), {"c": values["c"]}))
 
+    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        return faster_than_it_went("v_s", values["v_s"], around) or _highest_at_a_speed(values, around)
+
     def degenerate(
         self, around: Surroundings, values: Mapping[str, float], deviations: Mapping[str, float]
     ) -> str | None:
@@ -129,9 +132,6 @@ class StribeckFriction(Mechanism):
         return super().degenerate(around, values, deviations) or (
             _not_seen_to_fall(values, around) if deviations else None
         )
-
-    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        return faster_than_it_went("v_s", values["v_s"], around) or _highest_at_a_speed(values, around)
 
 
 def _highest_at_a_speed(values: Mapping[str, float], around: Surroundings) -> str | None:
