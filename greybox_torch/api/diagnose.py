@@ -18,7 +18,7 @@ from greybox_torch.api.arguments import (
 )
 from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.diagnosis_result import DiagnosisResult
-from greybox_torch.api.exchanged import asked_where_poor
+from greybox_torch.api.exchanged import asked_where_poor, poor
 from greybox_torch.codegen.build import check_compiler
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis import pipeline
@@ -108,6 +108,8 @@ def _with_question(
     It changes nothing that was found: a machine may lack that much.
     """
     began, refit = time.perf_counter(), found.verdict.scores["refit"]
+    if not poor(refit):
+        return found
     options = SimulationOptions(device)
 
     def simulator() -> Simulator:

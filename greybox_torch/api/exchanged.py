@@ -72,11 +72,15 @@ def asked_where_poor(
         simulator: makes the one that is needed then.
         progress: is told of it, as it takes as long as a few short refits.
     """
-    achieved = mean_fit(held_out_scores(refit))
-    if achieved >= POOR:
+    if not poor(refit):
         return None
     progress("The validation fit is poor: short refits with channels exchanged, or of the other sign")
-    return exchanged(data, model, simulator(), achieved)
+    return exchanged(data, model, simulator(), mean_fit(held_out_scores(refit)))
+
+
+def poor(refit: Sequence[Score]) -> bool:
+    """Whether the scores of a re-estimated model are so poor on the validation experiments that it is asked."""
+    return not mean_fit(held_out_scores(refit)) >= POOR
 
 
 def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:
