@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from greybox_torch.api.design_files import CARD, INPUT, RECORDED
+from greybox_torch.api.design_groups import AGAINST_GROUPS
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.experiment_design.limits import EVERY_INPUT
 
@@ -67,9 +68,13 @@ def _told_apart(found: DesignResult) -> Iterator[str]:
     if found.parameter is not None or not found.expected.decides:
         return
     what, as_set_points = found.what, found.as_set_points
-    for a, b in found.alike:
-        yield f"No {what} within the limits was found that tells {a} from {b} in {digits(found.seconds, 4)} s, whichever is right."
-    if found.alike:
-        yield "Those count as one in the probability that is expected."
+    if found.expected.by_groups:
+        yield AGAINST_GROUPS
+    else:
+        for a, b in found.alike:
+            yield f"No {what} within the limits was found that tells {a} from {b} in {digits(found.seconds, 4)} s, whichever is right."
+        if found.alike:
+            yield "Those count as one in the probability that is expected."
     if found.expected.random is not None:
-        yield f"A random multisine of the same power{as_set_points}: {found.expected.random:.2f}."
+        as_well = ", as well as the designed one" if found.expected.random_does_as_well else ""
+        yield f"A random multisine of the same power{as_set_points}: {found.expected.random:.2f}{as_well}."

@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.api.design_files import CARD, FIGURE, INPUT, card_text, columns_of, csv_text, units_of
+from greybox_torch.api.design_groups import hypothesis_table, told_of_groups
 from greybox_torch.api.design_notes import design_notes
 from greybox_torch.api.expected import WANTED, Expected
 from greybox_torch.api.result import Result
@@ -103,6 +104,8 @@ class DesignResult(Result):
                 f"No {self.what} within the limits was found that tells these hypotheses apart, whichever is right: "
                 f"{', '.join(self.names[k] for k in self.expected.in_question)}."
             )
+        if self.expected.by_groups:
+            return told_of_groups(self.names, self.expected, f"{digits(self.seconds, 4)} s of {kinds}", self.what)
         told = (
             f"{digits(self.seconds, 4)} s of {kinds} are expected to bring the right one of {len(self.names)} hypotheses to a "
             f"probability of {self.expected.after:.2f}"
@@ -146,6 +149,7 @@ class DesignResult(Result):
             "evidence_nats": self.expected.nats.tolist(),
             "seconds_for_0.95": self.needed,
             "cannot_be_told_apart": [list(pair) for pair in self.alike],
+            "groups": [[self.names[k] for k in group] for group in self.expected.groups],
         }
 
     def show(self, console: Console) -> None:
@@ -213,9 +217,4 @@ class DesignResult(Result):
 
     def _table(self) -> tuple[list[str], list[list[str | float]]]:
         """A row for each hypothesis: its probability now, and the evidence for it against the nearest rival, if it is right."""
-        nats = self.expected.nats + np.diag(np.full(len(self.names), np.inf))
-        rows: list[list[str | float]] = [
-            [name, p if p >= 1e-4 else "< 0.0001", float(nats[k].min())]
-            for k, (name, p) in enumerate(zip(self.names, self.expected.before, strict=True))
-        ]
-        return ["hypothesis", "probability\nnow", "expected evidence\nif right [nats]"], rows
+        return hypothesis_table(self.names, self.expected)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from greybox_torch.api.arguments import (
@@ -16,14 +18,22 @@ from greybox_torch.api.arguments import (
 )
 from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.diagnosis_result import DiagnosisResult
+from greybox_torch.api.exchanged import asked_where_poor, poor
 from greybox_torch.codegen.build import check_compiler
 from greybox_torch.data import DataSet
+from greybox_torch.deadline import Deadline, until
 from greybox_torch.diagnosis import pipeline
 from greybox_torch.diagnosis.beliefs import beliefs_from_mapping
 from greybox_torch.diagnosis.progress import Progress
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, settings_from_mapping
+from greybox_torch.diagnosis.stopping import or_else
 from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulation.simulator import SimulationOptions, Simulator
+
+TO_ASK, TO_ASK_SHARE = 3.0, 0.05
+"""Seconds, and share of a time limit, that the question whether channels are exchanged may take beyond it: the larger of the two."""
 
 
 def diagnose(
@@ -50,7 +60,8 @@ def diagnose(
         data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
         time_limit: seconds after which the best answer so far is given, with a list of what was not tried. Only two
             steps may take longer, as no answer is possible without them: the fit of the model as it stands, and the
-            comparison of the result with all experiments.
+            comparison of the result with all experiments. Where the model found is poor, a few short refits ask besides, within
+            the larger of 3 s and 5 % of it, whether channels are exchanged or turned.
         settings: the thresholds of its decisions; by default those of the card's table [diagnosis], else the defaults.
         budget: how much it may compute; by default likewise.
         beliefs: what is known beforehand, by "port/mechanism" (* for any): "likely", "unlikely", or a probability; 0 takes a hypothesis out
@@ -78,6 +89,7 @@ def diagnose(
     check_moving(data, given)
     believed = (data.beliefs, data.place("[beliefs]")) if beliefs is None else (beliefs, "argument beliefs")
     own = settings_from_mapping(data.diagnosis, data.place("[diagnosis]"))
+    to_ask = Deadline.after(None if limit is None else limit + max(TO_ASK, TO_ASK_SHARE * limit))
     found = pipeline.diagnose(
         data,
         given,
@@ -90,4 +102,32 @@ def diagnose(
         progress=progress,
         on_progress=on_progress,
     )
-    return DiagnosisResult(data, given, found, device)
+    return DiagnosisResult(data, given, _with_question(found, data, given, device, progress, to_ask), device)
+
+
+def _with_question(
+    found: pipeline.Diagnosis,
+    data: DataSet,
+    model: GreyBoxModel,
+    device: str,
+    progress: Callable[[str], None],
+    deadline: Deadline,
+) -> pipeline.Diagnosis:
+    """The findings with the question of a fit, whether channels are exchanged or turned; Ctrl-C, or the deadline, leaves it out.
+
+    Asked where what was found explains little. It changes nothing of that: a machine may lack that much.
+    """
+    began, scores = time.perf_counter(), found.verdict.scores
+    if not (poor(scores["refit"]) and poor(scores["augmented" if found.verdict.effects else "refit"])):
+        return found
+
+    def simulator() -> Simulator:
+        return simulator_for(make_problem(data, model, data.estimation()), SimulationOptions(device))
+
+    def asked() -> str | None:
+        with until(deadline):
+            return asked_where_poor(data, model, scores["refit"], simulator, progress)
+
+    question, _ = or_else(asked, lambda: None)
+    seconds = found.verdict.seconds + time.perf_counter() - began
+    return replace(found, verdict=replace(found.verdict, question=question, seconds=seconds))

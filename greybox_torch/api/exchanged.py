@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
 from greybox_torch.data import DataSet, Recording
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.errors import NumericalError, UserError
-from greybox_torch.estimate.comparison import compare, held_out_scores, mean_fit
+from greybox_torch.estimate.comparison import Score, compare, held_out_scores, mean_fit
 from greybox_torch.estimate.fit import fit_records
 from greybox_torch.estimate.levenberg_marquardt import ROUGH
 from greybox_torch.estimate.problem import make_problem
@@ -58,6 +59,30 @@ class Change:
 AS_IT_IS = Change({}, "")
 
 
+def asked_where_poor(
+    data: DataSet,
+    model: GreyBoxModel,
+    refit: Sequence[Score],
+    simulator: Callable[[], Simulator],
+    progress: Callable[[str], None],
+) -> str | None:
+    """The question of :func:`exchanged`, where the re-estimated model, with the scores ``refit``, is poor on the validation experiments.
+
+    Args:
+        simulator: makes the one that is needed then.
+        progress: is told of it, as it takes as long as a few short refits.
+    """
+    if not poor(refit):
+        return None
+    progress("The validation fit is poor: short refits with channels exchanged, or of the other sign")
+    return exchanged(data, model, simulator(), mean_fit(held_out_scores(refit)))
+
+
+def poor(refit: Sequence[Score]) -> bool:
+    """Whether the scores of a re-estimated model are so poor on the validation experiments that it is asked."""
+    return not mean_fit(held_out_scores(refit)) >= POOR
+
+
 def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:
     """A question to the user, where exchanging two inputs or two outputs of one unit, or reversing the sign of one channel, makes a short
     refit far better on the validation experiments than these are as they stand; else None.
@@ -80,7 +105,7 @@ def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved
         return None
     asked = [changes[k].question for k, one in lefts.items() if one <= AS_GOOD * least]
     question = ", or ".join(asked)
-    as_it_is = f" ({100.0 - left:.3g} % as it is)" if np.isfinite(left) else ""
+    as_it_is = f" ({digits(100.0 - left, 3)} % as it is)" if np.isfinite(left) else ""
     return (
         f"{question[0].upper()}{question[1:]}? So changed, a short refit reaches a mean fit of {100.0 - least:.3g} % on "
         f"{_judging(data)}{as_it_is}. If so, mend the card's columns or scale; if not, disregard this"

@@ -17,6 +17,9 @@ WANTED = 0.95
 NOTHING = AS_IN_A_DIAGNOSIS.least_alternative
 """Probability below which a rival is next to nothing, and a diagnosis does not list it."""
 
+NO_MORE = 0.005
+"""Difference of two probabilities that does not show in two digits."""
+
 
 def decided(probabilities: Sequence[float]) -> bool:
     """Whether there is nothing left to decide: one hypothesis has what is wanted, and every other one next to nothing."""
@@ -40,6 +43,43 @@ class Expected:
     def alike(self) -> np.ndarray:
         """Whether two hypotheses, (n, n), are not told apart."""
         return np.minimum(self.nats, self.nats.T) < VISIBLE
+
+    @property
+    def groups(self) -> list[list[int]]:
+        """Indices of the hypotheses in groups, the likeliest group first: within one, each is not told from some other one of it."""
+        left, found = set(range(len(self.before))), []
+        while left:
+            group, new = set[int](), {min(left)}
+            while new:
+                group |= new
+                new = {b for a in new for b in left - group if self.alike[a, b]}
+            left -= group
+            found.append(sorted(group))
+        return sorted(found, key=lambda group: -self._share(group))
+
+    @property
+    def by_groups(self) -> bool:
+        """Whether what it tells apart, of what is in question, are groups of several hypotheses each that it does not."""
+        asked = [[k for k in group if k in self.in_question] for group in self.groups]
+        return sum(map(bool, asked)) > 1 and any(len(group) > 1 for group in asked)
+
+    @property
+    def today(self) -> float:
+        """The probability of the likeliest group before the recording."""
+        return min(self._share(self.groups[0]), AS_IN_A_DIAGNOSIS.highest_probability)
+
+    @property
+    def gains(self) -> bool:
+        """Whether the right one is expected to be more probable than the likeliest is before the recording."""
+        return self.after - self.today >= NO_MORE
+
+    @property
+    def random_does_as_well(self) -> bool:
+        """Whether the random input is expected to do no worse."""
+        return self.random is not None and self.after - self.random < NO_MORE
+
+    def _share(self, group: Sequence[int]) -> float:
+        return sum(self.before[k] for k in group) / sum(self.before)
 
     @property
     def in_question(self) -> list[int]:

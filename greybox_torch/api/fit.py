@@ -17,10 +17,10 @@ from greybox_torch.api.arguments import (
     check_whole,
 )
 from greybox_torch.api.data_argument import check_data
-from greybox_torch.api.exchanged import POOR, exchanged
+from greybox_torch.api.exchanged import asked_where_poor
 from greybox_torch.api.fit_result import FitResult
 from greybox_torch.data import DataSet
-from greybox_torch.estimate.comparison import Comparison, compare, held_out_scores, mean_fit
+from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.fit import Estimation, fit_records
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.identifiability import Unidentifiable, identifiability
@@ -91,7 +91,7 @@ def fit(
     )
     drawn = _profiles(found, simulator, names, precision, progress)
     comparisons = _compared(data, given, found, simulator)
-    question = _question(data, given, comparisons["refit"], simulator, progress)
+    question = asked_where_poor(data, given, comparisons["refit"].scores, lambda: simulator, progress)
     seconds = time.perf_counter() - began
     return FitResult(data, found, comparisons, drawn, unidentifiable, precision, seconds, question)
 
@@ -116,17 +116,6 @@ def _profiles(
         left = ", ".join(name for name in names if name not in drawn)
         progress(f"interrupted: the estimate is kept, without the profile of {left}")
     return drawn
-
-
-def _question(
-    data: DataSet, model: GreyBoxModel, refit: Comparison, simulator: Simulator, progress: Callable[[str], None]
-) -> str | None:
-    """Whether channels are exchanged, where the refit is poor and another reading of them is far better."""
-    achieved = mean_fit(held_out_scores(refit.scores))
-    if achieved >= POOR:
-        return None
-    progress("The validation fit is poor: short refits with channels exchanged, or of the other sign")
-    return exchanged(data, model, simulator, achieved)
 
 
 def _compared(data: DataSet, model: GreyBoxModel, found: Estimation, simulator: Simulator) -> dict[str, Comparison]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 from rich.console import Console
@@ -16,6 +17,9 @@ from greybox_torch.report.tables import print_table
 from greybox_torch.training import Explanation, Trained
 from greybox_torch.training.learned_force import SignalCurve
 from greybox_torch.training.named_term import NamedTerm
+
+MOST_OF_IT = 0.5
+"""Share of what was visited over which the band contains zero from which that is told."""
 
 
 def explanation_json(found: Trained, explained: Explanation, scores: Scores) -> dict[str, Any]:
@@ -50,6 +54,8 @@ def print_explanation(console: Console, explained: Explanation, scores: Scores) 
         return
     shares = ", ".join(f"{curve.signal} {100 * curve.share:.0f} %" for curve in explained.curves)
     console.print(Text(f"Share of the learned force that each signal alone explains: {shares}"), soft_wrap=True)
+    if told := open_sign(explained.curves):
+        console.print(Text(told), soft_wrap=True)
     rows = [_row(term) for term in explained.terms]
     refitted = {term.attachment.mechanism.name for term in explained.terms}
     others = [m for m in explained.matches if m.law.name not in refitted][:3]
@@ -70,12 +76,23 @@ def print_explanation(console: Console, explained: Explanation, scores: Scores) 
         )
 
 
+def open_sign(curves: Sequence[SignalCurve]) -> str:
+    """A sentence where the band contains zero over most of what was visited; "" where none does."""
+    wide = [f"{curve.signal} {100 * curve.zero_within:.0f} %" for curve in curves if curve.zero_within > MOST_OF_IT]
+    if not wide:
+        return ""
+    return (
+        f"The curve's band of two deviations contains zero over most of what was visited ({', '.join(wide)}): not even its sign is known "
+        "there, however much better the network predicts."
+    )
+
+
 def _row(term: NamedTerm) -> list[str]:
     matched = "" if term.match is None else f"{100 * term.match:.0f} %"
     units = term.attachment.own({p.name: p.unit for p in term.problem.model.declared_parameters})
-    told = (f"{name} {value:.4g} {units[name]}".rstrip() for name, value in term.parameters.items())
-    values = ", ".join(told)
-    return [term.attachment.mechanism.name, matched, _beside(term.lost), values]
+    values = ", ".join(f"{name} {value:.4g} {units[name]}".rstrip() for name, value in term.parameters.items())
+    told = f"without its effect: {values}" if term.absent else values
+    return [term.attachment.mechanism.name, matched, _beside(term.lost), told]
 
 
 def _beside(lost: float) -> str:
@@ -90,6 +107,7 @@ def _curve_json(curve: SignalCurve, force_unit: str) -> dict[str, Any]:
         "signal": curve.signal,
         "unit": curve.unit,
         "share": curve.share,
+        "zero_within": curve.zero_within,
         "values": curve.values.tolist(),
         "force": curve.force.tolist(),
         "std": curve.deviation.tolist(),
@@ -105,4 +123,5 @@ def _term_json(term: NamedTerm) -> dict[str, Any]:
         "held_out": term.held_out,
         "lost": term.lost,
         "parameters": term.parameters,
+        **({"absent": term.absent} if term.absent else {}),
     }

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.estimate.comparison import Comparison
 from greybox_torch.estimate.problem import all_starts_free, make_problem, problem_for
 from greybox_torch.model import GreyBoxModel
@@ -39,7 +40,7 @@ class Beyond:
         (low, high), (least, most) = self.learned, self.visited
         unit = f" {self.unit}" if self.unit else ""
         return (
-            f"In {100 * self.share:.2g} % of the validation samples the network's {self.signal} is outside the range over which it was "
+            f"In {digits(100 * self.share)} % of the validation samples the network's {self.signal} is outside the range over which it was "
             f"learned ({low:.3g} to {high:.3g}{unit}; in validation {least:.3g} to {most:.3g}{unit}): what the network says there is "
             "extrapolated."
         )

@@ -67,16 +67,17 @@ def moved_table(verdict: Verdict) -> tuple[list[str], list[list[str | float]]]:
 
 
 def notes(verdict: Verdict) -> list[str]:
-    """Which experiments judge it no longer, where each effect acts, what else it could be, and what remains; where there is none, the
-    evidence for that. Both with what was not tried, where the search was stopped.
+    """Whether channels are exchanged, which experiments judge it no longer, where each effect acts, what else it could be, and what
+    remains; where there is none, the evidence for that. Both with what was not tried, where the search was stopped.
     """
     if not verdict.effects:
-        return [*verdict.short_validation, *verdict.evidence, *verdict.not_tried.sentences()]
+        return [*verdict.asked, *verdict.short_validation, *verdict.evidence, *verdict.not_tried.sentences()]
     stopped = [] if verdict.complete else [STOPPED, *verdict.not_tried.sentences()]
     left = [] if verdict.left is None else [verdict.left.sentence]
     small = [f"Refinement: {refinement.sentence}." for refinement in verdict.refinements]
     by_effect = (line for effect in verdict.effects for line in _notes(effect))
-    return [*verdict.no_longer_validation, *verdict.short_validation, SIZE, *by_effect, *left, *small, *stopped]
+    of_validation = (*verdict.no_longer_validation, *verdict.short_validation)
+    return [*verdict.asked, *of_validation, SIZE, *verdict.made_up, *by_effect, *left, *small, *stopped]
 
 
 def verdict_scores(verdict: Verdict) -> dict[str, tuple[Score, ...]]:

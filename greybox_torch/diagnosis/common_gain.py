@@ -15,6 +15,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.confirm.undone import made_up_for
 from greybox_torch.diagnosis.describe.statement import Member, statement
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.findings import Findings
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
@@ -220,7 +221,7 @@ def _made_up_for(moves: Moves, gain: CommonGain) -> str:
     before = float(np.sqrt(np.mean(moves.logarithms**2)))
     return (
         f"the recordings do not show it, as {listed} make up for it when they are re-estimated: they move from the card's values by "
-        f"{100 * before:.2g} % together, and by {100 * gain.scatter:.2g} % with it"
+        f"{digits(100 * before)} % together, and by {digits(100 * gain.scatter)} % with it"
     )
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken_at
 from greybox_torch.estimate.notes import told_at_bound
@@ -189,7 +190,7 @@ class Effect:
     def sentence(self) -> str:
         """What a reader has to know of it where it is no finding."""
         return (
-            f"{spoken_at(self.mechanism, self.port)} accounts for {100 * self.size:.2g} % of the whole mismatch: so little that it may "
+            f"{spoken_at(self.mechanism, self.port)} accounts for {digits(100 * self.size)} % of the whole mismatch: so little that it may "
             "only compensate for the inexact form of the other laws"
         )
 

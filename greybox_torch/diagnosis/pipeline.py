@@ -200,6 +200,7 @@ def _as_found(
         traces=traces,
         inputs=report_data.inputs(judged),
         no_longer_validation=report_data.no_longer_validation(dataset, found.dataset),
+        too_short=report_data.too_short_to_choose(found.dataset, state.plain, study.settings),
         short_validation=report_data.too_short_to_judge(dataset, judged, effects),
         parameters=report_data.parameters(judged, bool(effects)),
         complete=found.complete,

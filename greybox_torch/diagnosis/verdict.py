@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
-from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import spoken_at
+from greybox_torch.diagnosis.parts import small_parts
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
+from greybox_torch.diagnosis.without_effects import WithoutEffects
 from greybox_torch.estimate.comparison import Score, fit_rows, mostly_in
 from greybox_torch.estimate.metrics import digits_between
 
@@ -29,9 +30,6 @@ class Left:
     times_noise: float
     sentence: str
 
-
-NOISE_SHOWN = "that the recordings' highest frequencies show"
-"""What is meant by the noise: not all that disturbs, but the sensors' own, which is little where an encoder has fine steps."""
 
 OF_ESTIMATION = "On the experiments that it was estimated from"
 """How the second sentence of what is left begins."""
@@ -148,6 +146,10 @@ class Verdict:
     """A sentence for each validation experiment that was taken to choose with, and so is not in the validation fit."""
     short_validation: tuple[str, ...] = ()
     """A sentence where the validation experiments are short beside those of estimation or beside times of the machine."""
+    too_short: str = ""
+    """A clause where the recordings to choose with are too short to tell anything from chance."""
+    question: str | None = None
+    """Whether channels are exchanged or turned, without its full stop, where that would explain much of the mismatch."""
     settings: DiagnosisSettings = DiagnosisSettings()
     """By what it was decided, and with ``budget`` how much was computed for it."""
     budget: SearchBudget = SearchBudget()
@@ -166,28 +168,24 @@ class Verdict:
     @property
     def sentence(self) -> str:
         """The verdict in one sentence."""
-        if not self.effects and self.unexplained is not None:
-            why = (
-                "What it is was not looked for, as the beliefs exclude every hypothesis."
-                if not self.looked
-                else "No law of the library and no curve of one signal explains it, with or without memory."
-                if self.complete
-                else "The search was stopped before it could say what."
-            )
-            output = mostly_in(self.counted("refit"))
-            its = f"its error, mostly in {output}," if output else "its error"
-            times = f"at least {digits(self.unexplained, 3)} times the noise {NOISE_SHOWN}, over short windows and in free runs alike"
-            return f"Something is missing from {self.model}: {its} is {times}. {why}"
-        if not self.effects and not self.looked:
-            return f"Nothing was looked for in {self.model}: the beliefs exclude every hypothesis."
-        if not self.effects and not self.complete:
-            return f"Nothing was found to be missing from {self.model} before the search was stopped: no answer yet."
         if not self.effects:
-            return f"Nothing is missing from {self.model} that these recordings can show (confidence {self.confidence:.2f})."
+            known = (self.unexplained, mostly_in(self.counted("refit")), self.looked, self.complete, self.too_short)
+            return WithoutEffects(self.model, self.confidence, *known).sentence
         parts = [e.headline for e in self.effects]
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
         start = "The mismatch is" if all(e.one_of is None for e in self.effects) else "The mismatch:"
         return f"{start} {found}{self._gain()}."
+
+    @property
+    def made_up(self) -> tuple[str, ...]:
+        """A sentence where the sizes of several effects are much less together than what these account for together."""
+        left = None if self.left is None else self.left.share
+        return small_parts([(e.mechanism, e.port, e.size) for e in (*self.effects, *self.refinements)], left)
+
+    @property
+    def asked(self) -> tuple[str, ...]:
+        """The question as a sentence, where there is one."""
+        return () if self.question is None else (f"{self.question}.",)
 
     def counted(self, model: str) -> tuple[Score, ...]:
         """The scores of a model ("start", "refit", "augmented") but for those on experiments that do not count (``unstable``)."""
@@ -232,6 +230,7 @@ class Verdict:
             else {n: getattr(self.left, n) for n in ("share", "times_noise", "sentence")},
             "fit": fit_rows(self.scores),
             **({"unstable": sorted(self.unstable)} if self.unstable else {}),
+            **({"question": self.question} if self.question else {}),
             "evidence": list(self.evidence),
             **({"short_validation": list(self.short_validation)} if self.short_validation else {}),
             "stages": dict(self.stages),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -114,8 +115,23 @@ class StribeckFriction(Mechanism):
         bristles, begun = PreslidingHysteresis(falling=True), {"F": level, "s": peak / level, "v_s": values["v_s"]}
         return [(bristles, begun), *bristles.richer(begun)]
 
+    def as_two(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """Dry and viscous friction, where it falls at no speed: then the two may do as well, and each may be something else."""
+        if _falls(values, 0.0, math.inf):
+            return ()
+        level = {"F_c": values["F_c"] + values["F_s"], "v_0": values["v_0"]}
+        return ((CoulombFriction(), level), (ViscousFriction(), {"c": values["c"]}))
+
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return faster_than_it_went("v_s", values["v_s"], around) or _highest_at_a_speed(values, around)
+
+    def degenerate(
+        self, around: Surroundings, values: Mapping[str, float], deviations: Mapping[str, float]
+    ) -> str | None:
+        """Of final values, which have deviations, also that the fall was not recorded; before, two laws are tried in its place."""
+        return super().degenerate(around, values, deviations) or (
+            _not_seen_to_fall(values, around) if deviations else None
+        )
 
 
 def _highest_at_a_speed(values: Mapping[str, float], around: Surroundings) -> str | None:
@@ -128,6 +144,26 @@ def _highest_at_a_speed(values: Mapping[str, float], around: Surroundings) -> st
         f"v_0 = {values['v_0']:.3g} {unit} is more than {WIDEST_BESIDE_A_PEAK:g} of v_s = {values['v_s']:.3g} {unit}: the force would be "
         "highest at a speed, not near standstill"
     )
+
+
+def _falls(values: Mapping[str, float], slowest: float, fastest: float) -> bool:
+    """Whether the force falls with speed at some of the speeds in between, the change of sign left aside."""
+    steepest = min(max(values["v_s"] / math.sqrt(2.0), slowest), fastest)
+    share = steepest / values["v_s"]
+    return values["c"] < 2.0 * values["F_s"] * share * math.exp(-(share**2)) / values["v_s"]
+
+
+def _not_seen_to_fall(values: Mapping[str, float], around: Surroundings) -> str | None:
+    """No recorded speed is near standstill, and over those that are the friction only grows: a bent line, and no Stribeck effect.
+
+    Seen: a propeller between 95 and 640 rad/s whose motor constant was 4 % off, told as Stribeck friction (0.97).
+    """
+    speeds = around.ranges["speed"]
+    slowest = max(speeds.low, -speeds.high)
+    if slowest <= NO_WIDTH * speeds.reach or _falls(values, slowest, speeds.reach):
+        return None
+    unit = around.units.get("speed", "")
+    return f"above {slowest:.3g} {unit}, the slowest that was recorded, the friction only grows with speed"
 
 
 LEAST_ASYMMETRY = 0.05

@@ -168,6 +168,10 @@ class Mechanism:
             or at_a_bound(self.parameters(around), values, self.natural_ends(around))
         )
 
+    def absent(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
+        """In words that the law does nothing with these parameters, as its amplitudes are zero; None where it does something."""
+        return lost_in_its_deviation(self.essential or self.amplitudes(around), values, {})
+
     def amplitudes(self, around: Surroundings) -> tuple[str, ...]:
         """The parameters that are zero where the law is absent; where no probe names any, all that are estimated."""
         directions = {name for probe in self.probes(around) for name in probe.directions} - {SHARE}

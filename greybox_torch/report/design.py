@@ -12,6 +12,9 @@ from matplotlib.figure import Figure
 
 from greybox_torch.report.style import STYLE, dots_within, with_unit
 
+STROKE = 5.0
+"""Widths that a stroke is long by which one of several curves is drawn."""
+
 
 @dataclass(frozen=True)
 class Feedback:
@@ -55,8 +58,8 @@ def plot_design(
             axis.set_ylabel(with_unit(name, units.get(name, "")))
         for name, runs in (*driven.items(), *outputs.items()):
             axis = next(panels)
-            for label, values in runs.items():
-                axis.plot(time, values, linewidth=1.0, label=label)
+            for k, (label, values) in enumerate(runs.items()):
+                _one_of_several(axis, time, values, k, len(runs), label)
             if feedback is not None and name in feedback.set_points:
                 axis.plot(time, feedback.set_points[name], "k--", linewidth=0.8, label="set point")
             axis.set_ylabel(with_unit(name, units.get(name, "")))
@@ -65,18 +68,32 @@ def plot_design(
             if several and name in outputs:
                 compared = list(runs.values()) if feedback is None else feedback.on_one_input[name]
                 told = "" if feedback is None else f"on the input of {next(iter(runs))}; "
-                _distances(next(panels), time, compared, units.get(name, ""), level[name], told)
+                _distances(next(panels), time, compared, units.get(name, ""), level[name], told, next(iter(runs)))
         axes[-1].set_xlabel("time [s]")
     return figure
 
 
-def _distances(axis: Axes, time: np.ndarray, runs: Sequence[np.ndarray], unit: str, level: float, on: str) -> None:
-    """The other hypotheses minus the first one, over a band of one error each way."""
+def _one_of_several(
+    axis: Axes, time: np.ndarray, values: np.ndarray, k: int, count: int, label: str = "", colour: str = ""
+) -> None:
+    """The ``k``-th of curves that may lie on each other: strokes in turn, so that all colours show, over a thin line."""
+    colour = colour or f"C{k}"
+    axis.plot(time, values, color=colour, linewidth=0.5 if count > 1 else 1.0, label=label if count == 1 else None)
+    if count > 1:
+        pattern = (-k * STROKE, (STROKE, (count - 1) * STROKE))
+        axis.plot(time, values, color=colour, linewidth=1.5, linestyle=pattern, dash_capstyle="butt")
+        axis.plot([], [], color=colour, linewidth=1.5, label=label or None)
+
+
+def _distances(
+    axis: Axes, time: np.ndarray, runs: Sequence[np.ndarray], unit: str, level: float, on: str, first: str
+) -> None:
+    """The other hypotheses minus the ``first`` one, over a band of one error each way."""
     axis.axhspan(-level, level, color="0.85", label=f"{on}error of the recordings so far, ±1 rms")
-    axis.plot([], [])  # the first hypothesis has the first colour
-    for values in runs[1:]:
-        axis.plot(time, values - runs[0], linewidth=1.0)
+    for k, values in enumerate(runs[1:]):
+        _one_of_several(axis, time, values - runs[0], k, len(runs) - 1, colour=f"C{k + 1}")
     axis.set_ylabel(with_unit("difference", unit))
+    axis.set_title(f"difference from {first}", loc="left", fontsize="small")
     _legend_above(axis)
 
 

@@ -50,6 +50,8 @@ def _draw(axes: Axes, curve: SignalCurve) -> None:
     axes.plot(curve.values, curve.force, color="#0b6e99", linewidth=1.6, label="learned")
     axes.axhline(0.0, color="black", linewidth=0.6)
     told = f"{100 * curve.share:.0f} % of the learned force's variance is a function of {curve.signal} alone"
+    if curve.zero_within > 0:
+        told += f"\nzero lies within the band over {100 * curve.zero_within:.0f} % of what was visited"
     axes.set_title(told, fontsize=9)
 
 

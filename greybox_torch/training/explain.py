@@ -60,8 +60,9 @@ class Explanation:
                 f"{_told(self.term.lost)}. "
                 "Drop the network."
             )
-        if self.terms:
-            best = self.terms[0]
+        present = [term for term in self.terms if not term.absent]
+        if present:
+            best = present[0]
             return (
                 f"No law of the library does what the network does: with the closest, {best.attachment.prefix}, the mean squared error on "
                 f"the held-out stretches is {_told(best.lost)}. {KEEP}"
@@ -121,7 +122,7 @@ def needless(terms: Sequence[NamedTerm], found: Trained) -> NamedTerm | None:
     better than physics alone.
     """
     alone = next(choice.held_out for choice in found.polished.choices if choice.weight is None)
-    return next((term for term in terms if term.lost <= WORTH and term.held_out < alone), None)
+    return next((t for t in terms if t.lost <= WORTH and t.held_out < alone and not t.absent), None)
 
 
 def _beside(first: LearnedForce, found: Trained, other: Trained) -> LearnedForce:

@@ -19,6 +19,9 @@ from greybox_torch.training.trained import Trained
 MOST_SAMPLES = 4000
 BINS = 40
 
+NARROW = 0.25
+"""Share of the curve's height up to which a band around zero says that it is zero."""
+
 
 @dataclass(frozen=True)
 class LearnedForce:
@@ -48,6 +51,13 @@ class SignalCurve:
     force: np.ndarray
     deviation: np.ndarray
     share: float
+
+    @property
+    def zero_within(self) -> float:
+        """Share of what was visited over which the band of two deviations contains zero, and is not as narrow as to say that it is zero."""
+        band = 2.0 * self.deviation
+        wide = band > NARROW * np.max(np.abs(self.force))
+        return float(np.mean(wide & (np.abs(self.force) <= band)))
 
 
 def learned_force(found: Trained) -> LearnedForce:

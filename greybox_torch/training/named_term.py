@@ -26,6 +26,7 @@ class NamedTerm:
     ``match`` is the share of the learned force that the law alone draws (None for a law that is not a force); ``held_out`` the mean squared
     error of the free run on the stretches that the network was judged on, without which it was fitted; ``lost`` by which share that is
     more than the network's. ``problem`` is at the estimate without those stretches, ``simulator`` as fine as both were judged with.
+    ``absent`` says that it was estimated without its effect, an amplitude of zero; "" elsewhere.
     """
 
     attachment: Attachment
@@ -34,6 +35,7 @@ class NamedTerm:
     lost: float
     problem: Problem
     simulator: Simulator
+    absent: str = ""
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -68,7 +70,9 @@ def refitted_term(
     simulator = _as_fine_for_both(found, fine_enough(simulator, best))
     held_out = held_out_error(problem_for(physics, model, {}), best, simulator, course)
     lost = held_out / _networks_error(found, simulator.substeps) - 1.0
-    return NamedTerm(attachment, match, held_out, lost, best, simulator)
+    own, around = attachment.own(best.values_by_name), found.hybrid.surroundings[attachment.port]
+    absent = attachment.mechanism.absent(around, own) or ""
+    return NamedTerm(attachment, match, held_out, lost, best, simulator, absent)
 
 
 def _as_fine_for_both(found: Trained, simulator: Simulator) -> Simulator:

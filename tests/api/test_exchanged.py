@@ -10,6 +10,8 @@ import pytest
 import greybox_torch as gt
 from greybox_torch.api import exchanged
 from greybox_torch.api.exchanged import MOST_ALIKE, MOST_SAMPLES
+from greybox_torch.api.verdict_summary import notes
+from greybox_torch.report.sections.headline import Headline
 
 COUNT, STEP = 400, 2.0
 
@@ -50,9 +52,13 @@ def recorded(role: str, seed: int, read: dict[str, str], sign: dict[str, float])
     return gt.Recording.from_arrays(role, given, sample_time=STEP, role=role)
 
 
-def fitted(read: dict[str, str] | None = None, **sign: float) -> gt.FitResult:
+def recordings(read: dict[str, str] | None = None, **sign: float) -> gt.DataSet:
     roles = ("estimation", "validation")
-    return gt.fit(Plate(), gt.DataSet([recorded(role, k, read or {}, sign) for k, role in enumerate(roles)]))
+    return gt.DataSet([recorded(role, k, read or {}, sign) for k, role in enumerate(roles)])
+
+
+def fitted(read: dict[str, str] | None = None, **sign: float) -> gt.FitResult:
+    return gt.fit(Plate(), recordings(read, **sign))
 
 
 @pytest.mark.parametrize(
@@ -72,6 +78,16 @@ def test_a_slip_among_the_channels_is_asked_for(read: dict[str, str], sign: dict
 
 def test_nothing_is_asked_where_the_fit_is_good() -> None:
     assert fitted().question is None and MOST_SAMPLES >= COUNT
+
+
+def test_a_diagnosis_asks_it_too() -> None:
+    """Seen: an encoder turned round, told as an unknown effect (0.50), where a fit of the same asked about the sign."""
+    found = gt.diagnose(Plate(), recordings(P2=-1.0), time_limit=2)
+    question = found.verdict.question
+    assert question is not None and "the sign of P2 turned" in question
+    assert notes(found.verdict)[0] == f"{question}." == Headline.of(found.verdict).beside[0]
+    assert found.verdict.as_json()["question"] == question
+    assert "question" not in gt.diagnose(Plate(), recordings(), time_limit=2).verdict.as_json()
 
 
 def test_a_sensor_that_begins_late_is_no_reason_to_fail(monkeypatch: pytest.MonkeyPatch) -> None:

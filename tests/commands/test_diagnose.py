@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -56,7 +55,7 @@ def made_up(data: DataSet, model: GreyBoxModel, seed: int, effects: tuple[Effect
         data.name, model.title, seed, 12.3, 0.99, effects, scores, ("Nothing explains more than chance.",), {}, (), tuple(traces)
     )  # fmt: skip
     values = {p.name: p.value for p in model.declared_parameters}
-    return SimpleNamespace(verdict=verdict, model=model, values=values, initial={}, attachments=[], rivals=())
+    return pipeline.Diagnosis(verdict, model, values, initial={}, attachments=[], rivals=())
 
 
 @pytest.fixture

@@ -133,3 +133,27 @@ def test_what_is_next_to_nothing_decides_nothing() -> None:
     assert not Expected((0.49, 0.48, 1e-6), nats, None).decides
     assert Expected((0.49, 0.28, 0.2), nats, None).decides
     assert Expected((0.9, 1e-4, 1e-6), nats, None).decides
+
+
+def test_groups_that_are_told_apart_are_told_as_groups(undecided: DiagnosisResult) -> None:
+    """Seen: "the right one of 5 hypotheses to a probability of 0.97", and below it which of them no input tells apart."""
+    found = gt.design(undecided, seconds=0.5)
+    nats = np.array([[0.0, 0.2, 900.0], [70000.0, 0.0, 800.0], [700.0, 600.0, 0.0]])
+    names = ("bias", "friction", "drag")
+    told = replace(found, names=names, expected=Expected((0.8, 0.1, 0.07), nats, nats))
+    assert told.expected.groups == [[0, 1], [2]] and told.expected.by_groups
+    assert "tell two groups of hypotheses apart: bias or friction; drag." in told.sentence
+    assert "no more than the first one has" not in told.sentence and "Within a group no input" in told.sentence
+    heads, rows = told._table()
+    assert heads[0] == "group" and [row[3:] for row in rows] == [[900.0, 0.2], [800.0, 70000.0], [600.0, ""]]
+    assert any("as well as the designed one" in line for line in told.notes)
+    assert not any("No input" in line for line in told.notes)
+    known = replace(told, expected=Expected((0.87, 0.1, 0.005), nats, None))
+    assert "0.97, which is no more than the first one has today (0.97)" in known.sentence
+
+
+def test_without_groups_each_pair_is_told() -> None:
+    apart = Expected((0.6, 0.3, 0.07), np.array([[0.0, 9.0, 9.0], [9.0, 0.0, 9.0], [9.0, 9.0, 0.0]]), None)
+    assert not apart.by_groups and [len(group) for group in apart.groups] == [1, 1, 1]
+    chain = Expected((0.6, 0.3, 0.07), np.array([[0.0, 0.1, 9.0], [9.0, 0.0, 0.1], [9.0, 9.0, 0.0]]), None)
+    assert chain.decides and not chain.by_groups and chain.groups == [[0, 1, 2]]

@@ -185,6 +185,8 @@ def test_what_an_unknown_effect_is_instead_of_a_curve_is_in_its_headline() -> No
 def test_where_the_error_without_a_name_is(second: float, words: str) -> None:
     """Seen: a fan whose speed fits to 72 % and whose temperature to 97 %: the sentence named neither."""
     both = tuple(Score("Run 2", "validation", name, fit, 0.3) for name, fit in (("speed", 72.0), ("heat", second)))
+    short = replace(verdict(), unexplained=12.0, too_short="the recording is too short to judge").sentence
+    assert "No law" not in short and short.endswith("What it is cannot be told: the recording is too short to judge.")
     told = replace(verdict(), unexplained=12.0, scores={"start": both, "refit": both, "augmented": both}).sentence
     assert (
         f"Something is missing from Motor: {words} at least 12 times the noise that the recordings' highest frequencies show, over short "

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -14,6 +16,7 @@ from greybox_torch.mechanisms.friction import (
     StribeckFriction,
     ViscousFriction,
 )
+from greybox_torch.mechanisms.surroundings import Range, Surroundings
 from greybox_torch.mechanisms.varying_friction import FrictionWarmup, LoadDependentFriction, PositionDependentFriction
 
 SPEEDS = np.linspace(-15.0, 15.0, 301)
@@ -196,3 +199,17 @@ def test_what_varies_a_coulomb_level_does_not_drive_with_it(law, v, a, b, v_0, a
     assert (level + varied) * v <= 1e-12
     level = law(CoulombFriction(), {"F_c": abs(a), "v_0": v_0}, speed=v)
     assert (level + law(CoulombAsymmetry(), {"delta": a, "v_0": v_0}, speed=v)) * v <= 0
+
+
+def test_friction_that_was_never_seen_to_fall_is_no_stribeck_friction(around: Surroundings) -> None:
+    law = StribeckFriction()
+    values = {"F_c": 1.0, "F_s": 0.5, "c": 0.1, "v_s": 8.0, "v_0": 0.1}
+    certain = {name: 0.01 * value for name, value in values.items()}
+    fast = replace(around, ranges={**around.ranges, "speed": Range(4.0, 20.0, 12.0)})
+    assert law.degenerate(around, values, certain) is None  # standstill was recorded
+    assert "only grows" in (law.degenerate(fast, values, certain) or "")
+    assert law.degenerate(fast, values, {}) is None  # two laws are tried in its place first
+    falling = {**values, "c": 0.01}
+    assert law.degenerate(fast, falling, certain) is None
+    assert [mechanism.name for mechanism, _ in law.as_two(values)] == ["coulomb_friction", "viscous_friction"]
+    assert law.as_two(falling) == ()

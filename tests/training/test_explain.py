@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import torch
 
+from greybox_torch.api.train_explained import open_sign
 from greybox_torch.errors import UserError
 from greybox_torch.training import Trained, TrainingSettings, fit_physics, train_hybrid
 from greybox_torch.training.explain import Explanation, explain, needless
@@ -139,3 +140,23 @@ def test_hybrid_of_an_augmented_model(drag_data, law: Explanation) -> None:
     assert found.physics is physics.result
     assert np.abs(found.force(speed=np.linspace(-3, 3, 9))).max() < 0.01
     assert torch.is_tensor(augmented.base.raw["b"])
+
+
+def test_a_law_without_its_effect_is_not_the_closest(law: Explanation, of_a_law: Trained) -> None:
+    """Seen: "with the closest, cable.backlash", whose half_gap was zero."""
+    first = law.terms[0]
+    assert first.absent == "" and first.attachment.mechanism.absent(
+        of_a_law.hybrid.surroundings["table"], {"c": 0.0}
+    ) == ("c = 0")
+    nothing = replace(first, absent="c = 0")
+    assert needless([nothing], of_a_law) is None
+    told = replace(law, terms=(nothing,), term=None).sentence
+    assert "closest" not in told and told.endswith("Keep the network.")
+
+
+def test_where_the_band_contains_zero_is_told(law: Explanation) -> None:
+    """Seen: a band of ±4 N m around a curve of ±0.5 N m, and "Keep the network" without a word of it."""
+    (curve,) = law.curves
+    wide = replace(curve, deviation=np.abs(curve.force) + 1.0)
+    assert wide.zero_within == 1.0 and curve.zero_within < 0.5
+    assert open_sign([curve]) == "" and "(speed 100 %)" in open_sign([wide])

@@ -16,6 +16,7 @@ from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share, negligible
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
+from greybox_torch.diagnosis.hypothesis.significance import too_few_windows
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.select.choice import least_gain
@@ -78,11 +79,10 @@ def sentences(
 def _removed(lost: Sequence[Attachment], state: SearchState) -> list[str]:
     """What was taken and is not told: names in whose place a free curve stands, and those that nothing confirms."""
     curves = {a.port for a in state.effects if a.mechanism.free}
-    replaced = [_name(a) for a in lost if a.port in curves and not a.mechanism.free]
-    others = [_name(a) for a in lost if a.port not in curves or a.mechanism.free]
-    told = [(f"A free curve stands in the place of {', '.join(replaced)}.", replaced)]
-    told.append((f"Removed again, as other experiments or effects do not confirm it: {', '.join(others)}.", others))
-    return [sentence for sentence, names in told if names]
+    replaced = ", ".join(_name(a) for a in lost if a.port in curves and not a.mechanism.free)
+    others = ", ".join(_name(a) for a in lost if a.port not in curves or a.mechanism.free)
+    told = [f"A free curve stands in the place of {replaced}."] if replaced else []
+    return told + ([f"Removed again, as other experiments or effects do not confirm it: {others}."] if others else [])
 
 
 def _held_out(gain: Gain) -> tuple[str, str]:
@@ -129,9 +129,11 @@ def _step_sentence(done: SelectionStep, study: Study, plain: Hypothesis) -> str:
     best = done.ranked[0]
     if best.of_errors <= 0:
         return f"The best further candidate, {_name(best.candidate.attachment)}, would not lower it."
+    few = too_few_windows(best.fitted, settings)
+    away = "too few windows for a standard error" if few else f"{best.significance:.1f} standard errors"
     lowers = (
-        f"The best further candidate, {_name(best.candidate.attachment)}, would lower it by {100 * (1 - np.exp(-best.of_errors)):.2g} % "
-        f"({best.significance:.1f} standard errors)"
+        f"The best further candidate, {_name(best.candidate.attachment)}, would lower it by "
+        f"{digits(100 * (1 - np.exp(-best.of_errors)))} % ({away})"
     )
     if little:
         return f"{lowers}. {_little(settings)}, of which only what leaves noise alone is claimed."
@@ -238,7 +240,7 @@ def _negligible(study: Study, state: SearchState) -> list[str]:
     if not negligible(study, state.plain):
         return []
     return [
-        f"Beyond the noise it is {100 * mismatch_share(state.plain, study.settings):.2g} % of the outputs' spread. A shift in time by "
+        f"Beyond the noise it is {digits(100 * mismatch_share(state.plain, study.settings))} % of the outputs' spread. A shift in time by "
         f"{100 * study.settings.least_shift:.2g} % of a sampling interval, or another simulator of the same model, may do as much: "
         "nothing was looked for."
     ]

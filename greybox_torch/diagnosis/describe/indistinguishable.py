@@ -25,7 +25,8 @@ def one_of(
     recordings are undecided; None where it stands alone.
 
     A law that contains the whole force of the one found says the same where what it has more is not seen: it is a rival only where the
-    recordings are undecided between the two. A free curve is none.
+    recordings are undecided between the two. A free curve is none. One that is next to nothing counts in the
+    whole but is not named.
 
     Args:
         model: the plain one, whose inputs and outputs the ports belong to.
@@ -45,13 +46,16 @@ def one_of(
         undecided = share >= settings.least_class_share
         if undecided or (not says_the_same and divergence(taken.fitted, rival.fitted) < settings.visible_divergence):
             found.append((rival, told[attachment.named]))
-    if len(found) == 1:
+    named = [
+        (candidate, share) for candidate, share in found if candidate is taken or share >= settings.least_alternative
+    ]
+    if len(named) == 1:
         return None
-    members = tuple(_member(model, candidate, share) for candidate, share in found)
+    members = tuple(_member(model, candidate, share) for candidate, share in named)
     alternatives = tuple(Alternative(m.port, m.mechanism, m.probability) for m in members)
     return OneOf(
         statement(members),
-        round(min(sum(m.probability for m in members), settings.highest_probability), 4),
+        round(min(sum(round(share, 4) for _, share in found), settings.highest_probability), 4),
         alternatives,
     )
 

@@ -9,7 +9,8 @@ import numpy as np
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.describe.residual_tests import Detection
 from greybox_torch.diagnosis.digits import digits
-from greybox_torch.diagnosis.verdict import NOISE_SHOWN, OF_ESTIMATION, Left
+from greybox_torch.diagnosis.verdict import OF_ESTIMATION, Left
+from greybox_torch.diagnosis.without_effects import NOISE_SHOWN
 
 
 def what_is_left(

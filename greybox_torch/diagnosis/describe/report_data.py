@@ -10,8 +10,12 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.effect import Effect
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.significance import too_few_windows
 from greybox_torch.diagnosis.one_of import spoken_at
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.verdict import Estimate, InputTrace, Trace
 from greybox_torch.estimate.short_validation import short_validation
 from greybox_torch.estimate.slowest_time_constant import slowest_time_constant
@@ -56,6 +60,16 @@ def too_short_to_judge(given: DataSet, judged: Judgement, effects: Sequence[Effe
     problem = judged.problem.with_values(np.array([values[name] for name in judged.problem.names]))
     told = short_validation(given, slowest_time_constant(judged.problem.model.plain, problem), *times_of(effects))
     return () if told is None else (f"{told[0].upper()}{told[1:]}.",)
+
+
+def too_short_to_choose(used: DataSet, plain: Hypothesis, settings: DiagnosisSettings) -> str:
+    """A clause where the recordings to choose with have too few windows to tell anything from chance; "" elsewhere."""
+    if not too_few_windows(plain, settings):
+        return ""
+    runs = used.estimation()
+    samples, seconds = sum(len(r.time) for r in runs), sum(r.seconds for r in runs)
+    recordings = "recording to choose with is" if len(runs) == 1 else "recordings to choose with are"
+    return f"the {recordings} too short to judge ({samples} samples, {digits(seconds)} s)"
 
 
 def times_of(effects: Sequence[Effect]) -> tuple[dict[str, float], dict[str, float]]:

@@ -38,6 +38,11 @@ def over_the_same_windows(before: Hypothesis, after: Hypothesis) -> bool:
     return all(len(old.energies) == len(new.energies) for old, new in pairs)
 
 
+def too_few_windows(fitted: Hypothesis, settings: DiagnosisSettings) -> bool:
+    """Whether there are at no length as many windows as a standard error needs."""
+    return all(len(fit.energies) < settings.fewest_windows for fit in fitted.fits)
+
+
 def window_significance(before: Hypothesis, after: Hypothesis, settings: DiagnosisSettings) -> float:
     """How many standard errors the improvement is away from none: the largest over the window lengths.
 

@@ -113,7 +113,7 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     done = with_curve.steps[-1]
     start = replace(with_curve.at(done.parent), steps=before.steps, in_place_of=done)
     two = yield from _two_instead(study, start, with_curve)
-    if two is not None:
+    if two is not start:
         return two
     name = _name_before_fine_curve(study, start, with_curve)
     if name is not None and as_far_as_curve(study, with_curve, name):
@@ -122,7 +122,7 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
     if as_far_as_curve(study, with_curve, branch):
         return branch
     two = yield from _two_instead(study, start, with_curve, line_open=False)
-    if two is not None:
+    if two is not start:
         return two
     pieces = in_pieces(study, with_curve, branch) or many_names(study, with_curve, branch)
     standing = before_pieces(start, with_curve, branch) if pieces else branch
@@ -133,17 +133,17 @@ def _named_instead(study: Study, before: SearchState, with_curve: SearchState) -
 
 def _two_instead(
     study: Study, start: SearchState, with_curve: SearchState, *, line_open: bool = True
-) -> Stage[SearchState | None]:
-    """``start`` with two laws that draw the curve together, where they come as far; None elsewhere.
+) -> Stage[SearchState]:
+    """``start`` with two laws that draw the curve together, where they come as far; as it is elsewhere.
 
     That one of them may be a straight line is asked last: beside a law that comes as far alone, it would take up what is imprecise.
     """
     first = with_first_of_two(study, start, with_curve, line_open=line_open)
     if first is None:
-        return None
+        return start
     two = yield from only_if(second_step(study, first), partial(as_far_as_curve, study, with_curve))
     if not as_far_as_curve(study, with_curve, two):
-        return None
+        return start
     return replace(richer_instead(study, first, two) or two, found_before=start.found_before)
 
 

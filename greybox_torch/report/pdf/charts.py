@@ -22,6 +22,7 @@ COLOURS = {
     "model": "#0868b0",
     "effect": "#0868b0",
     "beyond": "#0868b0",
+    "named": "#0868b0",
     "law": "#0868b0",
     "detail": "#1c2127",
     "data": "#5a636e",
@@ -30,7 +31,8 @@ COLOURS = {
 }
 """By series; the others are in ink."""
 
-THICK = {"measured": 2.6, "effect": 1.6, "output": 1.1, "free": 1.1}
+THICK = {"measured": 2.6, "effect": 1.6, "output": 1.1, "free": 1.6, "named": 1.1}
+DASHED = ("beyond", "named")
 FAINT = {"detail": 0.06, "measured": 0.35}
 TALL = {"tall": 120.0, "medium": 80.0, "low": 58.0}
 """Heights of the plots."""
@@ -118,13 +120,13 @@ def _draw_mark(axes: Axes, mark: Mark) -> None:
         return
     if mark.kind == "points":
         places = np.array(re.findall(r"M(-?\d+) (-?\d+)", mark.path), dtype=float)
-        axes.plot(places[:, 0], places[:, 1], ".", color=colour, markersize=2.6, alpha=0.7)
+        axes.plot(places[:, 0], places[:, 1], ".", color=colour, markersize=3.6, alpha=0.8)
         return
     path = svg_path(mark.path)
     if mark.kind == "line":
         thick = THICK.get(mark.series, 0.9)
         shade = "#c3c9cf" if mark.series == "measured" else colour
-        style = "--" if mark.series == "beyond" else "-"
+        style = "--" if mark.series in DASHED else "-"
         _put(axes, PathPatch(path, fill=False, edgecolor=shade, linewidth=thick, joinstyle="round", linestyle=style))
     else:
         faint = 1.0 if mark.kind == "bars" else FAINT.get(mark.series, 0.18)
@@ -179,7 +181,7 @@ def _draw_legend(sheets: Sheets, lines: list[list[Key]]) -> None:
         for key in line:
             axes = sheets.axes(x, sheets.top, 14.0, 9.0)
             axes.set_axis_off()
-            style = "o" if key.series in ("dots", "data") else "-"
+            style = "o" if key.series in ("dots", "data") else "--" if key.series in DASHED else "-"
             places = [0.5] if style == "o" else [0.0, 1.0]
             colour, thick = COLOURS.get(key.series, INK), THICK.get(key.series, 1.6)
             axes.plot(places, [0.5] * len(places), style, color=colour, linewidth=thick, markersize=3.0)

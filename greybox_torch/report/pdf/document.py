@@ -66,7 +66,7 @@ def _headline(sheets: Sheets, told: Headline) -> None:
         cut = "The search was stopped before it was done. This is the best that it had found by then."
         sheets.text(" ".join((cut, *told.not_tried)), colour=BARS["chosen"])
         sheets.gap(8.0)
-    for sentence in told.of_validation:
+    for sentence in told.beside:
         sheets.text(sentence)
         sheets.gap(8.0)
     beside = 4 if len(told.figures) == 4 else 3

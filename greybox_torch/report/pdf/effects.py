@@ -21,6 +21,9 @@ def draw_effects(sheets: Sheets, verdict: Verdict) -> None:
     for card in told.cards:
         _card(sheets, card)
         sheets.gap(10.0)
+    for sentence in told.made_up:
+        sheets.text(sentence, 8.0, colour=QUIET)
+        sheets.gap(4.0)
 
 
 def _card(sheets: Sheets, card: Card) -> None:

@@ -78,13 +78,14 @@ class Effects:
     """The cards of all effects."""
 
     cards: tuple[Card, ...]
+    made_up: tuple[str, ...] = ()
     template: str = "effects.html.j2"
 
     @classmethod
     def of(cls, verdict: Verdict) -> Effects | None:
         alone = len(verdict.effects) + len(verdict.refinements) == 1
         cards = (_card(e, responses(verdict, e), alone) for e in verdict.effects)
-        return cls(tuple(cards)) if verdict.effects else None
+        return cls(tuple(cards), verdict.made_up) if verdict.effects else None
 
 
 def _card(effect: Effect, shown: Responses | None, alone: bool) -> Card:

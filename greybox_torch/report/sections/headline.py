@@ -32,7 +32,7 @@ class Headline:
     figures: tuple[Figure, ...]
     complete: bool
     not_tried: tuple[str, ...] = ()
-    of_validation: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()
     template: str = "headline.html.j2"
 
     @classmethod
@@ -43,8 +43,8 @@ class Headline:
         if verdict.mismatch or (verdict.complete and verdict.looked):
             figures.append(_confidence(verdict))
         told = (verdict.dataset, verdict.model, verdict.sentence, answer, tuple(figures))
-        of_validation = (*verdict.no_longer_validation, *verdict.short_validation)
-        return cls(*told, verdict.complete, verdict.not_tried.sentences(), of_validation)
+        beside = (*verdict.asked, *verdict.no_longer_validation, *verdict.short_validation)
+        return cls(*told, verdict.complete, verdict.not_tried.sentences(), beside)
 
 
 def held_out(verdict: Verdict, model: str, output: str | None = None) -> list[Score]:

@@ -11,6 +11,8 @@ from greybox_torch.report.chart.panel import Chart, Key, Panel, side_by_side
 from greybox_torch.report.chart.scale import Scale, linear
 
 LAW, BEYOND, DATA, BAND, SEEN = "effect", "beyond", "data", "free", "seen"
+NAMED = "named"
+"""A law over a free curve in its place, dashed: where it is right, it lies on the curve and on the data, which show through it."""
 
 HARDLY = 0.05
 """Share of the samples that a bin would have if they were spread evenly, below which it has hardly any."""
@@ -55,7 +57,8 @@ def _curves(effect: Effect, curve: Curve, x: Scale, y: Scale) -> list[Mark]:
         around = _band(x, y, curve.values, curve.force, free.spread, LAW)
         return [around, *_extrapolated(curve, np.isfinite(free.spread) & ~_gaps(curve), x, y), dots]
     around = _band(x, y, curve.values, free.force, free.spread, BAND)
-    return [around, line(x, y, curve.values, free.force, BAND), law, dots]
+    named = line(x, y, curve.values, curve.force, NAMED)
+    return [around, line(x, y, curve.values, free.force, BAND), dots, named]
 
 
 def _ends(curve: Curve) -> tuple[float, float]:
@@ -111,7 +114,7 @@ def _legend(effect: Effect, curve: Curve) -> tuple[Key, ...]:
     dots = Key(DATA, f"estimates from single windows of {curve.free.samples} samples")
     if effect.mechanism == "unknown":
         return Key("law", "the curve, with two standard deviations on either side"), dots
-    return Key("law", "the law"), Key(BAND, "a free curve in its place, ± two standard deviations"), dots
+    return Key(NAMED, "the law"), Key(BAND, "a free curve in its place, ± two standard deviations"), dots
 
 
 def _caption(effect: Effect, curve: Curve) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report import text
 
@@ -30,7 +31,7 @@ class Remains:
         if verdict.left is None:
             return None
         rows = (
-            Refinement(text.words(e.mechanism), e.port, f"{100 * e.size:.2g} %")
+            Refinement(text.words(e.mechanism), e.port, f"{digits(100 * e.size)} %")
             for e in sorted(verdict.refinements, key=lambda e: -e.size)
         )
         return cls(verdict.left.sentence, tuple(rows))

@@ -18,6 +18,8 @@ SEGMENT = 8192
 
 PER_DECADE = 40
 """Values that a decade of frequency is drawn with."""
+MOST_DECADES = 15.0
+"""Of power that the axis reaches down: to the steps of a fine encoder, and not to the rounding of a simulation."""
 _FEWEST = 8  # samples of a segment that a spectrum is made of
 
 
@@ -103,7 +105,7 @@ def _density(signal: np.ndarray, step: float, segment: int) -> tuple[np.ndarray,
 
 def _panel(found: Spectra) -> Panel:
     x: Scale = Scale(float(found.frequency[0]), float(found.frequency[-1]), logarithmic=True)
-    y = logarithmic(*found.density.values())
+    y = logarithmic(*found.density.values(), most_decades=MOST_DECADES)
     marks = tuple(line(x, y, found.frequency, density, name) for name, density in found.density.items())
     squared = f"{found.unit}^2" if found.unit.isalpha() else f"({found.unit})^2"
     unit = f"{squared}/Hz" if found.unit else "1/Hz"

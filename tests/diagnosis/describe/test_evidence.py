@@ -113,10 +113,23 @@ def test_what_was_not_claimed_and_why(stub, monkeypatch: pytest.MonkeyPatch, sha
     monkeypatch.setattr(remaining, "remaining_share", lambda plain, parent, settings: share)
     monkeypatch.setattr(evidence, "least_gain", lambda fitted, settings: 0.05)
     monkeypatch.setattr(evidence, "_name", lambda attachment: "torque ripple at rotor")
-    best = stub(of_errors=1.14, significance=12.8, candidate=stub(attachment=None), fitted=None)
+    fitted = stub(fits=(stub(energies=np.ones(8)), stub(energies=np.ones(2))))
+    best = stub(of_errors=1.14, significance=12.8, candidate=stub(attachment=None), fitted=fitted)
     step = stub(taken=None, ranked=(best,), parent=stub(effects=("friction",)))
     said = _step_sentence(step, stub(settings=DiagnosisSettings(), more_is_missing=False), stub())
     assert said == f"The best further candidate, torque ripple at rotor, would lower it by 68 % {claimed}"
+
+
+def test_a_gain_over_few_windows_has_no_standard_error(stub, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seen: "would lower it by 1e+02 % (0.0 standard errors)", of 25 samples."""
+    monkeypatch.setattr(evidence, "least_gain", lambda fitted, settings: 0.05)
+    monkeypatch.setattr(evidence, "_name", lambda attachment: "sensor lag at thrust")
+    best = stub(
+        of_errors=6.0, significance=0.0, candidate=stub(attachment=None), fitted=stub(fits=(stub(energies=np.ones(1)),))
+    )
+    step = stub(taken=None, ranked=(best,), parent=stub(effects=()))
+    said = _step_sentence(step, stub(settings=DiagnosisSettings(), more_is_missing=False), stub())
+    assert "would lower it by 100 % (too few windows for a standard error)" in said
 
 
 @pytest.mark.parametrize("plausible", [0.0, 0.2])

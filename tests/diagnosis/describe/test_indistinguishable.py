@@ -52,6 +52,17 @@ def test_outputs_that_differ_by_less_than_could_be_seen(told) -> None:
     ]
 
 
+def test_who_is_next_to_nothing_counts_in_the_whole_and_is_not_named(told) -> None:
+    found = told(
+        ("motor", CoulombFriction(), 0.6, 0.0),
+        ("arm", CoulombFriction(), 0.3, 1.0),
+        ("arm", ConstantBias(), 0.004, 1.0),
+    )
+    assert found is not None and found.statement == "dry friction at motor or arm"
+    assert len(found.members) == 2 and found.probability == pytest.approx(0.904)
+    assert told(("motor", CoulombFriction(), 0.9, 0.0), ("arm", CoulombFriction(), 0.004, 0.0)) is None
+
+
 def test_outputs_that_differ_and_evidence_that_is_undecided(told) -> None:
     found = told(("motor", CoulombFriction(), 0.6, 0.0), ("motor", ConstantBias(), 0.3, 40.0))
     assert found is not None and found.statement == "Coulomb friction or constant bias at motor"

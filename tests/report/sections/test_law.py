@@ -36,12 +36,12 @@ def test_a_law_over_the_data() -> None:
     assert [(m.kind, m.series) for m in panel.marks] == [
         ("area", "free"),
         ("line", "free"),
-        ("line", "effect"),
         ("points", "data"),
+        ("line", "named"),
     ]
     assert "a free curve estimated in its place" in chart.caption and "partial residuals" in chart.caption
     assert "the constant at gear_spring that" in chart.caption  # seen: a "constant force" at a valve, in l/min
-    assert [key.series for key in chart.legend] == ["law", "free", "data"]
+    assert [key.series for key in chart.legend] == ["named", "free", "data"]
     assert chart.legend[2].label == "estimates from single windows of 62 samples"
 
 
@@ -68,7 +68,7 @@ def test_without_any_point() -> None:
     effect = over_data(BACKLASH)
     assert effect.curve is not None and effect.curve.free is not None
     none = replace(effect.curve.free, at=np.zeros(0), asked=np.zeros(0))
-    assert drawn(replace(effect, curve=replace(effect.curve, free=none))).columns[0][0].marks[-1].path == ""
+    assert drawn(replace(effect, curve=replace(effect.curve, free=none))).columns[0][0].marks[-2].path == ""
 
 
 def test_a_signal_has_the_name_of_the_state() -> None:

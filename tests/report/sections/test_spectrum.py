@@ -8,7 +8,7 @@ import pytest
 from scipy.signal import welch
 
 from greybox_torch.diagnosis.verdict import Verdict
-from greybox_torch.report.sections.spectrum import _density, spectra
+from greybox_torch.report.sections.spectrum import Spectra, _density, _panel, spectra
 
 
 def test_power_and_place(with_traces: Callable[..., Verdict]) -> None:
@@ -43,3 +43,12 @@ def test_the_density_is_welchs(samples: int, segment: int) -> None:
     own, theirs = _density(signal, 0.01, segment), welch(signal, 100.0, nperseg=segment)
     for one, other in zip(own, theirs, strict=True):
         assert np.allclose(one, other, rtol=1e-9, atol=1e-18)
+
+
+def test_the_axis_reaches_to_the_steps_of_a_fine_encoder_and_not_to_rounding() -> None:
+    """Seen: eleven decades from an angle's motion to its encoder's steps, both errors cut off above 7 and above 22 Hz."""
+    frequency = np.geomspace(0.5, 250.0, 50)
+    encoder = Spectra("angle", "rad", frequency, {"output": np.geomspace(0.3, 3e-12, 50), "after": np.full(50, 3e-12)})
+    assert _panel(encoder).y.low < 3e-12
+    exact = replace(encoder, density={"output": encoder.density["output"], "after": np.full(50, 1e-32)})
+    assert 1e-17 < _panel(exact).y.low < 1e-15
