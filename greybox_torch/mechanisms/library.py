@@ -14,13 +14,7 @@ from greybox_torch.mechanisms.actuator import (
 from greybox_torch.mechanisms.balance import LinearLeak, ThresholdFlow
 from greybox_torch.mechanisms.check import check_mechanism
 from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndStop
-from greybox_torch.mechanisms.friction import (
-    CoulombAsymmetry,
-    CoulombFriction,
-    QuadraticDrag,
-    StribeckFriction,
-    ViscousFriction,
-)
+from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction, QuadraticDrag, ViscousFriction
 from greybox_torch.mechanisms.friction_net import FrictionNet
 from greybox_torch.mechanisms.gravity import Gravity
 from greybox_torch.mechanisms.mechanism import Mechanism
@@ -29,6 +23,7 @@ from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorGain, SensorLag
 from greybox_torch.mechanisms.stiffness import NonlinearStiffness
+from greybox_torch.mechanisms.stribeck import StribeckFriction
 from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.transmission import Backlash, HystereticSpring, NonlinearDamping
 from greybox_torch.mechanisms.transmission_error import TransmissionError

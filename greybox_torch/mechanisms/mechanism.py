@@ -209,6 +209,10 @@ class Mechanism:
         """Where the law begins as one that it contains, which was found at ``values``; empty where nothing is known."""
         return {}
 
+    def limit(self, values: Mapping[str, float]) -> tuple[Mechanism, Mapping[str, float]] | None:
+        """The law that it becomes at the end of a parameter's range, where that is another one's, and where to begin it."""
+        return None
+
     def available(self, around: Surroundings) -> bool:
         """Whether the recordings have the signals that it needs."""
         return set(self.needs) - {"delayed"} <= set(around.ranges)

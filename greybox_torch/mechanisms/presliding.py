@@ -7,19 +7,11 @@ from typing import Any
 
 import torch
 
+from greybox_torch.mechanisms.bristles import SHORTEST, bending, bristle, shortest_followed
 from greybox_torch.mechanisms.degenerate import faster_than_it_went, longer_than_the_travel
+from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
-from greybox_torch.mechanisms.slip import slip_share
 from greybox_torch.model import Parameter, Signals, State
-
-SUDDEN = 8
-"""Exponent of the share slipped in the form where slip sets in suddenly, for 1 in Dahl's: near the edge of an elasto-plastic element."""
-
-FASTEST = 1.1
-"""Share slipped beyond which that power grows no more: a step that overshoots must not be thrown back."""
-
-FOLLOWED = 2.0
-"""Rate of slipping, per sample, that a step follows: those of Runge-Kutta are stable up to 2.78."""
 
 
 class PreslidingHysteresis(Mechanism):
@@ -50,7 +42,7 @@ class PreslidingHysteresis(Mechanism):
         self.sharp, self.falling = sharp, falling
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
-        least, reach = self._smallest(around), around.ranges["speed"].reach
+        least, reach = shortest_followed(around), around.ranges["speed"].reach
         speed = around.units.get("speed", "")
         found = [
             Parameter("F", 0.0, around.force_unit, lower=0.0, description="level at full sliding"),
@@ -58,7 +50,7 @@ class PreslidingHysteresis(Mechanism):
                 "z_0",
                 4 * least,
                 speed.replace("/s", ""),
-                lower=0.05 * least,
+                lower=SHORTEST * least,
                 upper=1e3 * least,
                 description="deflection at which it slips",
             ),
@@ -78,17 +70,11 @@ class PreslidingHysteresis(Mechanism):
         return found
 
     def states(self, around: Surroundings) -> list[State]:
-        return [State("bristle", around.units.get("speed", "").replace("/s", ""))]
+        return [bristle(around)]
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
         yields_at = p.z_0 * (1.0 + p.s * torch.exp(-((s.speed / p.v_s) ** 2))) if self.falling else p.z_0
-        share, steepest = slip_share(z.bristle, yields_at), 1.0
-        if self.sharp:
-            sudden = torch.clamp(torch.abs(share), max=FASTEST) ** (SUDDEN - 1)
-            share = share * (1.0 - p.sharpness + p.sharpness * sudden)
-            steepest = 1.0 + (SUDDEN - 1) * p.sharpness
-        slipping = steepest * torch.abs(s.speed) * s.sample_time / yields_at
-        return {"bristle": (s.speed - torch.abs(s.speed) * share) / torch.clamp(slipping / FOLLOWED, min=1.0)}
+        return {"bristle": bending(s.speed, z.bristle, yields_at, s.sample_time, p.sharpness if self.sharp else None)}
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         bent = -p.F * z.bristle / p.z_0
@@ -97,6 +83,10 @@ class PreslidingHysteresis(Mechanism):
     def begun_as(self, contained: str, values: Mapping[str, float]) -> Mapping[str, float]:
         return {"F": values["F_c"]} if contained == "coulomb_friction" else {}
 
+    def limit(self, values: Mapping[str, float]) -> tuple[Mechanism, Mapping[str, float]] | None:
+        """Coulomb friction that sticks: bristles too short to be seen."""
+        return None if self.sharp or self.falling else (CoulombFriction(sticking=True), {"F_c": values["F"]})
+
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
         """With slip that sets in at once, with a level that falls with speed, and with both."""
         forms = ((True, False), (False, True), (True, True))
@@ -104,15 +94,11 @@ class PreslidingHysteresis(Mechanism):
         return [(PreslidingHysteresis(*form), {**_begun(*form), **values}) for form in further]
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
-        return [Probe(("F",), {"z_0": factor * self._smallest(around)}) for factor in (2, 8, 32)]
+        return [Probe(("F",), {"z_0": factor * shortest_followed(around)}) for factor in (2, 8, 32)]
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         too_fast = faster_than_it_went("v_s", values["v_s"], around) if self.falling else None
         return too_fast or longer_than_the_travel("z_0", values["z_0"], around, "position")
-
-    def _smallest(self, around: Surroundings) -> float:
-        """A bristle deflection whose time constant the sampling still resolves at the highest speed."""
-        return around.ranges["speed"].reach * around.sample_time
 
 
 def _begun(sharp: bool, falling: bool) -> dict[str, float]:

@@ -48,11 +48,15 @@ class DryLaw(LinearLaw):
     natural = (WIDTH,)
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
-        return [*self.beside(around), self.size(around), width_parameter(around)]
+        return [*self.beside(around), self.size(around), self.change_of_sign(around)]
 
     def beside(self, around: Surroundings) -> list[Parameter]:
         """Further levels that a form of the law has."""
         return []
+
+    def change_of_sign(self, around: Surroundings) -> Parameter:
+        """Within what the force changes its sign."""
+        return width_parameter(around)
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
         return self.law(s, p[self.parameter]) * smooth_sign(s.speed, p.v_0)

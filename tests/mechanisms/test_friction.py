@@ -9,13 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from greybox_torch.mechanisms.friction import (
-    CoulombAsymmetry,
-    CoulombFriction,
-    QuadraticDrag,
-    StribeckFriction,
-    ViscousFriction,
-)
+from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction, QuadraticDrag, ViscousFriction
+from greybox_torch.mechanisms.stribeck import StribeckFriction
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
 from greybox_torch.mechanisms.varying_friction import FrictionWarmup, LoadDependentFriction, PositionDependentFriction
 

@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from greybox_torch.mechanisms.friction import StribeckFriction
+from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
+from greybox_torch.mechanisms.stribeck import StribeckFriction
 
 speeds = st.floats(-50.0, 50.0)
 BRISTLE = {"F": 2.0, "z_0": 0.05}
@@ -157,3 +158,19 @@ def test_slow_motion_is_followed_as_it_is(rates) -> None:
     memory, values = {"bristle": np.array(0.4e-3)}, {"F": 2.0, "z_0": 1e-3}
     found = rates(PreslidingHysteresis(), values, memory, speed=np.array(0.02), sample_time=np.array(0.01))[0]
     assert float(found) == pytest.approx(0.02 * 0.6)
+
+
+def test_dry_friction_that_sticks_holds_a_push_below_its_level_and_slides_against_one_above(law, rates) -> None:
+    """A mass of 1 kg, pushed with 1.5 N and then 2.5 N against 2 N: at rest for as long as it is pushed, then 0.5 m/s² from there."""
+    sticking, values, step = CoulombFriction(sticking=True), {"F_c": 2.0, "z_0": 1e-4}, 2e-5
+    bent, v, q, stood = 0.0, 0.0, 0.0, []
+    for k in range(50_000):
+        memory = {"bristle": np.array(bent)}
+        push = 1.5 if k < 25_000 else 2.5
+        force = float(law(sticking, values, memory, speed=np.array(v))) - 40.0 * v * (k < 25_000)
+        bent += step * float(rates(sticking, values, memory, speed=np.array(v))[0])
+        v += step * (push + force)
+        q += step * v
+        stood.append(q)
+    assert stood[24_999] < 5e-4 and stood[24_999] == pytest.approx(stood[12_000], abs=5e-6)
+    assert v == pytest.approx(0.5 * 0.5, rel=0.02)

@@ -8,11 +8,12 @@ from functools import partial
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain, pooled
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import likelihood_significance
+from greybox_torch.diagnosis.refit.curve import values_without
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged_beside
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.finer_steps import finely_enough
-from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment, attach
@@ -88,7 +89,32 @@ def _contained(study: Study, state: SearchState, effect: Attachment) -> list[tup
             study.working_on(f"refitting {other.prefix} in the place of {effect.prefix}")
             fitted = refitted(study, state.with_law(effect, other), state.current, [rival.fitted.values()])
             found += [] if fitted is None else [(rival, finely_enough(study, fitted, other))]
-    return found
+    at_the_end = None if done is None else _limit(study, state, effect, done)
+    return found if at_the_end is None else [*found, at_the_end]
+
+
+def _limit(
+    study: Study, state: SearchState, effect: Attachment, done: SelectionStep
+) -> tuple[RankedCandidate, Hypothesis] | None:
+    """The law that the one of ``effect`` becomes at the end of a parameter's range, in its place.
+
+    Seen: a valve's stem that truly sticks, told as presliding of 18 um (0.97), the least that its law has.
+    """
+    ended = effect.mechanism.limit(effect.own(state.current.values()))
+    if ended is None or done.taken is None:
+        return None
+    law = replace(effect, mechanism=ended[0])
+    if law.prefix in state.prefixes:
+        return None
+    study.working_on(f"refitting {law.prefix} in the place of {effect.prefix}")
+    begun = {f"{law.prefix}.{n}": v for n, v in ended[1].items()}
+    fitted = refitted(
+        study, state.with_law(effect, law), state.current, [values_without(state.current, effect) | begun]
+    )
+    if fitted is None:
+        return None
+    candidate = replace(done.taken.candidate, attachment=law)
+    return judged_beside(candidate, done.parent, state.plain, fitted, study.settings), fitted
 
 
 def _with_rival(state: SearchState, rival: RankedCandidate, fitted: Hypothesis, effect: Attachment) -> SearchState:

@@ -11,9 +11,10 @@ from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.actuator import InputGain
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
+from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.lag import Lag
 from greybox_torch.mechanisms.sensor import SensorGain
+from greybox_torch.mechanisms.stribeck import StribeckFriction
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Body
 from greybox_torch.model.own_friction import dry_friction

@@ -35,12 +35,33 @@ def test_dry_friction_that_changes_its_sign_within_a_step_is_asked_in_finer_ones
         ranked.append(judged(Candidate(effect, (), 0.9), search.plain, fitted, search.study.settings))
     state = search.at(ranked[0].fitted, steps=(SelectionStep((), search.plain, tuple(ranked), ranked[0]),)).state
     monkeypatch.setattr(finer_steps, "times_noise", lambda problem, fitted, settings: times)
-    ((rival, fitted),) = _contained(search.study, state, state.effects[0])
+    (rival, fitted), (sticking, _) = _contained(search.study, state, state.effects[0])
+    assert sticking.candidate.attachment.mechanism.options() == {"sticking": True}
     assert rival is ranked[1] and fitted.effects[0].mechanism.name == "coulomb_friction"
     assert (fitted.effects[0].substeps > 1) is finer
     if finer:
         assert fitted.score < rival.fitted.score - 0.5
         assert fitted.values()["rotor.coulomb_friction.v_0"] == pytest.approx(WIDTH, rel=0.1)
+
+
+@pytest.mark.parametrize(("z_0", "sticks"), [(3e-5, True), (0.05, False)], ids=["dry friction that sticks", "bristles"])
+def test_bristles_too_short_to_be_seen_are_dry_friction_that_sticks(motor_data, motor, begun, z_0, sticks) -> None:
+    """Seen: a valve's stem that truly sticks, told as presliding of 18 um (0.97), the least that its law has."""
+    bent = [0.0]
+
+    def bristles(q: float, v: float) -> float:
+        bent[0] = float(np.clip(bent[0] + v * 1e-3, -z_0, z_0))
+        return -0.05 * bent[0] / z_0
+
+    search = begun(motor_data(torque=bristles, noise=0.002), motor)
+    effect = attach(motor, "rotor", PreslidingHysteresis())
+    start = search.plain.values() | {f"{effect.prefix}.F": 0.05}
+    fitted = search.refitted((effect,), search.plain, [start])
+    found = judged(Candidate(effect, (), 0.9), search.plain, fitted, search.study.settings)
+    state = search.at(fitted, steps=(SelectionStep((), search.plain, (found,), found),)).state
+    ((_, ended),) = _contained(search.study, state, state.effects[0])
+    assert (ended.score < fitted.score + 0.05) is sticks
+    assert ended.values()["rotor.coulomb_friction.F_c"] == pytest.approx(0.05, rel=0.1) or not sticks
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,8 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias
-from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
+from greybox_torch.mechanisms.friction import CoulombFriction
+from greybox_torch.mechanisms.stribeck import StribeckFriction
 
 
 @pytest.fixture

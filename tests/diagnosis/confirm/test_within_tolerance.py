@@ -15,10 +15,11 @@ from greybox_torch.diagnosis.hypothesis.fit import hypothesis
 from greybox_torch.mechanisms.actuator import InputDelay, InputGain, InputLag
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.forces import ConstantBias
-from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
+from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.mechanism import Mechanism
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.sensor import SensorGain, SensorLag
+from greybox_torch.mechanisms.stribeck import StribeckFriction
 from greybox_torch.mechanisms.unknown import Unknown
 
 

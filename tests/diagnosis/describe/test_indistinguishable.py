@@ -10,8 +10,9 @@ from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias
-from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction, StribeckFriction
+from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
+from greybox_torch.mechanisms.stribeck import StribeckFriction
 from greybox_torch.mechanisms.unknown import Unknown
 
 SETTINGS = DiagnosisSettings()

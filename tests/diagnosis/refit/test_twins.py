@@ -8,9 +8,10 @@ from greybox_torch.diagnosis.refit.twins import from_contained, from_twin
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.mechanisms.actuator import InputDelay, InputLag
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction, ViscousFriction
+from greybox_torch.mechanisms.friction import CoulombFriction, ViscousFriction
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorLag
+from greybox_torch.mechanisms.stribeck import StribeckFriction
 
 EARLY, LATE, LAG = (
     Candidate(Attachment(port, law), (), 0.5)

@@ -13,8 +13,9 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.actuator import InputLag
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias
-from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
+from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.mechanism import SHARE, Probe
+from greybox_torch.mechanisms.stribeck import StribeckFriction
 from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.unknown import Unknown
 

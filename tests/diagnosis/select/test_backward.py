@@ -13,7 +13,8 @@ from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction
+from greybox_torch.mechanisms.friction import CoulombFriction
+from greybox_torch.mechanisms.stribeck import StribeckFriction
 from greybox_torch.mechanisms.unknown import Unknown
 
 

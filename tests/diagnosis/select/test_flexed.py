@@ -12,7 +12,8 @@ from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.flexed import flexed, wider_laws
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.mechanisms.attachment import attach
-from greybox_torch.mechanisms.friction import CoulombFriction, QuadraticDrag, StribeckFriction
+from greybox_torch.mechanisms.friction import CoulombFriction, QuadraticDrag
+from greybox_torch.mechanisms.stribeck import StribeckFriction
 from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 
 

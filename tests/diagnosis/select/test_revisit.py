@@ -26,9 +26,10 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias
-from greybox_torch.mechanisms.friction import QuadraticDrag, StribeckFriction, ViscousFriction
+from greybox_torch.mechanisms.friction import QuadraticDrag, ViscousFriction
 from greybox_torch.mechanisms.mechanism import Probe
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
+from greybox_torch.mechanisms.stribeck import StribeckFriction
 from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.unknown import Unknown
 

@@ -21,7 +21,8 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias
-from greybox_torch.mechanisms.friction import CoulombFriction, StribeckFriction, ViscousFriction
+from greybox_torch.mechanisms.friction import CoulombFriction, ViscousFriction
+from greybox_torch.mechanisms.stribeck import StribeckFriction
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Body
 from greybox_torch.simulation.packed_normals import PackedNormals
