@@ -173,4 +173,4 @@ def test_dry_friction_that_sticks_holds_a_push_below_its_level_and_slides_agains
         q += step * v
         stood.append(q)
     assert stood[24_999] < 5e-4 and stood[24_999] == pytest.approx(stood[12_000], abs=5e-6)
-    assert v == pytest.approx(0.5 * 0.5, rel=0.02)
+    assert v == pytest.approx(0.5 * 0.5, rel=0.05)  # and what the bent bristles give back

@@ -47,7 +47,8 @@ PROTOCOL = """\
    with the tool; they integrate more finely than it does, their dry friction truly sticks.
    Effects are scaled until the plain model, refitted in linearisation, leaves an error of 2.5 to 4 (weak), 8 to 20 (moderate), 40 to
    100 (dominant) or 300 to 3000 times (overwhelming, with sensors 30 times as good) the floor, or as far as the machine lets them; the key
-   holds the visibility that came out.
+   holds the visibility that came out. Effects of a pair are made visible beside each other: what the run with both has more than that
+   with the other alone is measured likewise.
 2. The answers, with all that counts as right, are sealed: encrypted, and committed to by a salted SHA-256 that is printed and put on
    record with the hashes of all cases, of the rules of scoring and of the tool's sources.
 3. The tool is run on each case by its command line. It sees the card, the recordings and the nominal model. The hash of each verdict goes
