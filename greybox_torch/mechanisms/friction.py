@@ -62,7 +62,7 @@ class CoulombFriction(DryLaw):
         return [bristle(around)] if self.sticking else []
 
     def rates(self, s: Signals, p: Signals, z: Signals) -> dict[str, Any]:
-        return {"bristle": bending(s.speed, z.bristle, p.z_0, s.sample_time)}
+        return {"bristle": bending(s.speed, z.bristle, p.z_0, s.sample_time)} if self.sticking else {}
 
     def law(self, s: Signals, size: Any) -> Any:
         return -size
