@@ -118,7 +118,7 @@ def _with_question(
     Asked where what was found explains little. It changes nothing of that: a machine may lack that much.
     """
     began, scores = time.perf_counter(), found.verdict.scores
-    if not (poor(scores["refit"]) and poor(scores["augmented" if found.verdict.effects else "refit"])):
+    if not poor(scores["augmented" if found.verdict.effects else "refit"]):
         return found
 
     def simulator() -> Simulator:

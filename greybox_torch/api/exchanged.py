@@ -78,9 +78,9 @@ def asked_where_poor(
     return exchanged(data, model, simulator(), mean_fit(held_out_scores(refit)))
 
 
-def poor(refit: Sequence[Score]) -> bool:
-    """Whether the scores of a re-estimated model are so poor on the validation experiments that it is asked."""
-    return not mean_fit(held_out_scores(refit)) >= POOR
+def poor(scores: Sequence[Score]) -> bool:
+    """Whether the scores of a model are so poor on the validation experiments that it is asked."""
+    return not mean_fit(held_out_scores(scores)) >= POOR
 
 
 def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:

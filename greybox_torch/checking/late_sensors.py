@@ -35,7 +35,7 @@ class LateSensor(InASentence):
 
 def late_sensors(data: DataSet, model: GreyBoxModel) -> Iterator[LateSensor]:
     """Validation experiments without a sample of any output in the part that their start states are estimated on, where any is."""
-    from greybox_torch.estimate.initial import FRACTION  # loads torch
+    from greybox_torch.estimate.initial import samples_of_beginning  # loads torch
 
     told = {name for name, entry in data.initial.items() if entry.value is not None or entry.fixed}
     if all(state.name in told for state in model.states):
@@ -44,5 +44,5 @@ def late_sensors(data: DataSet, model: GreyBoxModel) -> Iterator[LateSensor]:
         measured = [~np.isnan(recording.signals[o.name]) for o in model.outputs if o.name in recording.signals]
         known = np.any(measured, axis=0) if measured else np.zeros(0, dtype=bool)
         first = int(np.argmax(known)) if known.any() else 0
-        if first >= max(10, int(np.ceil(FRACTION * len(recording)))):
+        if first >= samples_of_beginning(len(recording)):
             yield LateSensor(recording.name, float(recording.time[first] - recording.time[0]))

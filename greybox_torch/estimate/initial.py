@@ -123,10 +123,15 @@ def from_short_windows(part: Problem, simulator: Simulator) -> np.ndarray:
     return np.where(part.initial_free, fit.starts[:1], part.initial)
 
 
+def samples_of_beginning(samples: int, fraction: float = FRACTION) -> int:
+    """How many of so many samples start states are estimated on."""
+    return max(10, int(np.ceil(fraction * samples)))
+
+
 def beginning(problem: Problem, experiment: int, fraction: float) -> Problem:
     """The first ``fraction`` of one experiment as a problem of its own, of which only the start states are estimated."""
     span = problem.records.span(experiment)
-    length = max(10, int(np.ceil(fraction * (span.stop - span.start))))
+    length = samples_of_beginning(span.stop - span.start, fraction)
     part = slice(span.start, min(span.start + length, span.stop))
     return replace(
         problem,

@@ -109,10 +109,9 @@ def _too_small(
 
     def least(prefix: str) -> float:
         apart, gain = _apart(state, effects[prefix]), gains.get(prefix)
-        if completed and apart and _nearly_all(gain, settings.all_of_the_rest):
-            return float(np.finfo(float).tiny)
         alone = completed or (apart and _nearly_all(gain, settings.nearly_all_of_the_rest))
-        return max(_least_size(settings, alone), np.finfo(float).tiny)
+        whole_rest = completed and apart and _nearly_all(gain, settings.all_of_the_rest)
+        return max(0.0 if whole_rest else _least_size(settings, alone), np.finfo(float).tiny)
 
     def doubtful(prefix: str) -> bool:
         gain = gains.get(prefix)

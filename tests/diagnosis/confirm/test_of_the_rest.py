@@ -15,6 +15,13 @@ from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombFriction
 
 
+def a_small_one_beside_a_large_one(stub, at: str, port: str, **hypotheses) -> tuple:
+    """The prefixes of friction at ``at`` and of a constant force at ``port``, and a state with both."""
+    effects = (Attachment(at, CoulombFriction()), Attachment(port, ConstantBias()))
+    large, small = (e.prefix for e in effects)
+    return large, small, stub(effects=effects, prefixes={large, small}, **hypotheses)
+
+
 @pytest.mark.parametrize(
     ("port", "of_the_rest", "size_of_it", "told"),
     [
@@ -29,10 +36,8 @@ def test_what_removes_nearly_all_that_the_others_leave_elsewhere_is_no_part_of_w
     dead_zone_search, stub, port, of_the_rest, size_of_it, told
 ) -> None:
     """Seen: a gyro that shows 8 % too little, 1 % of the mismatch beside uneven friction with 21 times the noise left: a refinement."""
-    effects = (Attachment("arm", CoulombFriction()), Attachment(port, ConstantBias()))
-    large, small = (e.prefix for e in effects)
     plain = dead_zone_search.plain
-    state = stub(effects=effects, prefixes={large, small}, plain=plain, current=plain)
+    large, small, state = a_small_one_beside_a_large_one(stub, "arm", port, plain=plain, current=plain)
     others = stub(times_noise=lambda hypothesis: np.array([21.0]), fits=lambda hypothesis: ())
     gains = {large: Gain(0.99, 1e-3, size=0.9), small: Gain(of_the_rest, 0.01, size=size_of_it)}
     some = refinements(dead_zone_search.study, state, others, gains, {large: 0.9, small: size_of_it})
@@ -53,11 +58,9 @@ def test_what_removes_all_that_the_others_leave_is_a_finding_however_small_it_is
     monkeypatch, dead_zone_search, stub, port, of_the_rest, left, told
 ) -> None:
     """Seen: a wrist's slack tendon, 0.16 % of the mismatch beside the hand's weight and 13 times the noise, told as a refinement."""
-    effects = (Attachment("hand", CoulombFriction()), Attachment(port, ConstantBias()))
-    large, small = (e.prefix for e in effects)
     monkeypatch.setattr(standing, "_most_is_left", lambda *_: False)
     plain, current = dead_zone_search.plain, replace(dead_zone_search.plain)
-    state = stub(effects=effects, prefixes={large, small}, plain=plain, current=current)
+    large, small, state = a_small_one_beside_a_large_one(stub, "hand", port, plain=plain, current=current)
     others = stub(times_noise=lambda h: np.array([left if h is current else 400.0]), fits=lambda h: h.fits)
     gains = {large: Gain(0.999, 1e-3, size=0.99), small: Gain(of_the_rest, 1e-3, size=0.0016)}
     found = refinements(dead_zone_search.study, state, others, gains, {large: 0.99, small: 0.0016})
