@@ -121,7 +121,7 @@ def _bring_out(machine: Machine, pairs: Sequence[tuple[Trial, Run, Array]]) -> N
     """
     for _ in range(ROUNDS_BESIDE if pairs else 0):
         trials = [trial for trial, *_ in pairs]
-        runs = _finite_runs(machine, trials, [plain for _, plain, _ in pairs])
+        runs = _finite_runs(machine, trials, [plain for _, plain, _ in pairs], fine=False)
         seen = visibilities_beside(machine, trials, runs, [own for *_, own in pairs], fine=False)
         for trial, values in zip(trials, seen, strict=True):
             wanted = (t / max(v, 1e-3) for t, v in zip(trial.targets, values, strict=True))
@@ -129,12 +129,12 @@ def _bring_out(machine: Machine, pairs: Sequence[tuple[Trial, Run, Array]]) -> N
             trial.scales = [max(s, min(b, machine.largest_scale)) for s, b in zip(trial.scales, larger, strict=True)]
 
 
-def _finite_runs(machine: Machine, trials: Sequence[Trial], plain: Sequence[Run]) -> list[Run]:
+def _finite_runs(machine: Machine, trials: Sequence[Trial], plain: Sequence[Run], *, fine: bool = True) -> list[Run]:
     """The runs with effects, those that overflow (a pair may, where each alone does not) at half the strength, until none does."""
     for _ in range(HALVINGS):
         for trial, run in zip(trials, plain, strict=True):
             trial.draw_switches(run)
-        runs = machine.run(trials)
+        runs = machine.run(trials, fine=fine)
         lost = [trial for trial, run in zip(trials, runs, strict=True) if not np.isfinite(run.outputs).all()]
         if not lost:
             return runs

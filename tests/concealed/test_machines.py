@@ -188,6 +188,20 @@ def test_twins_that_are_twins_alone_are_near_beside_another_effect():
     assert key(pair)["own"] == [["actuator", "input_lag"], ["carriage", "coulomb_friction"]]
 
 
+@pytest.mark.parametrize("name", ["pendulum", "engine_pendulum"])
+def test_a_pendulums_gain_is_another_weight_where_nothing_else_is_concealed(name: str):
+    """Divided by the gain, the equation of motion has other values of what is free, and another weight; so either name is right."""
+    machine, gain = MACHINES[name], 1.2
+    assert ("pivot", "gravity") in machine.catalogue["input_gain"].alone and "mgl" not in machine.free
+    truth = {n: np.full(1, 0.3) for n in machine.parameters} | {"mgl": np.full(1, 2.0)}
+    torque = np.sin(np.linspace(0.0, 20.0, 500))[:, None]
+    divided = {n: v if n in ("length", "rod") else v / gain for n, v in truth.items()}
+    start = np.zeros((2, 1))
+    driven, lighter = machine.replay(truth, start, gain * torque), machine.replay(divided, start, torque)
+    np.testing.assert_allclose(driven, lighter, atol=1e-9)
+    assert np.abs(driven - machine.replay(truth, start, torque)).max() > 0.01
+
+
 def test_effects_that_overflow_are_halved_until_they_do_not(monkeypatch: pytest.MonkeyPatch):
     machine = ShortStage()
     trial = machine.draw(4, 0, ("constant_bias",))

@@ -29,6 +29,7 @@ def _effect(
     accept: tuple[Pair, ...],
     near: tuple[Pair, ...] = (),
     ports: tuple[str, ...] = (),
+    alone: tuple[Pair, ...] = (),
     outside: bool = False,
 ) -> Effect:
     return Effect(
@@ -39,7 +40,8 @@ def _effect(
         draw=draw,
         accept=accept,
         near=near,
-        ports=ports or tuple(dict.fromkeys(p for p, _ in accept)),
+        ports=ports or tuple(dict.fromkeys(p for p, _ in (*accept, *alone))),
+        alone=alone,
         outside=outside,
         sharp=not outside,
     )
@@ -89,8 +91,11 @@ def drag(port: str, density: Range) -> Effect:
     )
 
 
-def drives(actuator: str, *, gain: bool) -> list[Effect]:
-    """Filter, delay and limit of the (first) motor, and its gain where inertia or weight are known."""
+def drives(actuator: str, *, gain: bool, gain_twins: tuple[Pair, ...] = ()) -> list[Effect]:
+    """Filter, delay and limit of the (first) motor, and its gain where inertia or weight are known.
+
+    `gain_twins`: what is the same as a gain, once the equation is divided by it, where nothing else is concealed.
+    """
 
     def lag(g: Generator, s: float, c: Surroundings) -> Switches:
         return {"lag": min(s * g.uniform(0.003, 0.006), 0.05)}
@@ -110,7 +115,8 @@ def drives(actuator: str, *, gain: bool) -> list[Effect]:
         _effect("input_delay", actuator, "timing", delay, accept=(late,), near=(slow,)),
         _effect("saturation", actuator, "actuator", limit, accept=((actuator, "torque_saturation"),)),
     ]
-    gains = [_effect("input_gain", actuator, "gain", factor, accept=((actuator, "input_gain"),))] if gain else []
+    right = ((actuator, "input_gain"),)
+    gains = [_effect("input_gain", actuator, "gain", factor, accept=right, alone=gain_twins)] if gain else []
     return [*found, *gains]
 
 

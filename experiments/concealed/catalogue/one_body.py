@@ -168,13 +168,18 @@ def timings(
     ]
 
 
-def gains(sensor: str, accepted: tuple[tuple[Pair, ...], tuple[Pair, ...]]) -> list[Effect]:
-    """A gain of the input and of one sensor that is not what the data sheet says."""
+def gains(
+    sensor: str, accepted: tuple[tuple[Pair, ...], tuple[Pair, ...]], input_twins: tuple[Pair, ...] = ()
+) -> list[Effect]:
+    """A gain of the input and of one sensor that is not what the data sheet says.
+
+    `input_twins`: what is the same as the input's, once the equation is divided by it, where nothing else is concealed.
+    """
 
     def gain(g: Generator, s: float, c: Surroundings) -> Switches:
         return {"gain": float(np.exp(min(s * g.uniform(0.04, 0.08), 0.4) * sign(g)))}
 
-    def entry(name: str, law: type, port: str, accept: tuple[Pair, ...]) -> Effect:
+    def entry(name: str, law: type, port: str, accept: tuple[Pair, ...], twins: tuple[Pair, ...] = ()) -> Effect:
         return Effect(
             name=name,
             law=law,
@@ -182,10 +187,11 @@ def gains(sensor: str, accepted: tuple[tuple[Pair, ...], tuple[Pair, ...]]) -> l
             family="gain",
             draw=gain,
             accept=accept,
-            ports=tuple(dict.fromkeys(p for p, _ in accept)),
+            ports=tuple(dict.fromkeys(p for p, _ in (*accept, *twins))),
+            alone=twins,
         )
 
     return [
-        entry("input_gain", drive.InputGain, "actuator", accepted[0]),
+        entry("input_gain", drive.InputGain, "actuator", accepted[0], input_twins),
         entry("sensor_gain", drive.SensorGain, sensor, accepted[1]),
     ]

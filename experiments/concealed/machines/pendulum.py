@@ -33,7 +33,8 @@ def _catalogue() -> dict[str, Effect]:
         one_body.ripple(u, 3.0, 20.0),
         *one_body.drives(u),
         *one_body.timings(SPEED, 0.03, right[:2], right[2:]),
-        *one_body.gains(SPEED, ((("actuator", "input_gain"),), ((SPEED, "sensor_gain"),))),
+        # Divided by a gain, the equation has other values of what is free, and another weight.
+        *one_body.gains(SPEED, ((("actuator", "input_gain"),), ((SPEED, "sensor_gain"),)), (("pivot", "gravity"),)),
         *_of_the_pendulum(),
         *one_body_outside.outside(u),
     ]

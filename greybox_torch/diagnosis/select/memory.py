@@ -19,7 +19,7 @@ from greybox_torch.diagnosis.select.choice import alone_at_noise
 from greybox_torch.diagnosis.select.forward_step import little_is_left, take_best
 from greybox_torch.diagnosis.select.offered import Place, memory_scores, place
 from greybox_torch.diagnosis.select.remaining import completes, left_to_complete, remaining_share
-from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.stopping import Stage, result_of
 from greybox_torch.diagnosis.study import Study
 
@@ -129,6 +129,10 @@ def _step(
     hopeful = [candidate for candidate in found if candidate.explained > least]
     best = sorted(hopeful, key=lambda candidate: -candidate.explained)[: study.budget.finalists]
     ranked = rank(study, state.current, best, standing.current)
+    if state.effects and all(far_above_noise(r.fitted, study.settings) for r in ranked):
+        # It would have to complete the model: polishing does not lead there from so far, and takes long.
+        step = SelectionStep(screened, state.current, tuple(ranked), None)
+        return replace(state, steps=(*state.steps, step))
     return (yield from take_best(study, state, screened, ranked))
 
 

@@ -119,6 +119,17 @@ def test_where_it_comes_little_farther_the_name_stands_and_it_is_the_ceiling(
     )
 
 
+def test_beside_others_it_is_not_polished_from_far_above_the_noise(
+    dragged: Begun, found: SearchState, named: SearchState, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """There it has to complete the model. Seen: 7 of the 80 s of the robot arm's diagnosis, and no further."""
+    far = replace(found.steps[-1].ranked[0], fitted=named.current)
+    monkeypatch.setattr(memory, "rank", lambda *_: [far])
+    monkeypatch.setattr(memory, "take_best", lambda *_: pytest.fail("polished"))
+    beside = memory.linear_residual(dragged.study, named, named)
+    assert beside.steps[-1].ranked == (far,) and not beside.took_one and beside.current is named.current
+
+
 def test_no_position_is_integrated_for_it(dragged: Begun) -> None:
     """The motor's rotor has no position of its own: where it began would not be known."""
     body = next(p for p in dragged.problem.model.ports if isinstance(p, Body))
