@@ -1,4 +1,4 @@
-"""Forces on a body that do not depend on its speed: bias, gravity, ripple, end stops, one more mass."""
+"""Forces on a body that depend neither on its position nor on friction: a constant, one more mass."""
 
 from __future__ import annotations
 
@@ -8,27 +8,10 @@ from typing import Any
 import numpy as np
 import torch
 
-from greybox_torch.mechanisms.degenerate import beyond, not_a_frequency_of_the_record
+from greybox_torch.mechanisms.degenerate import not_a_frequency_of_the_record
 from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals, State
-
-KNOWN_PLACE = 0.01
-"""Share of the travel within which a stop has to be known to stand."""
-
-STIFFER = (30.0, 1000.0)
-"""Times the stiffness that a refit came to with which it begins again, where it is and at the end of the travel: a soft stop that gives way
-early and a hard one both turn the body back, and none between them does as well."""
-
-GIVES_WAY = 0.3
-"""Share of the travel beyond its place from which a stop is none: of machines whose stops are known 0.09 at the most lies beyond them, a
-rubber buffer's; of stops that were told where none is, 0.35."""
-
-GIVES_WAY_UNSEEN = 0.5
-"""The same where no sensor shows the position: the travel is that of a model without the stop, which goes farther (0.4 of a valve's)."""
-
-MARGIN = 0.1
-"""Share of the travel, as a model without a stop has it, by which the machine may have gone farther before it met one."""
 
 HIGHEST = 0.3
 """Highest frequency of a mode in shares of the Nyquist frequency."""
@@ -54,79 +37,6 @@ class ConstantBias(LinearLaw):
 
     def law(self, s: Signals, size: Any) -> Any:
         return size
-
-
-class EndStop(Mechanism):
-    """−k (θ − θ_1) − c ω beyond θ_1 (``side`` +1) or below it (``side`` −1), as long as that pushes back: a stop does not pull."""
-
-    name = "end_stop"
-    kinds = ("body",)
-    needs = ("position", "speed")
-    at_rest = ("speed",)
-    nature = "a force that depends on position"
-    explanation = "Past a position something stiff pushes back (mechanical stop, cable)."
-    source = "F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts, 1996"
-    experiment = "slow approach to the ends of travel"
-
-    def parameters(self, around: Surroundings) -> list[Parameter]:
-        travel = around.ranges["position"]
-        end, margin = travel.low + travel.span, MARGIN * travel.span
-        return [
-            Parameter("k", 0.0, around.per("position"), lower=0.0, description="stiffness of the stop"),
-            Parameter(
-                "where",
-                end,
-                around.units.get("position", ""),
-                lower=travel.low - margin,
-                upper=end + margin,
-                description="stop",
-            ),
-            Parameter("c", 0.0, around.per("speed"), lower=0.0, description="damping of the stop"),
-            Parameter("side", 1.0, "", fixed=True, description="+1: the stop is above, -1: below"),
-        ]
-
-    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        beyond = p.side * (s.position - p.where)
-        back = p.k * beyond + p.c * p.side * s.speed
-        return -p.side * torch.where((beyond > 0.0) & (back >= 0.0), back, 0.0)
-
-    def probes(self, around: Surroundings) -> Sequence[Probe]:
-        travel = around.ranges["position"]
-        width = travel.span
-        above = [
-            Probe(("k",), {"where": travel.high - share * width, "side": 1.0, "c": 0.0}) for share in (0.03, 0.1, 0.25)
-        ]
-        return above + [
-            Probe(("k",), {"where": travel.low + share * width, "side": -1.0, "c": 0.0}) for share in (0.03, 0.1, 0.25)
-        ]
-
-    def begun_elsewhere(self, around: Surroundings, values: Mapping[str, float]) -> Sequence[Mapping[str, float]]:
-        travel, (stiff, hard) = around.ranges["position"], STIFFER
-        end = travel.high if values["side"] > 0 else travel.low
-        return [{"k": stiff * values["k"]}, {"k": hard * values["k"], "where": end}]
-
-    def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
-        travel, where = around.ranges["position"], values["where"]
-        margin = MARGIN * travel.span
-        if not travel.low - margin < where < travel.high + margin:
-            return beyond("where", where, around, "position")
-        passed = (travel.high - where if values["side"] > 0 else where - travel.low) / travel.span
-        return (
-            f"{100 * passed:.0f} % of the travel lies beyond it: no stop gives way so far"
-            if passed > (GIVES_WAY_UNSEEN if "position" in around.unmeasured else GIVES_WAY)
-            else None
-        )
-
-    def degenerate(
-        self, around: Surroundings, values: Mapping[str, float], deviations: Mapping[str, float]
-    ) -> str | None:
-        """Of a rigid stop no recording tells how stiff it is, only that it is stiff: what counts is whether its place is known."""
-        placed = deviations.get("where", np.inf) < KNOWN_PLACE * around.ranges["position"].span
-        told = {name: d for name, d in deviations.items() if not (placed and name == "k")}
-        return super().degenerate(around, values, told)
-
-    def signals(self) -> tuple[str, ...]:
-        return ("position",)
 
 
 class AdditionalMode(Mechanism):

@@ -13,7 +13,8 @@ from greybox_torch.mechanisms.actuator import (
 )
 from greybox_torch.mechanisms.balance import LinearLeak, ThresholdFlow
 from greybox_torch.mechanisms.check import check_mechanism
-from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndStop
+from greybox_torch.mechanisms.end_stop import EndStop
+from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias
 from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction, QuadraticDrag, ViscousFriction
 from greybox_torch.mechanisms.friction_net import FrictionNet
 from greybox_torch.mechanisms.gravity import Gravity

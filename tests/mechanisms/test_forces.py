@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from greybox_torch.mechanisms.balance import LinearLeak, ThresholdFlow
-from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias, EndStop
+from greybox_torch.mechanisms.end_stop import EndStop
+from greybox_torch.mechanisms.forces import AdditionalMode, ConstantBias
 from greybox_torch.mechanisms.gravity import Gravity
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
 from greybox_torch.mechanisms.torque_ripple import TorqueRipple

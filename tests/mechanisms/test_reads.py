@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from greybox_torch.mechanisms.forces import ConstantBias, EndStop
+from greybox_torch.mechanisms.end_stop import EndStop
+from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.reads import reads_nothing_but
 from greybox_torch.mechanisms.stiffness import NonlinearStiffness

@@ -8,6 +8,7 @@ from greybox_torch.diagnosis.screen.further_curves import further_curves
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.mechanisms.actuator import InputDelay
 from greybox_torch.mechanisms.attachment import Attachment, attach
+from greybox_torch.mechanisms.end_stop import EndStop
 from greybox_torch.mechanisms.gravity import Gravity
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
@@ -68,7 +69,7 @@ def candidates(
     found = []
     for port in ports_in_use(model):
         shifted = shifts.get(port.name, "")
-        for mechanism in _curves(model, port, knots) if flexible else (m() for m in LIBRARY.values()):
+        for mechanism in _curves(model, port, knots) if flexible else _laws():
             if port.kind in mechanism.kinds and _available(mechanism, surroundings[port.name]):
                 law = mechanism if shifted or not mechanism.kinematic else mechanism.written_as_force()
                 found += [] if law is None else [attach(model, port.name, law, shifted)]
@@ -77,6 +78,12 @@ def candidates(
     coarse = knots <= MOST_KNOTS_FROM_ELSEWHERE
     further = further_curves(model, knots) if coarse else ()
     return [*found, *(attach(model, port.name, c) for port, c in further if c.available(surroundings[port.name]))]
+
+
+def _laws() -> Iterable[Mechanism]:
+    """Every law of the library, stops at both ends too: where a body goes from one to the other, neither alone holds it."""
+    yield from (law() for law in LIBRARY.values())
+    yield EndStop(both=True)
 
 
 def chain_candidates(model: GreyBoxModel, surroundings: Mapping[str, Surroundings]) -> list[Attachment]:

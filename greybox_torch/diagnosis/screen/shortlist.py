@@ -159,6 +159,7 @@ def identity_of(attachment: Attachment) -> tuple:
         getattr(mechanism, "factor", ""),
         getattr(mechanism, "modes", 0),
         getattr(mechanism, "power", 0),
+        getattr(mechanism, "both", False),
         None if order is None else round(order, 2),
     )
 

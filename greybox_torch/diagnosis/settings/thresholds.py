@@ -14,6 +14,7 @@ from greybox_torch.diagnosis.settings.choosing import (
 from greybox_torch.diagnosis.settings.claiming import ConfirmationSettings, ResidualSettings
 from greybox_torch.diagnosis.settings.curves import CurveSettings
 from greybox_torch.diagnosis.settings.fields import check
+from greybox_torch.diagnosis.settings.held_out_decides import HeldOutDecidesSettings
 from greybox_torch.diagnosis.settings.probability import ProbabilitySettings
 from greybox_torch.diagnosis.settings.sampling import SamplingSettings
 from greybox_torch.diagnosis.settings.searching_again import SearchingAgainSettings
@@ -28,6 +29,7 @@ class DiagnosisSettings(
     ConfirmationSettings,
     SamplingSettings,
     CurveSettings,
+    HeldOutDecidesSettings,
     SelectionSettings,
     ComparisonSettings,
     ScreenSettings,

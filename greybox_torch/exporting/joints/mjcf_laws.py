@@ -57,9 +57,12 @@ def end_stop(at: Place) -> Said:
     problem = _unit_problem(at)
     if problem:
         return [], [problem]
-    where, above = at.values["where"], at.values["side"] > 0.0
-    slack = (-FAR, where) if above else (where, FAR)
-    side = "above" if above else "below"
+    if "side" not in at.values:
+        slack, side = (at.values["low"], at.values["high"]), "both"
+    elif at.values["side"] > 0.0:
+        slack, side = (-FAR, at.values["where"]), "above"
+    else:
+        slack, side = (at.values["where"], FAR), "below"
     spring: dict[str, Attribute] = {"joint": at.port.name, "stiffness": (at.values["k"],), "springlength": slack}
     stop = Counterpart("tendon", f"{at.port.name}_stop_{side}", spring)
     damping = f"the stop's damping c = {at.values['c']:.6g}: that of a tendon acts off the stop as well"

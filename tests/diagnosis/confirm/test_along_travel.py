@@ -10,7 +10,8 @@ from greybox_torch.diagnosis.hypothesis.fit import augmented
 from greybox_torch.estimate.initial import estimate_initial
 from greybox_torch.estimate.problem import problem_for
 from greybox_torch.mechanisms.attachment import attach
-from greybox_torch.mechanisms.forces import ConstantBias, EndStop
+from greybox_torch.mechanisms.end_stop import EndStop
+from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.simulation.simulator import Simulator
 
 BEGINS = 0.4

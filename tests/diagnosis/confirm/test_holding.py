@@ -12,7 +12,8 @@ from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.holding import WINDOWS_STAND, _empty
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.forces import AdditionalMode, EndStop
+from greybox_torch.mechanisms.end_stop import EndStop
+from greybox_torch.mechanisms.forces import AdditionalMode
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.stribeck import StribeckFriction
 

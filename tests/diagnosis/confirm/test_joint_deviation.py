@@ -10,7 +10,7 @@ import pytest
 from greybox_torch.diagnosis.confirm.joint_deviation import within_one_deviation
 from greybox_torch.estimate.uncertainty import Uncertainty
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.forces import EndStop
+from greybox_torch.mechanisms.end_stop import EndStop
 from greybox_torch.mechanisms.gravity import Gravity
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 

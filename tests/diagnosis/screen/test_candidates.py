@@ -41,7 +41,7 @@ def test_the_arm_is_offered_the_whole_library(arm_search) -> None:
         "actuator": library_of("actuator"),
         "sensor": library_of("sensor"),
     }
-    assert len({(a.port, a.mechanism.name) for a in found}) == len(found)
+    assert len({identity_of(a) for a in found}) == len(found)
     positions = {a.port: a.position for a in found if a.mechanism.name in ("torque_ripple", "transmission_error")}
     assert positions == {b: b for b in ("motor", "gearbox", "arm")} | {"gear_spring": "motor", "arm_spring": "motor"}
     shifted = {a.port: a.shifted_state for a in found if a.mechanism.name == "backlash"}
