@@ -36,7 +36,8 @@ def check_units(
     for name, formula in formulas.items():
         where = f'channel "{name}"'
         try:
-            _check_unit(where, channels[name], formula, source)
+            for path, found in _said(source, formula.text).items():
+                _check_unit(where, channels[name], formula, path, found)
         except UserError as error:
             problems.append(str(error))
     if len(problems) == 1:
@@ -45,11 +46,17 @@ def check_units(
         raise UserError(f"{place}: {len(problems)} problems:\n" + "\n".join(f"  {problem}" for problem in problems))
 
 
-def _check_unit(place: str, entry: ChannelEntry, formula: Expression, source: Source) -> None:
+def _said(source: Source, column: str) -> dict[Path, str]:
+    """The unit that each of the files says that a column is read from: several that follow each other, or one of those joined in time."""
+    first = source.table(column)
+    tables = source.tables if first in source.tables else (first,)
+    return {table.path: table.units.get(column, "") for table in tables}
+
+
+def _check_unit(place: str, entry: ChannelEntry, formula: Expression, path: Path, found: str) -> None:
     if "scale" in entry.model_fields_set:  # whoever gives a factor has thought of the unit
         return
-    column, path = formula.text, source.table(formula.text).path
-    found = source.unit(column)
+    column = formula.text
     check_counts(place, formula, path, found if is_count(found) else entry.file_unit or found, entry.unit)
     if entry.file_unit is not None:
         conversion(_of_rate(entry.file_unit, entry), entry.unit, f"{place}, file_unit")

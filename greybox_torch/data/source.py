@@ -46,10 +46,6 @@ class Source:
         """The first one that has a column."""
         return next((table for table in (*self.tables, *self.joined) if column in table.columns), self.tables[0])
 
-    def unit(self, column: str) -> str:
-        """The unit that a file says for a column; empty where none does."""
-        return next((t.units[column] for t in (*self.tables, *self.joined) if column in t.units), "")
-
 
 def source_of(files: Sequence[Path], join: str | None, columns: Sequence[str], time: str | None, read: Read) -> Source:
     """The columns from the files.

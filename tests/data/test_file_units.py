@@ -125,3 +125,17 @@ def test_units_as_files_write_them() -> None:
         "bar": "bar", "BAR": "bar", "barg": "bar", "bar (abs)": "bar", "KPA": "kPa", "RPM": "rpm", "Pond": "", "m(g)": "m(g)",
     }  # fmt: skip
     assert other_quantity("kg", "N") and not other_quantity("Hz", "rad/s") and not other_quantity("P", "bar")
+
+
+def test_each_of_several_files_is_compared(tmp_path: Path) -> None:
+    loaded(tmp_path, "mm", 'unit = "m", file_unit = "mm"')
+    (tmp_path / "b.txt").write_text(
+        (tmp_path / "a.txt").read_text().replace("\tmm\tmm", "\tm\tmm").replace("\n0.", "\n1.")
+    )
+    card = (tmp_path / "dataset.toml").read_text()
+    joined = card.replace('file = "a.txt"', 'file = ["a.txt", "b.txt"]\njoin = "concatenate"')
+    (tmp_path / "dataset.toml").write_text(joined)
+    with pytest.raises(
+        UserError, match=r'b.txt has column "q" in "m", the card says file_unit = "mm"; expected no file_unit'
+    ):
+        gt.load_dataset(tmp_path / "dataset.toml")

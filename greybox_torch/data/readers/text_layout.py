@@ -22,8 +22,8 @@ from greybox_torch.errors import UserError
 HEAD = 300  # lines among which the line of names stands
 _LONGEST_LINE = 2**20
 _POSITION = re.compile(r"#([1-9]\d{0,5})")
-_NO_UNIT = ("1", "-", "--", "–", "—", "none", "n/a", "na")
-"""What stands in a line of units for a column that has none; the first five say that it is a plain number."""
+_NO_UNIT = ("1", "-", "--", "---", "–", "—", "none", "n/a", "na")
+"""What stands in a line of units for a column that has none; the first six say that it is a plain number."""
 _UNIT = re.compile(r"[\[(]?[\w°%/·*^².\-–\s]{1,24}(\(\w{1,6}\))?[\])]?")
 
 
@@ -190,8 +190,8 @@ def _units(rows: list[list[str]], positions: dict[str, int]) -> dict[str, str] |
     if not ((given and all(map(_looks_like_unit, given.values()))) or _are_units(row, rows[1:])):
         return None
     told = {column: _without_brackets(cell) for column, cell in given.items()}
-    plain = {column: "1" if unit in _NO_UNIT[:5] else unit for column, unit in told.items()}
-    return {column: unit for column, unit in plain.items() if unit and unit.lower() not in _NO_UNIT[5:]}
+    plain = {column: "1" if unit in _NO_UNIT[:6] else unit for column, unit in told.items()}
+    return {column: unit for column, unit in plain.items() if unit and unit.lower() not in _NO_UNIT[6:]}
 
 
 def _without_brackets(cell: str) -> str:

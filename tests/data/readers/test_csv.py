@@ -143,7 +143,7 @@ def test_a_heading_among_the_samples_says_what_to_do(tmp_path: Path, heading: st
 
 
 @pytest.mark.parametrize(
-    ("mark", "unit"), [("-", "1"), ("1", "1"), ("--", "1"), ("none", ""), ("n/a", ""), ("[-]", "1")]
+    ("mark", "unit"), [("-", "1"), ("1", "1"), ("--", "1"), ("---", "1"), ("none", ""), ("n/a", ""), ("[-]", "1")]
 )
 def test_a_column_without_a_unit_in_a_line_of_units(tmp_path: Path, mark: str, unit: str) -> None:
     """Seen: the column was lost for "-", and with "1" another one "found "V", expected a number"."""
