@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import stat
 import tomllib
 from collections.abc import Iterator
@@ -24,6 +25,9 @@ _OF_BACKSLASHES = ("Unescaped '\\'", "Invalid hex value")
 
 _EXPERIMENTS = "Cannot declare ('experiment',) twice"
 """What is said of a second [experiment] of a card."""
+
+_PLACE = re.compile(r"at line (\d+), column")
+"""Where an error of TOML is said to be."""
 
 _KINDS = (
     (stat.S_ISFIFO, "is a pipe"),
@@ -118,7 +122,16 @@ def read_toml(path: Path, expected: str) -> dict[str, Any]:
         hint = "; write paths with / in the place of \\" if backslash else ""
         if str(error).startswith(_EXPERIMENTS):
             hint = "; expected double brackets, [[experiment]], for every recording"
-        raise UserError(f"{path}: not valid TOML: {error}{hint}") from None
+        raise UserError(f"{path}: not valid TOML: {error}{_line_of(str(error), text)}{hint}") from None
+
+
+def _line_of(error: str, text: str) -> str:
+    """The text of the line that an error of TOML names, to go on with; "" where it names none."""
+    place = _PLACE.search(error)
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    line = lines[int(place[1]) - 1].strip() if place and int(place[1]) <= len(lines) else ""
+    shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in line)
+    return f": {shown[:100]}{'…' if len(shown) > 100 else ''}" if shown else ""
 
 
 def _check_regular(shown: str, mode: int, expected: str) -> None:

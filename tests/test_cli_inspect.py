@@ -121,7 +121,11 @@ def test_checks_the_card_against_a_model(bench: Path, edit: Edit) -> None:
         ('speed = { column = "y", unit = "rad/s"', 'spede = { column = "y", unit = "rad/s"', ["[channels]", "'speed'"]),
         ('unit = "V"', 'unit = "mV"', ["[channels]", "'V'", "mV"]),
         ("J = {", "Jay = {", ["[model.parameters] Jay"]),
-        ("value = 0.5, lower = 0.0", "value = -0.5, lower = -1.0, upper = -0.6", ["J: value = -0.5", "[-1, -0.6]"]),
+        (
+            "value = 0.5, lower = 0.0",
+            "value = -0.5, lower = -1.0, upper = -0.6",
+            ["J: value = -0.5", "above upper = -0.6"],
+        ),
         ("value = 0.5, lower = 0.0", "value = -0.5", ["J", "-0.5 lies outside its bounds"]),
         ("[model.parameters]", "[model.initial]\nspin = { value = 0.0 }\n[model.parameters]", ["[model.initial] spin"]),
     ],
@@ -200,7 +204,7 @@ BAD_INPUT = {
     ),
     "misspelt channel": ("dataset.toml", "{ voltage =", "{ volts =", ['"Sweep", columns: no channel is named "volts"']),
     "repeated name": ("dataset.toml", '"Sweep"', '"Steps"', ['2 experiments are named "Steps"']),
-    "value outside its bounds": ("dataset.toml", "value = 0.5", "value = 1.5", ["J: value = 1.5", "bounds [0, 1]"]),
+    "value outside its bounds": ("dataset.toml", "value = 0.5", "value = 1.5", ["J: value = 1.5", "above upper = 1"]),
 }
 
 

@@ -64,10 +64,11 @@ def test_more_than_is_read(tmp_path: Path) -> None:
         (rb'a = "C:\data"', r"Unescaped .* in a string .*; write paths with / in the place of "),
         (rb'a = "C:\Users"', r"write paths with / in the place of "),
         (b"a = 1\na = 2\n", "not valid TOML: Cannot overwrite"),
-        (b"[a]\n[a]\n", r"Cannot declare .* \(at line 2, column 3\)$"),
+        (b"a = 1\r\n  name = run02  \r\nb = 2\n", "not valid TOML: Invalid value .at line 2, column 10.: name = run02"),
+        (b"[a]\n[a]\n", r"Cannot declare .* \(at line 2, column 3\): \[a\]$"),
         (
             b"[experiment]\n[experiment]\n",
-            r"line 2, column 12\); expected double brackets, \[\[experiment\]\], for every",
+            r"line 2, column 12\): \[experiment\]; expected double brackets, \[\[experiment\]\], for every",
         ),
         (b"a\0 = 1", "not valid TOML"),
     ],

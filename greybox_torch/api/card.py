@@ -89,12 +89,12 @@ class CardResult(DraftedFile):
         found = {draft.name: draft.column for draft in self.draft.channels if draft.column is not None}
         recordings = [
             Recording.from_arrays(
-                file.path.name,
-                {name: file.columns[column] for name, column in found.items()},
+                run.whole.path.name,
+                {name: run.whole.columns[column] for name, column in found.items()},
                 sample_time=self.draft.clock.sample_time or 1.0,
             )
-            for file in self.draft.files
-            if all(column in file.columns for column in found.values())
+            for run in self.draft.runs
+            if all(column in run.whole.columns for column in found.values())
         ]
         along = "sample" if self.draft.clock.sample_time is None else "time [s]"
         return plot_channels(DataSet(recordings, name=f"For {self.path.name}", held_out_by_default=False), along)

@@ -13,6 +13,7 @@ from greybox_torch.checking.joined_files import JoinedFiles
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import TIME, read_card
 from greybox_torch.data.data_warning import InASentence
+from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.source import source_of
@@ -158,12 +159,14 @@ def _in_its_file(data: DataSet, recording: Recording, name: str, sample: int) ->
     said = {f"{entry.name}{end}": entry for entry in card.experiment for end in ("", " (held out)")}.get(recording.name)
     if said is None or card.decimate or card.resample or card.channels[name].derivative:
         return None
-    columns = card.channels[name].expression(said.columns.get(name)).columns
+    formula = card.channels[name].expression(said.columns.get(name))
+    columns = formula.columns
     if len(columns) != 1:
         return None
     clock = said.columns.get(TIME, card.time.column) if card.time else None
     needed = [*columns, clock] if clock and said.join == "time" and clock not in columns else columns
-    source = source_of([data.path.parent / file for file in said.file], said.join, needed, clock, read_table)
+    read = without_error_values(read_table, card.channels, {name: formula})
+    source = source_of([data.path.parent / file for file in said.file], said.join, needed, clock, read)
     start, stop = recording.rows
     values = source.columns[columns[0]][start:stop]
     return (source.place(columns[0], start + sample), values) if len(values) == len(recording.time) else None

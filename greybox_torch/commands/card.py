@@ -18,5 +18,7 @@ def run(files: Sequence[Path], sample_time: float | None, options: Options) -> N
     (written,) = drafted.save()
     console = options.console()
     drafted.show(console)
-    console.print(Text(f"Written to {written}. Next: greybox inspect {shlex.quote(str(written))}"), soft_wrap=True)
+    inspect = f"greybox inspect {shlex.quote(str(written))}"
+    then = f"Fill in what is said above; then {inspect}" if drafted.open else f"Next: {inspect}"
+    console.print(Text(f"Written to {written}. {then}"), soft_wrap=True)
     options.print_json(drafted.to_json())

@@ -45,12 +45,12 @@ class ParameterEntry(Entry):
 
     @model_validator(mode="after")
     def _in_order(self) -> Self:
-        lower = -float("inf") if self.lower is None else self.lower
-        upper = float("inf") if self.upper is None else self.upper
-        if lower >= upper:
-            raise ValueError(f"lower = {lower:g} is not below upper = {upper:g}")
-        if self.value is not None and not lower <= self.value <= upper:
-            raise ValueError(f"value = {self.value:g} lies outside its bounds [{lower:g}, {upper:g}]")
+        if self.lower is not None and self.upper is not None and self.lower >= self.upper:
+            raise ValueError(f"lower = {self.lower:g} is not below upper = {self.upper:g}")
+        if self.value is not None and self.upper is not None and self.value > self.upper:
+            raise ValueError(f"value = {self.value:g} is above upper = {self.upper:g}")
+        if self.value is not None and self.lower is not None and self.value < self.lower:
+            raise ValueError(f"value = {self.value:g} is below lower = {self.lower:g}")
         return self
 
 

@@ -23,6 +23,14 @@ Text = Annotated[str, Field(min_length=1), AfterValidator(printable)]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
 class Entry(BaseModel):
     """A table of the card: typed strictly, and closed, so that a misspelt key cannot pass unseen."""
 
@@ -42,7 +50,7 @@ class ChannelEntry(Entry):
     """Where a channel stands in the files: file value × scale = value in `unit`, or converted from `file_unit`.
 
     `expr` computes it from several columns. `derivative` is the cut-off in Hz where the channel is the rate of change of what the file
-    holds. `missing` has the error values of the file, one or several: its samples that are such a number are missing.
+    holds. `missing` has the error values of the file, one or several, numbers or texts: its samples that are such a one are missing.
     """
 
     column: Text | None = None
@@ -51,7 +59,7 @@ class ChannelEntry(Entry):
     scale: Finite = 1.0
     file_unit: Text | None = None
     derivative: Finite | None = None
-    missing: Finite | list[Finite] | None = None
+    missing: Finite | Text | list[Finite | Text] | None = None
 
     _position = field_validator("column", mode="before")(_column)
 
@@ -68,6 +76,14 @@ class ChannelEntry(Entry):
         if text is not None:
             parse_expression(text)
         return text
+
+    @field_validator("missing")
+    @classmethod
+    def _numbers_without_quotes(cls, missing: float | str | list[float | str] | None) -> Any:
+        for value in missing if isinstance(missing, list) else [missing]:
+            if isinstance(value, str) and _is_number(value):
+                raise ValueError(f'found "{value}", expected a number without quotes, or text that is no number')
+        return missing
 
     @field_validator("derivative")
     @classmethod
@@ -94,9 +110,16 @@ class ChannelEntry(Entry):
     @property
     def error_values(self) -> tuple[float, ...]:
         """Numbers of the file that stand for missing samples."""
-        if self.missing is None:
-            return ()
-        return tuple(self.missing) if isinstance(self.missing, list) else (self.missing,)
+        return tuple(value for value in self._missing if not isinstance(value, str))
+
+    @property
+    def missing_marks(self) -> tuple[str, ...]:
+        """Texts of the file that stand for missing samples."""
+        return tuple(value.strip() for value in self._missing if isinstance(value, str))
+
+    @property
+    def _missing(self) -> list[float | str]:
+        return self.missing if isinstance(self.missing, list) else [] if self.missing is None else [self.missing]
 
     def expression(self, column: str | None) -> Expression:
         """How the channel comes from columns; `column` stands in where an experiment names another."""

@@ -1,4 +1,4 @@
-"""Numbers that a logger writes where it has no value, and that the card says: read as missing samples."""
+"""Numbers and texts that a logger writes where it has no value, and that the card says: read as missing samples."""
 
 from __future__ import annotations
 
@@ -21,14 +21,16 @@ def without_error_values(read: Read, channels: Mapping[str, ChannelEntry], formu
         formulas: how the channels come from columns, by channel.
     """
     marked: dict[str, list[float]] = {}
+    texts: set[tuple[str, str]] = set()
     for name, formula in formulas.items():
         for column in formula.columns:
             marked.setdefault(column, []).extend(channels[name].error_values)
-    if not any(marked.values()):
+            texts |= {(column, mark) for mark in channels[name].missing_marks}
+    if not any(marked.values()) and not texts:
         return read
 
     def reading(path: Path, columns: tuple[str, ...]) -> Table:
-        table = read(path, columns)
+        table = read(path, columns, tuple(sorted(texts))) if texts else read(path, columns)
         own = {column: _cleared(values, marked.get(column, [])) for column, values in table.columns.items()}
         return replace(table, columns=own)
 

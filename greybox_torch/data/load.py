@@ -6,19 +6,18 @@ from collections.abc import Callable
 from functools import cache
 from os import PathLike
 from pathlib import Path
-from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.asked_for import asked_for
 from greybox_torch.data.card import TIME, Card, read_card
-from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry, TimeEntry
+from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry
 from greybox_torch.data.checks import check_finite, check_length, check_time
-from greybox_torch.data.counts import check_counts
 from greybox_torch.data.dataset import DataSet
 from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.expression import Expression
+from greybox_torch.data.file_units import check_unit_of_time, check_units, in_unit
 from greybox_torch.data.gaps import longest_gap, without_gaps
 from greybox_torch.data.missing import where_missing
 from greybox_torch.data.processing import at_times, decimated, derivative, even_grid
@@ -26,7 +25,6 @@ from greybox_torch.data.readers import read_table
 from greybox_torch.data.recording import Channel, Recording
 from greybox_torch.data.source import Read, Source, source_of
 from greybox_torch.data.steps import EVEN, even_step, unevenness, usual_step
-from greybox_torch.data.units import conversion, slip
 from greybox_torch.errors import UserError
 from greybox_torch.files import absolute
 
@@ -71,6 +69,7 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     start, stop = _rows(place, source, experiment.rows)
     check_length(stop - start, place)
     time, sample_time = _time(place, path, card, source, clock, start, stop)
+    check_units(place, card.channels, formulas, source)
     signals = {
         name: _signal(f'{place}, channel "{name}"', card.channels[name], formula, source, start, stop)
         for name, formula in formulas.items()
@@ -90,6 +89,7 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
         sample_time=done.sample_time,
         signals=done.signals,
         source=files[0],
+        further=tuple(files[1:]),
         rows=(start, stop) if len(done.time) == stop - start else (0, len(done.time)),
         units={name: entry.unit for name, entry in card.channels.items()},
         notes=(*source.notes, *done.notes),
@@ -121,24 +121,11 @@ def _time(
                 f"{path}: sample_time: {step:g} s makes times that are no numbers; expected seconds between samples"
             )
         return time, step
-    _check_unit_of_time(path, card.time, source, clock)
+    check_unit_of_time(path, card.time, source, clock)
     time = source.columns[clock][start:stop]
     time = time if card.time.unit == "s" else time * card.time.seconds
     check_time(time, lambda sample: f"{place}: {source.place(clock, start + sample)}")
     return time, usual_step(time)
-
-
-def _check_unit_of_time(path: Path, time: TimeEntry, source: Source, clock: str) -> None:
-    """Raises UserError where the file says another unit of its time stamps than the card."""
-    known = get_args(TimeEntry.model_fields["unit"].annotation)
-    for table in (*source.tables, *source.joined):
-        found = table.units.get(clock, "").strip("[]() ").replace("μ", "µ")
-        if found not in known or found.replace("µ", "u") == time.unit.replace("µ", "u"):
-            continue
-        raise UserError(
-            f'{path}, time: {table.path} has column "{clock}" in "{found}", the card says "{time.unit}"; '
-            f'expected time = {{ column = "{clock}", unit = "{found}" }}'
-        )
 
 
 def _signal(
@@ -153,30 +140,9 @@ def _signal(
     if lost.any():
         raise UserError(f'{place}: "{formula.text}" is no number at sample {int(np.argmax(lost))} (the first is 0)')
     with np.errstate(over="ignore"):
-        values = _in_unit(place, entry, formula, source, values)
+        values = in_unit(entry, values)
     check_finite(values, lambda sample: f"{place}, sample {sample} (the first is 0), once scaled")
     return values
-
-
-def _in_unit(
-    place: str, entry: ChannelEntry, formula: Expression, source: Source, values: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    found = source.unit(formula.text)
-    if "scale" not in entry.model_fields_set:
-        check_counts(place, formula, source.table(formula.text).path, entry.file_unit or found, entry.unit)
-    if entry.file_unit is not None:
-        rate = "" if entry.derivative is None else " / s"
-        factor, offset = conversion(entry.file_unit + rate, entry.unit, f"{place}, file_unit")
-        return values * factor + offset
-    if found and entry.unit and entry.derivative is None and "scale" not in entry.model_fields_set:
-        factor = slip(found, entry.unit)
-        if factor is not None:
-            conversion(found, entry.unit, place)  # says so where nobody can tell the factor
-            raise UserError(
-                f'{place}: {source.table(formula.text).path} has column "{formula.text}" in "{found}", the card says "{entry.unit}"; '
-                f'expected file_unit = "{found}" to convert it ({factor:.6g}), or the scale'
-            )
-    return values * entry.scale
 
 
 class _Processed:

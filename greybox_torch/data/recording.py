@@ -30,8 +30,9 @@ class Recording:
     `time` is in seconds, shape (N,), strictly increasing, starting anywhere. `signals` holds an array of shape (N,)
     for each channel's name, in the channel's unit; missing samples are NaN. `sample_time` is the median step of the
     experiment's `time`, in seconds, or the mean one where rounding alone tells steps apart, as that of dates in seconds since 1970.
-    `rows` is the half-open slice of the file `source` that the recording stands for; `source` is None where there is no file. `units`
-    are by channel, where they are known. `notes` say what was done to the file's samples, or what is remarkable about their time stamps.
+    `rows` is the half-open slice of the file `source` that the recording stands for; `source` is None where there is no file, and
+    `further` are those that were joined to it. `units` are by channel, where they are known. `notes` say what was done to
+    the file's samples, or what is remarkable about their time stamps.
 
     All arrays are read-only, and no change to what they were made from reaches them.
     """
@@ -45,6 +46,7 @@ class Recording:
     rows: tuple[int, int] = (0, 0)
     units: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    further: tuple[Path, ...] = ()
 
     def __post_init__(self) -> None:
         own = {"time": _read_only(self.time), "signals": {n: _read_only(v) for n, v in self.signals.items()}}

@@ -10,12 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.checks import check_finite, check_time
-from greybox_torch.data.gaps import in_gaps
+from greybox_torch.data.gaps import in_gaps, lost_samples
 from greybox_torch.data.processing import at_times
 from greybox_torch.data.readers.table import NoSuchColumn, Table
 from greybox_torch.errors import UserError
 
 Read = Callable[..., Table]
+
+_SHOWN = 3
+"""Places at which samples are missing in a joined file."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,10 +45,6 @@ class Source:
     def table(self, column: str) -> Table:
         """The first one that has a column."""
         return next((table for table in (*self.tables, *self.joined) if column in table.columns), self.tables[0])
-
-    def unit(self, column: str) -> str:
-        """The unit that a file says for a column; empty where none does."""
-        return next((t.units[column] for t in (*self.tables, *self.joined) if column in t.units), "")
 
 
 def source_of(files: Sequence[Path], join: str | None, columns: Sequence[str], time: str | None, read: Read) -> Source:
@@ -86,6 +85,7 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
         else:
             unknown = in_gaps(held[time], own[time])
             across = ", and missing across its gaps" if unknown.any() else ""
+            across = f"{_also_across_lost(table, own[time])}{across}"
             for column in own:
                 if column != time:
                     check_finite(own[column], lambda sample, table=table, column=column: table.place(column, sample))
@@ -99,6 +99,18 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
         names = ", ".join(file.name for file in files)
         raise NoSuchColumn(f'{files[0]}: no column "{lacking[0]}"; it is in none of {names}', lacking[0])
     return Source((tables[0],), held, tuple(notes), tuple(tables[1:]))
+
+
+def _also_across_lost(table: Table, stamps: NDArray[np.float64]) -> str:
+    """That straight lines lie across single samples which a file with these time stamps lacks, to go on with."""
+    lost = lost_samples(stamps)
+    if not lost:
+        return ""
+    count, more = sum(one.count for one in lost), ", …" * (len(lost) > _SHOWN)
+    at = "sample" if table.lines is None else "line"
+    where = [str(one.after if table.lines is None else table.lines[one.after]) for one in lost[:_SHOWN]]
+    samples = "1 sample that is" if count == 1 else f"{count} samples that are"
+    return f", also across {samples} missing there (after {at}{'s' * (len(lost) > 1)} {', '.join(where)}{more})"
 
 
 def _what_there_is(file: Path, columns: Sequence[str], time: str, read: Read) -> Table:

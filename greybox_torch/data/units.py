@@ -21,12 +21,14 @@ _RATE = " / s"
 _WRITTEN = {"°C": "degC", "°F": "degF", "°": "deg", "·": "*", "²": "^2", "³": "^3", "μ": "µ"}
 _POWER = re.compile(r"(?<=[A-Za-zµ])(-?[1-4])(?![\w.])")
 """A power without its sign: the 2 of m/s2, the -1 of rad s-1; not that of mH2O."""
-_USUAL = (
+USUAL = (
     "rpm", "rad/s", "deg/s", "rev/s", "rad", "deg", "degC", "degF", "K", "Hz", "kHz", "W", "kW", "MW", "J", "kJ", "N", "kN", "N m", "kN m",
     "Pa", "hPa", "kPa", "MPa", "bar", "mbar", "psi", "V", "mV", "kV", "A", "mA", "ohm", "m", "mm", "cm", "km", "m/s", "mm/s", "km/h",
     "m/s^2", "kg", "s", "ms", "min", "h", "l/min", "m^3/h", "m^3/s", "l", "%",
 )  # fmt: skip
 """What may be meant by a unit that is none, or one of another quantity but for its capitals."""
+_DEGREES = re.compile(r"deg\s+([CF])\b")
+"""Temperatures as loggers write them; the registry would take degrees times coulombs."""
 _GRAVITY = {"g": "gram", "mg": "milligram", "G": "gauss"}
 """How accelerometers write multiples of gravity, and what that is beside other quantities."""
 
@@ -93,7 +95,7 @@ def meant(unit: str, other: str, *, capitals: bool = False) -> str:
     if not capitals and _dimension(unit) is not None:
         return ""
     quantity = _dimension(other)
-    near = [usual for usual in _USUAL if quantity is None or _dimension(usual) == quantity]
+    near = [usual for usual in USUAL if quantity is None or _dimension(usual) == quantity]
     return did_you_mean(unit, [usual for usual in near if not capitals or usual.lower() == unit.lower()])
 
 
@@ -202,7 +204,7 @@ def _spelt(unit: str) -> str:
     unit = _NAMED_TURNS.sub(lambda turns: {"min": "rpm", "s": "rps"}[turns[1]], unit)
     for sign, word in _WRITTEN.items():
         unit = unit.replace(sign, word)
-    return _POWER.sub(r"^\1", unit)
+    return _POWER.sub(r"^\1", _DEGREES.sub(r"deg\1", unit))
 
 
 @cache

@@ -74,41 +74,50 @@ def beliefs_from_mapping(mapping: Mapping[str, Any], model: GreyBoxModel, where:
     """
     if not isinstance(mapping, Mapping):
         raise UserError(f"{where}: found {mapping!r}, expected a table of beliefs by port and mechanism")
-    return Beliefs(
-        {_key(key, model, where): _probability(value, f'{where}: "{key}"') for key, value in mapping.items()}
-    )
+    given: dict[str, float] = {}
+    problems: list[str] = []
+    for key, value in mapping.items():
+        try:
+            given[_key(key, model)] = _probability(value, key)
+        except UserError as error:
+            problems.append(str(error))
+    if len(problems) == 1:
+        raise UserError(f"{where}: {problems[0]}")
+    if problems:
+        raise UserError(f"{where}: {len(problems)} problems:\n" + "\n".join(f"  {problem}" for problem in problems))
+    return Beliefs(given)
 
 
-def _key(key: Any, model: GreyBoxModel, where: str) -> str:
+def _key(key: Any, model: GreyBoxModel) -> str:
     port, slash, mechanism = key.partition("/") if isinstance(key, str) else ("", "", "")
     if not (port and slash and mechanism) or "/" in mechanism or port == mechanism == ANY:
-        raise UserError(f'{where}: "{key}" is no hypothesis; {_EXPECTED}')
+        raise UserError(f'"{key}" is no hypothesis; {_EXPECTED}')
     kinds = {p.name: p.kind for p in model.all_ports}
     known = {**{name: law.kinds for name, law in LIBRARY.items()}, Unknown.name: Unknown.kinds}
     if port != ANY and port not in kinds:
         raise UserError(
-            f'{where}: "{key}": model {model.title} has no port "{port}"{did_you_mean(port, kinds)}; expected one of '
+            f'"{key}": model {model.title} has no port "{port}"{did_you_mean(port, kinds)}; expected one of '
             f"{', '.join(kinds)}, or * for any"
         )
     if mechanism != ANY and mechanism not in known:
         raise UserError(
-            f'{where}: "{key}": there is no mechanism "{mechanism}"{did_you_mean(mechanism, known)}; expected one of the library, '
+            f'"{key}": there is no mechanism "{mechanism}"{did_you_mean(mechanism, known)}; expected one of the library, '
             f"{Unknown.name}, or * for any"
         )
     if ANY not in (port, mechanism) and kinds[port] not in known[mechanism]:
         raise UserError(
-            f'{where}: "{key}": {port} is a port of the kind "{kinds[port]}"; {mechanism} attaches to {", ".join(known[mechanism])}'
+            f'"{key}": {port} is a port of the kind "{kinds[port]}"; {mechanism} attaches to {", ".join(known[mechanism])}'
         )
     return key
 
 
-def _probability(value: Any, where: str) -> float:
+def _probability(value: Any, key: str) -> float:
     if isinstance(value, str) and value in WORDS:
         return WORDS[value]
     if isinstance(value, int | float) and not isinstance(value, bool) and 0.0 <= value < 1.0:
         return float(value)
     raise UserError(
-        f"{where}: found {value!r}; expected {', '.join(map(repr, WORDS))}, or a probability from 0 (excluded) to below 1"
+        f'"{key}": found {value!r}; expected {", ".join(map(repr, WORDS))}, or a probability from 0 (excluded) to below 1'
     )
 
 

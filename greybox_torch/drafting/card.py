@@ -8,22 +8,25 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from greybox_torch.data.gaps import Gap, pieces_around
-from greybox_torch.drafting.channels import Draft, Drafted, drafted
+from greybox_torch.drafting.channels import Draft, Drafted
 from greybox_torch.drafting.clock import Clock, clock_of
 from greybox_torch.drafting.recorded import Recorded, recorded
+from greybox_torch.drafting.runs import Run, apart, names_of, runs_of
 from greybox_torch.files import toml_key, toml_text
 from greybox_torch.model import GreyBoxModel
 
+_JOIN = 'join = "time"                  # columns of all, at the time stamps of the first'
 FEW = 80
 """Samples below which a file is not divided between estimation and validation."""
 
 
 @dataclass(frozen=True)
 class CardDraft:
-    """The card's text, and what its reader has to do: ``open`` lists what could not be guessed."""
+    """The card's text, and what its reader has to do: ``open`` lists what could not be guessed. ``runs`` are the files by experiment."""
 
     text: str
     files: tuple[Recorded, ...]
+    runs: tuple[Run, ...]
     clock: Clock
     channels: tuple[Draft, ...]
     open: tuple[str, ...]
@@ -48,22 +51,26 @@ def draft_card(
     files = tuple(recorded(path) for path in paths)
     given = None if sample_time is None else Clock(sample_time=sample_time, remark="as given")
     clocks = [given or clock_of(file) for file in files]
-    tables = [drafted(file, clock, model) for file, clock in zip(files, clocks, strict=True)]
+    runs = runs_of(files, clocks, model)
+    first = runs[0]
     lines = [
         f"name = {toml_text(folder.resolve().name or 'Recordings')}",
-        *_clock(clocks[0]),
+        *_clock(first.clock),
         'hold = "zoh"                       # the input between samples: "zoh" constant, "foh" straight lines',
         "",
-        *_channels(tables[0], model),
-        *_left_over(files[0], tables[0]),
+        *_channels(first.table, model),
+        *_left_over(first),
         "",
-        *_experiments(files, clocks, tables, folder),
+        *_experiments(runs, folder),
         *_model(model, model_name),
     ]
-    missing = [f"[channels] {draft.name}: {draft.remark}" for draft in tables[0].channels if draft.column is None]
-    if clocks[0].column is None and clocks[0].sample_time is None:
-        missing.insert(0, f"sample_time: {clocks[0].remark}")
-    return CardDraft("\n".join(lines) + "\n", files, clocks[0], tables[0].channels, tuple(missing))
+    missing = [f"[channels] {draft.name}: {draft.remark}" for draft in first.table.channels if draft.column is None]
+    if missing:  # what there is to them may be in a column that could not be read, or in another file
+        missing += [fault for file in first.files for fault in _faults(file)]
+        missing += filter(None, [apart(runs)])
+    if first.clock.column is None and first.clock.sample_time is None:
+        missing.insert(0, f"sample_time: {first.clock.remark}")
+    return CardDraft("\n".join(lines) + "\n", files, runs, first.clock, first.table.channels, tuple(missing))
 
 
 def _clock(clock: Clock) -> list[str]:
@@ -97,54 +104,58 @@ def _channel(draft: Draft) -> str:
     return line if draft.column is not None else f"# {line}"
 
 
-def _left_over(file: Recorded, table: Drafted) -> list[str]:
-    lines = [f"# also in {file.path.name}: {', '.join(table.others)}"] if table.others else []
-    return lines + ([f"# without numbers, or of another length: {', '.join(file.left_out)}"] if file.left_out else [])
+def _left_over(run: Run) -> list[str]:
+    lines = []
+    for file in run.files:
+        others = [name for name in file.columns if name in run.table.others]
+        lines += [f"# also in {file.path.name}: {', '.join(others)}"] if others else []
+        lines += [f"# of another length: {', '.join(file.left_out)}"] if file.left_out else []
+        lines += [f"# left out: {fault}" for fault in _faults(file)]
+    return lines
 
 
-def _experiments(
-    files: Sequence[Recorded], clocks: Sequence[Clock], tables: Sequence[Drafted], folder: Path
-) -> list[str]:
+def _faults(file: Recorded) -> list[str]:
+    """The columns that hold something else than numbers, with what that is and where."""
+    return [f'column "{name}" of {file.path.name}, {fault}' for name, fault in file.faults.items()]
+
+
+def _experiments(runs: Sequence[Run], folder: Path) -> list[str]:
     lines: list[str] = []
-    names = _names([file.path for file in files])
-    for k, (file, clock, table) in enumerate(zip(files, clocks, tables, strict=True)):
+    names = names_of(runs)
+    for k, run in enumerate(runs):
         own = {
             draft.name: draft.column
-            for draft, first in zip(table.channels, tables[0].channels, strict=False)
+            for draft, first in zip(run.table.channels, runs[0].table.channels, strict=False)
             if draft.column is not None and draft.column != first.column
         }
-        if clock.column is not None and clock.column != clocks[0].column:
-            own["time"] = clock.column
-        alone, last = len(files) == 1, k == len(files) - 1
-        if alone and file.samples >= FEW:
-            cut = 3 * file.samples // 4
+        if run.clock.column is not None and run.clock.column != runs[0].clock.column:
+            own["time"] = run.clock.column
+        alone, last, samples = len(runs) == 1, k == len(runs) - 1, run.whole.samples
+        if alone and samples >= FEW:
+            cut = 3 * samples // 4
             for name, role, rows in (
                 ("first part", "estimation", (0, cut)),
-                ("last part", "validation", (cut, file.samples)),
+                ("last part", "validation", (cut, samples)),
             ):
-                lines += _experiment(f"{names[k]}, {name}", file, role, folder, own, rows, clock.gap)
+                lines += _experiment(f"{names[k]}, {name}", run, role, folder, own, rows)
             continue
         role = "validation" if last and not alone else "estimation"
-        lines += _experiment(names[k], file, role, folder, own, None, clock.gap)
+        lines += _experiment(names[k], run, role, folder, own, None)
     return lines
 
 
 def _experiment(
-    name: str,
-    file: Recorded,
-    role: str,
-    folder: Path,
-    columns: dict[str, str],
-    rows: tuple[int, int] | None,
-    gap: Gap | None,
+    name: str, run: Run, role: str, folder: Path, columns: dict[str, str], rows: tuple[int, int] | None
 ) -> list[str]:
     seen = "parameters are estimated from it" if role == "estimation" else "results are judged on it"
     own = ", ".join(f"{toml_key(channel)} = {toml_text(column)}" for channel, column in columns.items())
+    files = [toml_text(Path(os.path.relpath(file.path.resolve(), folder.resolve())).as_posix()) for file in run.files]
     return [
-        *_gap(gap, rows or (0, file.samples)),
+        *_gap(run.clock.gap, rows or (0, run.whole.samples)),
         "[[experiment]]",
         f"name = {toml_text(name)}",
-        f"file = {toml_text(Path(os.path.relpath(file.path.resolve(), folder.resolve())).as_posix())}",
+        f"file = {files[0] if len(files) == 1 else '[' + ', '.join(files) + ']'}",
+        *([_JOIN] if len(files) > 1 else []),
         f"role = {toml_text(role)}              # {seen}",
         *([f"rows = [{rows[0]}, {rows[1]}]"] if rows else []),
         *([f"columns = {{ {own} }}"] if own else []),
@@ -176,9 +187,3 @@ def _model(model: GreyBoxModel | None, name: str | None) -> list[str]:
         f"name = {toml_text(name or model.title)}",
         *(["", "[model.parameters]", told, *parameters] if told else []),
     ]
-
-
-def _names(paths: Sequence[Path]) -> list[str]:
-    """The files' names without their endings; whole, where two would be alike."""
-    stems = [path.stem for path in paths]
-    return [stem if stems.count(stem) == 1 else path.as_posix() for stem, path in zip(stems, paths, strict=True)]

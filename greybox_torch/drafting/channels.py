@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from greybox_torch.data.counts import ends_in_counts, in_turns, is_angle, is_count, named_as_count
+from greybox_torch.data.understood_units import understood
 from greybox_torch.data.units import slip
 from greybox_torch.data.unwrapping import turn_within, unwrapped
 from greybox_torch.drafting.clock import SECONDS, Clock
@@ -54,7 +55,8 @@ def wanted_of(model: GreyBoxModel) -> list[Wanted]:
 def drafted(file: Recorded, clock: Clock, model: GreyBoxModel | None) -> Drafted:
     """Columns matched with the model's inputs and outputs; without a model, every column a channel of its own name."""
     columns = [name for name in file.columns if name != clock.column]
-    units = {name: unit for name in columns if (unit := file.units.get(name, "") or unit_in(name))}
+    said = {name: unit for name in columns if (unit := file.units.get(name, "") or unit_in(name))}
+    units = {name: understood(unit) or unit for name, unit in said.items()}
     if model is None:
         return Drafted(tuple(Draft(_channel_name(name), units.get(name, ""), name) for name in columns))
     wanted = wanted_of(model)
@@ -97,7 +99,7 @@ def _draft(
         return Draft(channel.name, channel.unit, None, remark=f"{told}{doubt}", expr=in_turns(counts, channel.unit))
     if column is None:
         free = [name for name in columns if name not in found.values()]
-        left = f"; left over: {', '.join(free)}" if free else ""
+        left = f"; left over: {', '.join(name + _unknown(units.get(name, '')) for name in free)}" if free else ""
         return Draft(channel.name, channel.unit, None, remark=f"no column fits{left}")
     unit = units.get(column, "") or _gravity(column, channel.unit)
     certain = any(words(name) == words(channel.name) for name in (column, without_ending(column)))
@@ -109,6 +111,11 @@ def _draft(
         guess = suspected[channel.name]
         return Draft(channel.name, channel.unit, column, remark=f'its size suggests {guess}: add file_unit = "{guess}"')
     return Draft(channel.name, channel.unit, column, remark=doubt)
+
+
+def _unknown(unit: str) -> str:
+    """Behind a column whose unit is none that is known, so that no unit could tell what the column is."""
+    return f' (of the unknown unit "{unit}")' if unit and not (understood(unit) or is_count(unit)) else ""
 
 
 def _counts(column: str | None, found: dict[str, str], units: dict[str, str], columns: Sequence[str]) -> str:

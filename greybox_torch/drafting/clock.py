@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 
 from greybox_torch.data.gaps import Gap, longest_gap
 from greybox_torch.data.steps import EVEN, even_step, unevenness
+from greybox_torch.data.time_units import unit_of_time
 from greybox_torch.drafting.recorded import Recorded
 
 _TIME = re.compile(
-    r"(^|[\W_])(t|time|times|timestamp|time_?stamps?|tid|zeit|temps|seconds|secs?|millis|clock)($|[\W_\d])",
+    r"(^|[\W_])(t|times?|time_?stamps?|date_?times?|date_?time_?stamps?|dates?|tid|dato|zeit|zeit_?(stempel|punkt)|uhr_?zeit|datum|temps|"
+    r"horodatage|horodate|heure|fecha|hora|data_?ora|orario|tijd|tijdstip|seconds|secs?|millis|clock)($|[\W_\d])",
     re.IGNORECASE,
 )
 _STEP = re.compile(r"^(ts|dt|h|tsampl|t_s|sample_?time|sampling_?time|sample_?period|step|delta_?t)$", re.IGNORECASE)
@@ -32,6 +34,9 @@ _SINCE_1970 = {"ns": 1e17, "us": 1e14, "ms": 1e11}
 
 _EVEN_ENOUGH = 0.5
 """Steps of a clock without a name of its own differ by less than this share of the median."""
+
+_SOME = 0.1
+"""Share of samples up to which a column that is called like time stamps, and does not rise in these, was meant as that."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +58,7 @@ class Clock:
 def clock_of(file: Recorded) -> Clock:
     """The clock of a file, as far as names and numbers tell."""
     rising = {name: values for name, values in file.columns.items() if _rises(values)}
-    named = [name for name in rising if named_like_a_clock(name)]
+    named = [name for name in rising if name in file.stamps or named_like_a_clock(name)]
     other = [name for name in rising if is_clock(rising[name]) and name == next(iter(file.columns))]
     for column in (*named, *other):
         return _clock(column, rising[column], file.units.get(column, ""))
@@ -63,7 +68,17 @@ def clock_of(file: Recorded) -> Clock:
             return Clock(sample_time=value, remark=f"{name} = {value:g} in {file.path.name}")
         if value > 0 and _RATE.match(last):
             return Clock(sample_time=1.0 / value, remark=f"1 / {name}, {name} = {value:g} in {file.path.name}")
-    return Clock(remark="no column rises from sample to sample, and no number is called Ts, dt or fs")
+    return Clock(remark=f"{_none_rises(file)}, and no number is called Ts, dt or fs")
+
+
+def _none_rises(file: Recorded) -> str:
+    """Why there is no clock; where a column was likely meant, from where on it is none."""
+    for name, values in file.columns.items():
+        falls = np.flatnonzero(~(np.diff(values) > 0))
+        nearly = named_like_a_clock(name) and len(falls) < _SOME * len(values)
+        if len(falls) and (name in file.stamps or nearly):
+            return f'column "{name}" does not rise everywhere: {file.where(int(falls[0]) + 1)} is no later than the one before'
+    return "no column rises from sample to sample"
 
 
 def named_like_a_clock(column: str) -> bool:
@@ -88,9 +103,8 @@ def _clock(column: str, values: NDArray[np.float64], unit: str) -> Clock:
 
 def _unit(column: str, values: NDArray[np.float64], unit: str) -> tuple[str, str]:
     """The unit of time stamps, empty where nothing tells it, and how it is told."""
-    for known in ("s", *SECONDS):
-        if unit.strip("[]() ").lower() == known:
-            return known, f"read in {known}; "
+    if known := unit_of_time(unit):
+        return known, f"read in {known}; "
     for known, pattern in _UNITS.items():
         if pattern.search(column):
             return known, "by its name; "

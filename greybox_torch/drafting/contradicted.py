@@ -11,6 +11,7 @@ from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry
 from greybox_torch.data.counts import ends_in_counts, in_turns, is_angle
 from greybox_torch.data.data_warning import InASentence
+from greybox_torch.data.time_units import SPELLINGS
 from greybox_torch.data.units import conversion, dimensionality, per_minute
 from greybox_torch.drafting.column_units import unit_in
 from greybox_torch.errors import UserError
@@ -24,14 +25,6 @@ _KNOWN = re.compile(
 _DEGREES = re.compile(r"(?:°|deg)?\s*([CF])")
 """Degrees of a temperature in brackets; a letter alone is another unit, and means them where the card says a temperature."""
 
-_TIMES = {
-    **dict.fromkeys(("s", "sec", "secs", "seconds"), "s"),
-    **dict.fromkeys(("ms", "msec", "millis", "milliseconds"), "ms"),
-    **dict.fromkeys(("us", "µs", "usec", "micros", "microseconds"), "us"),
-    **dict.fromkeys(("ns", "nsec", "nanos", "nanoseconds"), "ns"),
-    **dict.fromkeys(("min", "minutes"), "min"),
-    **dict.fromkeys(("h", "hours"), "h"),
-}
 _SURE = frozenset(("rpm", "deg/s", "rad/s", "mN m", "mm", "degC", "degF"))
 """Endings that are units whatever the card says. Of others, such as x_bar and heat_rad, only another scale is told."""
 _AS_WRITTEN = {"Nm": "N m", "mA": "mA", "mV": "mV", "kW": "kW"}
@@ -125,9 +118,9 @@ def time_in(column: str) -> str:
     """The unit that the name of a column of time stamps tells."""
     bracketed = re.search(r"[\[(]\s*([^\W\d_]+)\s*[\])]\s*$", column)
     if bracketed:
-        return _TIMES.get(bracketed[1].lower(), "")
+        return SPELLINGS.get(bracketed[1].lower(), "")
     last = re.split(r"[\W_]", column.strip())[-1].lower()
-    return _TIMES.get(last, "") if last != column.lower() or len(last) > 3 else ""
+    return SPELLINGS.get(last, "") if last != column.lower() or len(last) > 3 else ""
 
 
 def _differ(told: str, said: str) -> bool:

@@ -100,7 +100,15 @@ def test_defaults(tmp_path: Path) -> None:
         ),
         (
             TOP + CHANNELS + EXPERIMENT + "[model.parameters]\nJ = { value = 2, lower = 0, upper = 1 }\n",
-            "[model.parameters], J: value = 2 lies outside its bounds [0, 1]",
+            "[model.parameters], J: value = 2 is above upper = 1",
+        ),
+        (
+            TOP + CHANNELS + EXPERIMENT + "[model.parameters]\nJ = { value = 500, upper = 100 }\n",
+            "[model.parameters], J: value = 500 is above upper = 100",
+        ),
+        (
+            TOP + CHANNELS + EXPERIMENT + "[model.parameters]\nJ = { value = -1, lower = 0 }\n",
+            "[model.parameters], J: value = -1 is below lower = 0",
         ),
         (
             TOP + CHANNELS + EXPERIMENT + "[model.parameters]\nJ = { lower = 1, upper = 1 }\n",

@@ -71,8 +71,8 @@ def test_in_single_precision_and_a_derivative_of_files_joined_in_time(tmp_path: 
         loaded(tmp_path, f"{channel}, derivative = 10.0", 'file = "a.npz"')
 
 
-@pytest.mark.parametrize("value", ['"65535"', "nan", '["x"]', "true"])
-def test_what_is_no_number_is_refused(tmp_path: Path, value: str) -> None:
+@pytest.mark.parametrize("value", ['"65535"', "nan", '["0.5"]', '[""]', "true"])
+def test_what_is_neither_a_number_nor_text_is_refused(tmp_path: Path, value: str) -> None:
     written(tmp_path, "a.csv", t=TIME, u=np.cos(TIME), q=ANGLE)
     with pytest.raises(UserError, match="missing"):
         loaded(tmp_path, f'column = "q", unit = "deg", missing = {value}')

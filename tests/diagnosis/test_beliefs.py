@@ -76,6 +76,15 @@ def test_what_is_given_is_checked_before_anything_is_computed(motor_data, motor)
     data = motor_data(200)
     with pytest.raises(UserError, match='argument beliefs: "roter/gravity": model Motor has no port "roter"'):
         gt.diagnose(motor, data, beliefs={"roter/gravity": 0.5})
+    with pytest.raises(UserError) as error:
+        beliefs_from_mapping(
+            {"roter/gravity": 0.1, "rotor/gravity": 2, "rotor/coulomb_friction": 0.1}, motor, "card: [beliefs]"
+        )
+    lines = str(error.value).splitlines()  # seen: one at a time
+    assert lines[0] == "card: [beliefs]: 2 problems:" and len(lines) == 3
+    assert lines[1].startswith('  "roter/gravity": model Motor has no port') and lines[2].startswith(
+        '  "rotor/gravity": found 2;'
+    )
     with pytest.raises(UserError, match="argument beliefs: found 3, expected a table"):
         gt.diagnose(motor, data, beliefs=3)  # type: ignore[arg-type]
 

@@ -99,7 +99,7 @@ FAULTS = [
     (J, "J = { value = inf }", "J, value: found Infinity"),
     (J, "J = { lower = nan }", "J, lower: nan is not a bound"),
     (J, "J = { lower = 1, upper = 0 }", "lower = 1 is not below upper = 0"),
-    (J, "J = { value = 2, upper = 1 }", "value = 2 lies outside its bounds"),
+    (J, "J = { value = 2, upper = 1 }", "value = 2 is above upper = 1"),
     (J, "J = { value = -1 }", "[model.parameters]"),
     (J, "J = { fixed = 1 }", "J, fixed: found 1, expected true or false"),
     (J, "JJ = { value = 1 }", "JJ: model Motor has no such name"),

@@ -38,7 +38,7 @@ RECORDINGS = [
     (line(5, "1e5000,1"), 'line 5, column "u", sample 3 (the first is 0): found inf'),
     (line(5, "-inf,1"), "found -inf, expected a finite number"),
     (line(5, "1e150,1"), "found 1e+150, expected a number of at most 1e+100"),
-    (line(5, "N/A,1"), 'found "N/A"'),
+    (line(5, "OVER,1"), 'found "OVER", expected a number'),
     (line(5, '"1,1'), "line 5: not comma-separated values: a quotation mark is opened here and not closed"),
     (line(5, "1," + "9" * 200_000), "a cell of more than 131072 characters"),
     (line(5, "=1+1,1"), 'found "=1+1"'),

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from greybox_torch.data.readers.missing_marks import is_missing
 from greybox_torch.data.readers.time_stamps import is_time_stamp
 
 MOST_COLUMNS = 400
@@ -67,7 +68,9 @@ def walk(name: str, value: Any) -> Iterator[tuple[str, float | None]]:
 
 def is_sample(value: Any) -> bool:
     """Whether a value of JSON may be a sample: a number, a missing one, or a time stamp."""
-    return isinstance(value, bool | int | float | None) or (isinstance(value, str) and is_time_stamp(value))
+    return isinstance(value, bool | int | float | None) or (
+        isinstance(value, str) and (is_time_stamp(value) or is_missing(value.strip()))
+    )
 
 
 def _shape(value: list[Any]) -> tuple[int, int] | None:

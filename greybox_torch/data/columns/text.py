@@ -7,6 +7,7 @@ from itertools import islice
 from pathlib import Path
 
 from greybox_torch.data.columns.listing import MOST_COLUMNS, Listing
+from greybox_torch.data.readers.missing_marks import is_missing
 from greybox_torch.data.readers.text_layout import HEAD, encoding_of
 from greybox_torch.data.readers.text_rows import DELIMITERS, cells_of, is_number, uncommented
 from greybox_torch.data.readers.time_stamps import is_time_stamp
@@ -55,8 +56,8 @@ def _block(head: list[str], delimiter: str) -> tuple[list[list[str]], int, int, 
 
 
 def _share(row: list[str], delimiter: str) -> float:
-    """What share of the cells that are not empty are numbers or time stamps."""
-    filled = [cell for cell in row if cell]
+    """What share of the cells that are neither empty nor marks of missing samples are numbers or time stamps."""
+    filled = [cell for cell in row if cell and not is_missing(cell)]
     known = sum(is_number(cell, delimiter) or is_time_stamp(cell) for cell in filled)
     return known / len(filled) if filled else 0.0
 

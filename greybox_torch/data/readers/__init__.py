@@ -84,12 +84,16 @@ def unregister_reader(suffix: str) -> None:
     del READERS[suffix]
 
 
-def read_table(path: Path, columns: Collection[str]) -> Table:
+def read_table(path: Path, columns: Collection[str], marks: Collection[tuple[str, str]] = ()) -> Table:
     """The named columns of the file at `path`, by the reader for its suffix.
+
+    Args:
+        marks: pairs of a column and a text that is a missing sample in it; of files of text alone, since others have missing numbers.
 
     Raises UserError as the readers do, and for whatever else the library behind a reader raises: a damaged file has ways of its own.
     """
-    return guarded(path, READERS)(path, columns)
+    of_text = marks and READERS.get(path.suffix.lower()) is read_csv
+    return guarded(path, READERS)(path, columns, *((marks,) if of_text else ()))
 
 
 def guarded(path: Path, table: Mapping[str, Callable[..., _Found]]) -> Callable[..., _Found]:

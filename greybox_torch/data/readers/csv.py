@@ -1,7 +1,7 @@
 """Samples as text: perhaps some lines about the recording, a line of column names, perhaps one of units, then one line a sample.
 
-Commas, semicolons, tabs, bars or spaces separate cells; decimals have a point, or a comma where commas do not separate. Empty cells and
-NaN are missing samples.
+Commas, semicolons, tabs, bars or spaces separate cells; decimals have a point, or a comma where commas do not separate. Empty cells,
+NaN and the usual marks of missing samples, such as "---" and "N/A", are missing samples.
 
 The standard library's parser serves better here than pandas: numbers come out exact to the last bit, every fault has
 its line, and four files of 20 000 samples are read in less time than importing pandas takes.
@@ -10,6 +10,7 @@ its line, and four files of 20 000 samples are read in less time than importing 
 from __future__ import annotations
 
 from array import array
+from collections import Counter
 from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import TextIO
@@ -17,15 +18,21 @@ from typing import TextIO
 import numpy as np
 
 from greybox_torch.data.readers.clean_rows import clean_rows
+from greybox_torch.data.readers.missing_marks import is_missing
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.readers.text_layout import Layout, encoding_of, layout_of
 from greybox_torch.data.readers.text_rows import UnreadableRow
 from greybox_torch.data.readers.time_stamps import TimeStamps
 from greybox_torch.errors import UserError
+from greybox_torch.files import toml_text
 
 
-def read_csv(path: Path, columns: Collection[str]) -> Table:
-    """Reads columns by their names, or by "#2" for the second. Raises UserError with the line of whatever is no number."""
+def read_csv(path: Path, columns: Collection[str], marks: Collection[tuple[str, str]] = ()) -> Table:
+    """Reads columns by their names, or by "#2" for the second. Raises UserError with the line of whatever is no number.
+
+    Args:
+        marks: pairs of a column and a text that is a missing sample in it, beside the usual ones.
+    """
     try:
         with path.open(newline="", encoding=encoding_of(path)) as file:
             layout = layout_of(path, file, columns)
@@ -34,14 +41,15 @@ def read_csv(path: Path, columns: Collection[str]) -> Table:
                 lines, values = plain
                 return Table(path, {name: np.array(samples) for name, samples in values.items()}, lines, layout.units)
             file.seek(0)
-            return _read_samples(path, file, layout)
+            return _read_samples(path, file, layout, frozenset(marks))
     except UnicodeError:
         raise UserError(f"{path}: not text in UTF-8, UTF-16 or Windows-1252; expected one of them") from None
     except UnreadableRow as error:
         raise UserError(f"{path}, line {error.line}: not comma-separated values: {error}") from None
 
 
-def _read_samples(path: Path, file: TextIO, layout: Layout) -> Table:
+def _read_samples(path: Path, file: TextIO, layout: Layout, marks: frozenset[tuple[str, str]]) -> Table:
+    found: Counter[tuple[str, str]] = Counter()
     lines = array("q")
     values = {column: array("d") for column in layout.positions}
     stamps = {column: TimeStamps() for column in layout.stamps}
@@ -50,12 +58,24 @@ def _read_samples(path: Path, file: TextIO, layout: Layout) -> Table:
         lines.append(line)
         for column, position, append in places:
             cell = row[position].strip()
+            if is_missing(cell) or (column, cell) in marks:
+                found[column, cell] += 1
+                cell = ""
             if column in stamps:
                 append(_seconds(path, line, column, cell, stamps[column]))
             else:
                 append(_number(path, line, column, cell, layout.decimal))
     units = layout.units | dict.fromkeys(stamps, "s")
-    return Table(path, {column: np.array(samples) for column, samples in values.items()}, lines, units)
+    columns = {column: np.array(samples) for column, samples in values.items()}
+    return Table(path, columns, lines, units, _told(path, found), layout.stamps)
+
+
+def _told(path: Path, found: Counter[tuple[str, str]]) -> tuple[str, ...]:
+    """Of the marks of missing samples, which nobody but us took for that."""
+    return tuple(
+        f'column "{column}" of {path.name}: "{mark:.20}" is read as a missing sample, {count} time{"s" * (count > 1)}'
+        for (column, mark), count in found.items()
+    )
 
 
 def _seconds(path: Path, line: int, column: str, cell: str, stamps: TimeStamps) -> float:
@@ -79,9 +99,11 @@ def _number(path: Path, line: int, column: str, cell: str, decimal: str) -> floa
         pass
     _refuse_names(path, line, column, cell)
     sign = "; decimals have a comma in this file" if decimal == "," else ""
+    if not any(character.isdigit() for character in cell):
+        sign += f"; if this is another one, missing = {toml_text(cell[:60])} in the channel's line on the card"
     raise UserError(
         f'{path}, line {line}, column "{column}": found "{cell:.60}", expected a number '
-        f"(missing samples are empty cells or NaN{sign})"
+        f"(missing samples are empty cells, NaN, or marks such as --- and N/A{sign})"
     ) from None
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.readers.column import Field, Step, inside, root_of, steps_of
+from greybox_torch.data.readers.missing_marks import is_missing
 from greybox_torch.data.readers.table import NoSuchColumn, Table, as_vector, require
 from greybox_torch.data.readers.time_stamps import TimeStamps, is_time_stamp
 from greybox_torch.errors import UserError
@@ -110,9 +111,10 @@ def _numbers(place: str, values: Any, lines: list[int] | None = None) -> NDArray
 
 def _each(place: str, values: list[Any], lines: list[int] | None) -> Iterator[float]:
     stamps = TimeStamps()
-    as_times = is_time_stamp(next((v for v in values if isinstance(v, str)), ""))
+    texts = (v for v in values if isinstance(v, str) and not is_missing(v.strip()))
+    as_times = is_time_stamp(next(texts, ""))
     for k, value in enumerate(values):
-        if value is None:
+        if value is None or (isinstance(value, str) and is_missing(value.strip())):
             yield float("nan")
             continue
         if as_times and isinstance(value, str):

@@ -29,7 +29,8 @@ def read_parquet(path: Path, columns: Collection[str]) -> Table:
             table = file.read(columns=list(columns))
     except pa.ArrowException as error:
         raise UserError(f"{path}: cannot be read as parquet: {' '.join(str(error).split())}") from None
-    return Table(path, {column: as_vector(path, column, _numbers(path, column, table)) for column in columns})
+    vectors = {column: as_vector(path, column, _numbers(path, column, table)) for column in columns}
+    return Table(path, vectors, stamps=frozenset(c for c in columns if pa.types.is_timestamp(table.column(c).type)))
 
 
 def _numbers(path: Path, column: str, table: Any) -> NDArray:

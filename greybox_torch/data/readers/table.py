@@ -31,7 +31,8 @@ class NoSuchColumn(UserError):
 class Table:
     """Columns of a file as float64 arrays of shape (N,), and where the format has lines, the line of every sample.
 
-    `units` are by column, where the file says them; `notes` say what was done to the samples while reading.
+    `units` are by column, where the file says them; `notes` say what was done to the samples while reading. `stamps` are columns that the
+    file has as dates or times of day, where the reader tells.
     """
 
     path: Path
@@ -39,6 +40,7 @@ class Table:
     lines: Sequence[int] | None = None
     units: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    stamps: frozenset[str] = frozenset()
 
     def place(self, column: str, sample: int) -> str:
         """Where a sample stands in the file, to begin a message with."""

@@ -13,6 +13,7 @@ from itertools import islice
 from pathlib import Path
 from typing import TextIO
 
+from greybox_torch.data.readers.missing_marks import is_missing
 from greybox_torch.data.readers.table import require
 from greybox_torch.data.readers.text_rows import COMMENTS, DELIMITERS, is_number, rows_of, uncommented
 from greybox_torch.data.readers.time_stamps import is_time_stamp
@@ -21,10 +22,9 @@ from greybox_torch.errors import UserError
 HEAD = 300  # lines among which the line of names stands
 _LONGEST_LINE = 2**20
 _POSITION = re.compile(r"#([1-9]\d{0,5})")
-_MISSING = {"na", "n/a", "null", "none", "-", "--", "?", "missing", "nil", "#n/a"}
-_NO_UNIT = ("1", "-", "--", "–", "—", "none", "n/a", "na")
-"""What stands in a line of units for a column that has none; the first five say that it is a plain number."""
-_UNIT = re.compile(r"[\[(]?[\w°%/·*^².\-–\s]{1,24}[\])]?")
+_NO_UNIT = ("1", "-", "--", "---", "–", "—", "none", "n/a", "na")
+"""What stands in a line of units for a column that has none; the first six say that it is a plain number."""
+_UNIT = re.compile(r"[\[(]?[\w°%/·*^².\-–\s]{1,24}(\(\w{1,6}\))?[\])]?")
 
 
 @dataclass(frozen=True)
@@ -111,8 +111,9 @@ def layout_of(path: Path, file: TextIO, columns: Collection[str]) -> Layout:
 
 
 def _first(rows: list[list[str]], position: int) -> str:
-    """The first cell that is not empty at a position."""
-    return next((row[position].strip() for row in rows if position < len(row) and row[position].strip()), "")
+    """The first cell at a position that is not empty and no mark of a missing sample."""
+    cells = (row[position].strip() for row in rows if position < len(row))
+    return next((cell for cell in cells if cell and not is_missing(cell)), "")
 
 
 def _named(head: list[str], wanted: list[str], numbered: dict[str, int]) -> tuple[str, int, list[str]] | None:
@@ -140,18 +141,20 @@ def _numbered(head: list[str], numbered: dict[str, int]) -> tuple[str, int, list
         row = next((row for _, row in rows_of(iter(head[before:]), delimiter, before, strict=False)), [])
         cells = [cell.strip() for cell in row]
         fits = bool(cells) and all(k < len(cells) for k in numbered.values())
-        whole = all(is_number(cell, delimiter) for cell in cells)
+        whole = all(is_number(cell, delimiter) or is_missing(cell) for cell in cells)
         if fits and whole and (best is None or len(cells) > len(best[2])):
             best = delimiter, 0, cells
     return best
 
 
 def _before_numbers(head: list[str], delimiter: str, positions: dict[str, int]) -> int:
-    """How many lines stand before the first whose cells are numbers at the positions."""
+    """How many lines stand before the first with numbers, whose cells are numbers or marks of missing samples at the positions."""
     for k, text in enumerate(head):
         row = next((row for _, row in rows_of(iter([text]), delimiter, k, strict=False)), [])
         cells = [row[p].strip() for p in positions.values() if p < len(row)]
-        if len(cells) == len(positions) and any(cells) and all(is_number(cell, delimiter) for cell in cells):
+        sampled = any(cell.strip() and is_number(cell.strip(), delimiter) for cell in row)
+        known = all(is_number(cell, delimiter) or is_missing(cell) for cell in cells)
+        if sampled and len(cells) == len(positions) and any(cells) and known:
             return k
     return len(head)
 
@@ -181,12 +184,19 @@ def _units(rows: list[list[str]], positions: dict[str, int]) -> dict[str, str] |
     without a unit have such a mark, text above numbers elsewhere in the line tells that it has units.
     """
     row = [cell.strip() for cell in rows[0]]
+    if any(cell and is_number(cell, "") and cell not in _NO_UNIT for cell in row):
+        return None  # samples, whatever else a logger writes in the place of one
     given = {column: row[p] for column, p in positions.items() if p < len(row) and row[p]}
     if not ((given and all(map(_looks_like_unit, given.values()))) or _are_units(row, rows[1:])):
         return None
-    told = {column: cell.strip("[]() ") for column, cell in given.items()}
-    plain = {column: "1" if unit in _NO_UNIT[:5] else unit for column, unit in told.items()}
-    return {column: unit for column, unit in plain.items() if unit and unit.lower() not in _NO_UNIT[5:]}
+    told = {column: _without_brackets(cell) for column, cell in given.items()}
+    plain = {column: "1" if unit in _NO_UNIT[:6] else unit for column, unit in told.items()}
+    return {column: unit for column, unit in plain.items() if unit and unit.lower() not in _NO_UNIT[6:]}
+
+
+def _without_brackets(cell: str) -> str:
+    """A unit without the brackets around it; those behind it, as of "bar(g)", are its own."""
+    return cell.strip("[]() ") if cell[:1] in "[(" and "(" not in cell[1:] else cell.strip("[] ")
 
 
 def _are_units(row: list[str], beneath: list[list[str]]) -> bool:
@@ -198,7 +208,7 @@ def _are_units(row: list[str], beneath: list[list[str]]) -> bool:
 
 
 def _looks_like_unit(cell: str) -> bool:
-    return not is_number(cell, "") and cell.lower() not in _MISSING and _UNIT.fullmatch(cell) is not None
+    return not is_number(cell, "") and not is_missing(cell) and _UNIT.fullmatch(cell) is not None
 
 
 def _decimal(delimiter: str, rows: list[list[str]], positions: dict[str, int]) -> str:

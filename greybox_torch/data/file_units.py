@@ -1,0 +1,128 @@
+"""The units that a file says beside those that the card says: one of them is wrong where they differ, and nobody else would notice."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from greybox_torch.data.card_channels import ChannelEntry, TimeEntry
+from greybox_torch.data.counts import check_counts, is_count
+from greybox_torch.data.expression import Expression
+from greybox_torch.data.source import Source
+from greybox_torch.data.time_units import unit_of_time
+from greybox_torch.data.understood_units import capitals_alone, other_quantity, understood
+from greybox_torch.data.units import conversion, slip
+from greybox_torch.errors import UserError
+from greybox_torch.files import toml_text
+
+
+def in_unit(entry: ChannelEntry, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values (N,) of a file in the channel's unit; units were checked by :func:`check_units`."""
+    if entry.file_unit is None:
+        return values * entry.scale
+    factor, offset = conversion(_of_rate(entry.file_unit, entry), entry.unit, "file_unit")
+    return values * factor + offset
+
+
+def check_units(
+    place: str, channels: Mapping[str, ChannelEntry], formulas: Mapping[str, Expression], source: Source
+) -> None:
+    """Raises UserError, beginning with `place`, for all channels whose units on the card are not those that their files say."""
+    problems: list[str] = []
+    for name, formula in formulas.items():
+        where = f'channel "{name}"'
+        try:
+            for path, found in _said(source, formula.text).items():
+                _check_unit(where, channels[name], formula, path, found)
+        except UserError as error:
+            problems.append(str(error))
+    if len(problems) == 1:
+        raise UserError(f"{place}, {problems[0]}")
+    if problems:
+        raise UserError(f"{place}: {len(problems)} problems:\n" + "\n".join(f"  {problem}" for problem in problems))
+
+
+def _said(source: Source, column: str) -> dict[Path, str]:
+    """The unit that each of the files says that a column is read from: several that follow each other, or one of those joined in time."""
+    first = source.table(column)
+    tables = source.tables if first in source.tables else (first,)
+    return {table.path: table.units.get(column, "") for table in tables}
+
+
+def _check_unit(place: str, entry: ChannelEntry, formula: Expression, path: Path, found: str) -> None:
+    if "scale" in entry.model_fields_set:  # whoever gives a factor has thought of the unit
+        return
+    column = formula.text
+    check_counts(place, formula, path, found if is_count(found) else entry.file_unit or found, entry.unit)
+    if entry.file_unit is not None:
+        conversion(_of_rate(entry.file_unit, entry), entry.unit, f"{place}, file_unit")
+        _check_file_unit(place, entry, column, path, found)
+        return
+    known = understood(found) if found and entry.unit else ""
+    rate = _of_rate(known, entry)
+    if not known or known == "1" or capitals_alone(found, entry.unit):
+        return
+    said = f'{place}: {path} has column "{column}" in "{found}", the card says "{entry.unit}"'
+    factor = slip(rate, entry.unit)
+    if factor is not None:
+        conversion(rate, entry.unit, place)  # says so where nobody can tell the factor
+        raise UserError(f'{said}; expected file_unit = "{known}" to convert it ({factor:.6g}), or the scale')
+    if entry.unit != "1" and other_quantity(rate, entry.unit):
+        raise UserError(f"{said}; expected another column; or, if the file's unit is wrong, scale = 1.0")
+
+
+def _check_file_unit(place: str, entry: ChannelEntry, column: str, path: Path, found: str) -> None:
+    """Raises UserError where the file says that a column is in another unit than `file_unit`."""
+    known, given = understood(found) if found else "", entry.file_unit or ""
+    if not known or known == "1" or capitals_alone(found, given) or not _differ(known, given):
+        return
+    raise UserError(
+        f'{place}: {path} has column "{column}" in "{found}", the card says file_unit = "{given}"; '
+        f"expected {_instead(known, entry)}; or, if the file's unit is wrong, {_all_the_same(entry, column)} in the place of file_unit"
+    )
+
+
+def _differ(found: str, given: str) -> bool:
+    """Whether two units are known and not the same. Where one may count turns or radians, the card says which."""
+    factor = slip(found, given)
+    return factor == factor if factor is not None else other_quantity(found, given)
+
+
+def _instead(known: str, entry: ChannelEntry) -> str:
+    """What to write if the file is right."""
+    with suppress(UserError):
+        factor, offset = conversion(_of_rate(known, entry), entry.unit, "")
+        same = abs(factor - 1.0) < 1e-9 and offset == 0.0
+        return "no file_unit" if same else f'file_unit = "{known}"'
+    return "another column"
+
+
+def _all_the_same(entry: ChannelEntry, column: str) -> str:
+    """What to write for values in `file_unit` if the card is right: what names no unit of the file is not compared with it."""
+    factor, offset = conversion(_of_rate(entry.file_unit or "", entry), entry.unit, "")
+    if offset == 0.0:
+        return f"scale = {factor:.9g}"
+    name = column if column.isidentifier() else f'col("{column}")'
+    return f"expr = {toml_text(f'{factor:.9g}*{name} {offset:+.9g}')}"
+
+
+def _of_rate(unit: str, entry: ChannelEntry) -> str:
+    """The unit of what a channel is made of its column in `unit`: of its rate, where it is that."""
+    return unit if entry.derivative is None else f"{unit} / s"
+
+
+def check_unit_of_time(path: Path, time: TimeEntry, source: Source, clock: str) -> None:
+    """Raises UserError where a file says another unit of its time stamps than the card at `path`."""
+    for table in (*source.tables, *source.joined):
+        said = table.units.get(clock, "")
+        found = unit_of_time(said)
+        if not found or found == time.unit.replace("µ", "u"):
+            continue
+        raise UserError(
+            f'{path}, time: {table.path} has column "{clock}" in "{said}", the card says "{time.unit}"; '
+            f'expected time = {{ column = "{clock}", unit = "{found}" }}'
+        )

@@ -1,0 +1,155 @@
+"""Which files are of one run: loggers that recorded different signals over the same time, whose files a card joins."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from difflib import SequenceMatcher
+from itertools import combinations
+from pathlib import Path
+
+from greybox_torch.data.processing import at_times
+from greybox_torch.drafting.channels import Drafted, drafted, wanted_of
+from greybox_torch.drafting.clock import Clock
+from greybox_torch.drafting.recorded import Recorded
+from greybox_torch.model import GreyBoxModel
+
+_SAME_TIME = 0.5
+"""Share of the shorter of two files that the other one covers if both are of one run."""
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One experiment: ``files`` that were recorded together, the first of which has the time stamps that count.
+
+    ``whole`` has the columns of all of them at these times, ``table`` the channels that are made of them.
+    """
+
+    files: tuple[Recorded, ...]
+    whole: Recorded
+    clock: Clock
+    table: Drafted
+
+    @property
+    def channels(self) -> set[str]:
+        """Those that a column was found for."""
+        return {draft.name for draft in self.table.channels if draft.column is not None}
+
+    @property
+    def signals(self) -> frozenset[str]:
+        """The columns but for the time stamps."""
+        return frozenset(self.whole.columns) - {self.clock.column or ""}
+
+
+def runs_of(files: Sequence[Recorded], clocks: Sequence[Clock], model: GreyBoxModel | None) -> tuple[Run, ...]:
+    """The runs in the order of their first files: every file is one, unless files of several loggers make up one."""
+    alone = [Run((f,), f, clock, drafted(f, clock, model)) for f, clock in zip(files, clocks, strict=True)]
+    loggers = _by_logger(alone, model)
+    if len(loggers) < 2 or not _may_be_joined(loggers, model):
+        return tuple(alone)
+    first, *others = loggers
+    partners = [_partners(first, other) for other in others]
+    if any(found is None for found in partners):
+        return tuple(alone)
+    together = [[run, *(found[k] for found in partners if found)] for k, run in enumerate(first)]
+    joined = tuple(_joined(of_one, model) for of_one in together)
+    return joined if model is None or _gains(together[0], joined[0]) else tuple(alone)
+
+
+def apart(runs: Sequence[Run]) -> str:
+    """What to do where files that were not joined have different channels of the model, of which none can be simulated; else ""."""
+    for run in runs[1:]:
+        if run.channels - runs[0].channels and len(run.channels) < len(run.table.channels):
+            names = [one.files[0].path.name for one in (runs[0], run)]
+            return (
+                f"[[experiment]]: {names[0]} and {names[1]} have different channels; if they are of one run, one experiment with both: "
+                f'file = ["{names[0]}", "{names[1]}"], join = "time", which needs time stamps in a column of one name and in one unit'
+            )
+    return ""
+
+
+def names_of(runs: Sequence[Run]) -> list[str]:
+    """A name for each: what the names of its files have in common; of one file its name without the ending. Whole paths, where two would
+    be alike.
+    """
+    names = [_common([file.path for file in run.files]) for run in runs]
+    return [n if names.count(n) == 1 else run.files[0].path.as_posix() for n, run in zip(names, runs, strict=True)]
+
+
+def _common(paths: Sequence[Path]) -> str:
+    if len(paths) == 1:
+        return paths[0].stem
+    words = [re.findall(r"[^\W_]+", path.stem) for path in paths]
+    shared = [word for word in words[0] if all(word in other for other in words[1:])]
+    return "_".join(shared) or paths[0].stem
+
+
+def _by_logger(runs: Sequence[Run], model: GreyBoxModel | None) -> list[list[Run]]:
+    """Files with the same columns are of one logger. First the one with most inputs, which are best not interpolated, if all are known."""
+    loggers: dict[frozenset[str], list[Run]] = {}
+    for run in runs:
+        loggers.setdefault(run.signals, []).append(run)
+    inputs = {channel.name for channel in wanted_of(model) if channel.is_input} if model is not None else set[str]()
+    if inputs - {name for run in runs for name in run.channels}:
+        return list(loggers.values())
+    return sorted(loggers.values(), key=lambda of_one: -len(of_one[0].channels & inputs))
+
+
+def _may_be_joined(loggers: Sequence[Sequence[Run]], model: GreyBoxModel | None) -> bool:
+    """Whether all have as many files, time stamps in a column of one name, in one unit, and columns that the others lack."""
+    clocks = {(run.clock.column, run.clock.unit) for of_one in loggers for run in of_one}
+    if len({len(of_one) for of_one in loggers}) > 1 or len(clocks) > 1 or next(iter(clocks))[0] is None:
+        return False
+    pairs = list(combinations([of_one[0].signals for of_one in loggers], 2))
+    if model is None:  # then the columns are all that tells what is one signal
+        return not any(one & other for one, other in pairs)
+    return all(one - other and other - one for one, other in pairs)
+
+
+def _gains(alone: Sequence[Run], joined: Run) -> bool:
+    """Whether joining files finds channels of the model that none of them has; where no column is in two files, and dates tell that they
+    are of one time, whether none has all.
+    """
+    most = max(len(run.channels) for run in alone)
+    dated = all(run.clock.column in run.whole.stamps for run in alone)
+    apart = dated and not any(one.signals & other.signals for one, other in combinations(alone, 2))
+    return len(joined.channels) > most or (apart and most < len(joined.table.channels))
+
+
+def _partners(runs: Sequence[Run], others: Sequence[Run]) -> list[Run] | None:
+    """For each run the one of another logger over the same time; where that leaves several, the one with the likest name. None where that
+    does not tell.
+    """
+    found = [_partner(run, [other for other in others if _at_once(run, other)]) for run in runs]
+    partners = [other for other in found if other is not None]
+    return partners if len(set(map(id, partners))) == len(runs) else None
+
+
+def _partner(run: Run, candidates: Sequence[Run]) -> Run | None:
+    stem = run.files[0].path.stem
+    alike = [SequenceMatcher(None, stem, other.files[0].path.stem).ratio() for other in candidates]
+    best = [other for other, ratio in zip(candidates, alike, strict=True) if ratio == max(alike)]
+    return best[0] if len(best) == 1 else None
+
+
+def _at_once(run: Run, other: Run) -> bool:
+    spans = [(stamps[0], stamps[-1]) for one in (run, other) for stamps in [one.whole.columns[one.clock.column or ""]]]
+    both = min(end for _, end in spans) - max(begin for begin, _ in spans)
+    return both >= _SAME_TIME * min(end - begin for begin, end in spans)
+
+
+def _joined(runs: Sequence[Run], model: GreyBoxModel | None) -> Run:
+    """One run of several files, in which a column is that of the first file that has it, as joining reads it."""
+    first, clock = runs[0].whole, runs[0].clock
+    name = clock.column or ""
+    columns, units = {}, {}
+    for run in runs:
+        stamps = run.whole.columns[name]
+        new = {c: values for c, values in run.whole.columns.items() if c not in columns}
+        columns |= {c: at_times(first.columns[name], stamps, values) for c, values in new.items()}
+        units = {**run.whole.units, **units}
+    files = tuple(run.files[0] for run in runs)
+    faults = {column: fault for file in files for column, fault in file.faults.items()}
+    whole = replace(first, columns=columns, units=units, faults=faults)
+    return Run(files, whole, clock, drafted(whole, clock, model))

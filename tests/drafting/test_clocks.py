@@ -1,0 +1,82 @@
+"""Which column is the clock, and in what unit: dates by their kind, units of time and of pressure as loggers write them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+import greybox_torch as gt
+from greybox_torch.api.card import CardResult
+
+
+def drafted(folder: Path, name: str, stamps: Sequence[str], unit: str = "") -> CardResult:
+    units = [f"{unit};;"] if unit else []
+    rows = [f"{stamp};{k % 7},5;{k % 5},5" for k, stamp in enumerate(stamps)]
+    (folder / "run.csv").write_text("\n".join([f"{name};u;y", *units, *rows]), encoding="utf-8")
+    return gt.card(folder / "run.csv")
+
+
+def dates(*lost: int) -> list[str]:
+    return [f"02.03.2026 06:{k // 6:02}:{k % 6}0" for k in range(120) if k not in lost]
+
+
+@pytest.mark.parametrize("name", ["Zeitstempel", "Datum", "horodatage", "DateTime", "Wann", "A"])
+def test_a_column_of_dates_is_the_clock_whatever_is_lost(tmp_path: Path, name: str) -> None:
+    """Seen: "no column rises from sample to sample" where rows were lost."""
+    card = drafted(tmp_path, name, dates(30, 31, 32, 50))
+    assert f'time = "{name}"    # read in s; steps of 10 s' in card.text and not card.open
+
+
+def test_dates_that_stand_still_are_told_with_the_line(tmp_path: Path) -> None:
+    stamps = dates()
+    stamps[40] = stamps[39]
+    (told,) = drafted(tmp_path, "Wann", stamps).open
+    assert 'column "Wann" does not rise everywhere: line 42 is no later than the one before' in told
+    seconds = [str(k) for k in range(60)]
+    seconds[40] = "39"
+    assert "line 42" in drafted(tmp_path, "time", seconds).open[0]
+    assert "no column rises" in drafted(tmp_path, "temp", seconds).open[0]
+
+
+@pytest.mark.parametrize(
+    ("said", "unit"), [("msec", "ms"), ("millisec", "ms"), ("sec", "s"), ("seconds", "s"), ("µsec", "us")]
+)
+def test_units_of_time(tmp_path: Path, said: str, unit: str) -> None:
+    """Seen: "steps of 2 s" of a file in msec."""
+    card = drafted(tmp_path, "Time", [str(2 * k) for k in range(100)], said)
+    assert f"# read in {unit}; steps of 2 {unit}" in card.text
+    card.save()
+    assert gt.load_dataset(tmp_path / "dataset.toml").channels
+
+
+def test_units_of_pressure_and_what_is_no_unit(tmp_path: Path) -> None:
+    """Seen: "no column fits" alone."""
+
+    class Pipe(gt.GreyBoxModel):
+        states = [gt.State("p", "Pa")]
+        inputs, outputs = [], [gt.Output("supply_pressure", "Pa")]
+
+    for said, line in (("Bar", 'file_unit = "bar"'), ("bar(g)", 'file_unit = "bar"')):
+        rows = [f"{k}\t{k % 7}" for k in range(60)]
+        (tmp_path / "p.txt").write_text("\n".join(["t\tP3", f"s\t{said}", *rows]))
+        assert line in gt.card(tmp_path / "p.txt", Pipe()).text
+    (tmp_path / "p.txt").write_text("\n".join(["t\tDP", "s\tPond", *rows]))
+    assert gt.card(tmp_path / "p.txt", Pipe()).open == (
+        '[channels] supply_pressure: no column fits; left over: DP (of the unknown unit "Pond")',
+    )
+
+
+def test_the_line_of_an_odd_cell_is_told(tmp_path: Path) -> None:
+    """Seen: "without numbers, or of another length"."""
+
+    class Box(gt.GreyBoxModel):
+        states = [gt.State("y", "")]
+        inputs, outputs = [], [gt.Output("y", "")]
+
+    rows = [f"{k},{k if k != 20 else 'OVER'}" for k in range(60)]
+    (tmp_path / "p.csv").write_text("\n".join(["t,y", *rows]))
+    card = gt.card(tmp_path / "p.csv", Box())
+    fault = 'column "y" of p.csv, line 22: found "OVER", expected a number'
+    assert f"# left out: {fault}" in card.text and card.open[1].startswith(fault)

@@ -1,0 +1,100 @@
+"""Files of several loggers that a card joins to one experiment."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import greybox_torch as gt
+from greybox_torch.cli import app
+
+N = 100
+
+
+MODEL = """
+import greybox_torch as gt
+
+
+class Rig(gt.GreyBoxModel):
+    states = [gt.State("x", "m")]
+    inputs, outputs = [gt.Input("torque", "N m")], [gt.Output("position", "m")]
+
+    def derivative(self, x, u, p, port):
+        return {"x": u.torque}
+
+    def output(self, x, u, p):
+        return {"position": x.x}
+"""
+
+
+class Rig(gt.GreyBoxModel):
+    states = [gt.State("position", "m")]
+    inputs, outputs = [gt.Input("valve", "V")], [gt.Output("position", "m"), gt.Output("pressure", "Pa")]
+
+
+def first(path: Path, start: float = 0.0, clock: str = "Time") -> None:
+    rows = [f"{start + 2.0 * k:.1f}\t{np.sin(k):.4f}\t{np.cos(k):.4f}" for k in range(N)]
+    path.write_text("\n".join([f"{clock}\tvalve\tposition", "msec\tV\tmm", *rows]))
+
+
+def second(path: Path, start: float = 0.3) -> None:
+    rows = [f"{start + 2.0 * k:.1f}\t{np.sin(k):.4f}" for k in range(N - 2)]
+    path.write_text("\n".join(["Time\tpressure", "msec\tbar", *rows]))
+
+
+def test_two_loggers_of_several_runs_are_joined(tmp_path: Path) -> None:
+    """Seen: six experiments, each with half of the channels, and "Next: greybox inspect"."""
+    for k in (1, 2, 3):
+        first(tmp_path / f"run0{k}_DAQ1.txt")
+        second(tmp_path / f"run0{k}_DAQ2.txt")
+    card = gt.card(sorted(tmp_path.glob("*.txt"), reverse=True), Rig())
+    assert not card.open and len(card.draft.runs) == 3
+    assert 'file = ["run02_DAQ1.txt", "run02_DAQ2.txt"]\njoin = "time"' in card.text  # the inputs are not interpolated
+    card.save()
+    data = gt.load_dataset(tmp_path / "dataset.toml")
+    assert [(r.name, r.role) for r in data.recordings] == [
+        ("run03", "estimation"), ("run02", "estimation"), ("run01", "validation")
+    ]  # fmt: skip
+    assert np.nanmax(data.recordings[0].signals["pressure"]) > 9e4
+    assert len(card.plot().axes) == 9
+
+
+def test_one_run_without_a_model(tmp_path: Path) -> None:
+    first(tmp_path / "a.txt")
+    second(tmp_path / "b.txt")
+    gt.card([tmp_path / "a.txt", tmp_path / "b.txt"]).save()
+    data = gt.load_dataset(tmp_path / "dataset.toml")
+    assert list(data.channels) == ["valve", "position", "pressure"]
+    assert [r.rows for r in data.recordings] == [(0, 75), (75, 100)]
+
+
+@pytest.mark.parametrize("apart", ["time", "clock", "names"])
+def test_what_may_be_no_run_is_not_joined(tmp_path: Path, apart: str) -> None:
+    first(tmp_path / "a.txt", clock="t" if apart == "clock" else "Time")
+    second(tmp_path / "b.txt", start=1e5 if apart == "time" else 0.3)
+    files = [tmp_path / "a.txt", tmp_path / "b.txt"]
+    if apart == "names":  # which belongs to which?
+        first(tmp_path / "c.txt")
+        second(tmp_path / "d.txt")
+        files += [tmp_path / "c.txt", tmp_path / "d.txt"]
+    card = gt.card(files, Rig())
+    assert 'join = "time"' not in card.text
+    assert 'if they are of one run, one experiment with both: file = ["a.txt", "b.txt"], join = "time"' in card.open[-1]
+
+
+def test_runs_of_one_logger_are_not_joined(tmp_path: Path) -> None:
+    """Whatever their columns are called: none of them lacks a channel."""
+    for name, columns in (("a.csv", "t,valve,position,pressure"), ("b.csv", "t,valve,pos,press")):
+        np.savetxt(tmp_path / name, np.arange(4 * N).reshape(N, 4), "%g", ",", header=columns, comments="")
+    assert "join" not in gt.card([tmp_path / "a.csv", tmp_path / "b.csv"], Rig()).text
+
+
+def test_nothing_is_to_be_inspected_before_the_card_is_filled_in(tmp_path: Path) -> None:
+    first(tmp_path / "a.txt")
+    (tmp_path / "rig.py").write_text(MODEL)
+    done = CliRunner().invoke(app, ["card", str(tmp_path / "a.txt"), "--model", f"{tmp_path / 'rig.py'}:Rig"])
+    assert done.exit_code == 0 and "Next:" not in done.stdout
+    assert "Fill in what is said above; then greybox inspect" in done.stdout
