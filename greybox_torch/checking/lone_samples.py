@@ -13,6 +13,7 @@ from greybox_torch.checking.joined_files import JoinedFiles
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import TIME, read_card
 from greybox_torch.data.data_warning import InASentence
+from greybox_torch.data.over_files import over_files
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.source import source_of
@@ -163,7 +164,8 @@ def _in_its_file(data: DataSet, recording: Recording, name: str, sample: int) ->
         return None
     clock = said.columns.get(TIME, card.time.column) if card.time else None
     needed = [*columns, clock] if clock and said.join == "time" and clock not in columns else columns
-    source = source_of([data.path.parent / file for file in said.file], said.join, needed, clock, read_table)
+    files = [data.path.parent / file for file in said.file]
+    source = source_of(files, said.join, needed, clock, over_files(files, said.join, read_table))
     start, stop = recording.rows
     values = source.columns[columns[0]][start:stop]
     return (source.place(columns[0], start + sample), values) if len(values) == len(recording.time) else None
