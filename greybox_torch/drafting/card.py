@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from greybox_torch.data.gaps import Gap, pieces_around
-from greybox_torch.drafting.channels import Draft, Drafted, drafted
+from greybox_torch.drafting.channels import Draft, Drafted, drafted, wanted_of
 from greybox_torch.drafting.clock import Clock, clock_of
+from greybox_torch.drafting.one_run import perhaps_one_run
 from greybox_torch.drafting.recorded import Recorded, recorded
 from greybox_torch.files import toml_key, toml_text
 from greybox_torch.model import GreyBoxModel
@@ -48,7 +49,8 @@ def draft_card(
     files = tuple(recorded(path) for path in paths)
     given = None if sample_time is None else Clock(sample_time=sample_time, remark="as given")
     clocks = [given or clock_of(file) for file in files]
-    tables = [drafted(file, clock, model) for file, clock in zip(files, clocks, strict=True)]
+    first = drafted(files[0], clocks[0], model)
+    tables = [first, *(drafted(*other, model, first) for other in zip(files[1:], clocks[1:], strict=True))]
     lines = [
         f"name = {toml_text(folder.resolve().name or 'Recordings')}",
         *_clock(clocks[0]),
@@ -63,6 +65,8 @@ def draft_card(
     missing = [f"[channels] {draft.name}: {draft.remark}" for draft in tables[0].channels if draft.column is None]
     if clocks[0].column is None and clocks[0].sample_time is None:
         missing.insert(0, f"sample_time: {clocks[0].remark}")
+    if what_to_do := perhaps_one_run(files, clocks, 2 if model is None else len(wanted_of(model))):
+        missing.append(what_to_do)
     return CardDraft("\n".join(lines) + "\n", files, clocks[0], tables[0].channels, tuple(missing))
 
 

@@ -54,7 +54,7 @@ def clock_of(file: Recorded) -> Clock:
     """The clock of a file, as far as names and numbers tell."""
     rising = {name: values for name, values in file.columns.items() if _rises(values)}
     named = [name for name in rising if named_like_a_clock(name)]
-    other = [name for name in rising if is_clock(rising[name]) and name == next(iter(file.columns))]
+    other = [name for name in rising if is_clock(rising[name]) and _comes_first(name, file)]
     for column in (*named, *other):
         return _clock(column, rising[column], file.units.get(column, ""))
     for name, value in file.numbers.items():
@@ -64,6 +64,11 @@ def clock_of(file: Recorded) -> Clock:
         if value > 0 and _RATE.match(last):
             return Clock(sample_time=1.0 / value, remark=f"1 / {name}, {name} = {value:g} in {file.path.name}")
     return Clock(remark="no column rises from sample to sample, and no number is called Ts, dt or fs")
+
+
+def _comes_first(column: str, file: Recorded) -> bool:
+    """Whether a column is the first of the file, or of a matrix in it, which is where loggers have the time."""
+    return column == next(iter(file.columns)) or column.endswith(("[:, 0]", "[0, :]"))
 
 
 def named_like_a_clock(column: str) -> bool:
