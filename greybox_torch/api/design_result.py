@@ -20,6 +20,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.experiment_design.excitation import Excitation
 from greybox_torch.experiment_design.limits import Limits
+from greybox_torch.in_unit import in_unit
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
@@ -97,7 +98,7 @@ class DesignResult(Result):
         """What the recording is expected to do, in a sentence."""
         kinds = " and ".join(dict.fromkeys(e.kind for e in self.excitations)) + self.as_set_points
         if self.parameter is not None:
-            change = f"from {self.before:.2g} to {self.after:.2g} {self.unit}".rstrip()
+            change = in_unit(f"from {self.before:.2g} to {self.after:.2g}", self.unit)
             return f"{digits(self.seconds, 4)} s of {kinds} are expected to bring the standard deviation of {self.parameter} {change}."
         if not self.expected.decides:
             return (

@@ -42,6 +42,11 @@ AS_GOOD = 1.2
 """Times as much that others may leave and be told with it."""
 
 
+FAR_BETTER_SO = "One of these changes makes it far better: the question is asked with the results"
+NOTHING_CHANGED = "None of these changes makes it far better: the channels seem to be what the card says"
+"""What came of it, in the log."""
+
+
 @dataclass(frozen=True)
 class Change:
     """A channel by which another is read instead, by name, and how a reader is asked; ``sign`` is −1 where that is reversed."""
@@ -72,10 +77,12 @@ def asked_where_poor(
         simulator: makes the one that is needed then.
         progress: is told of it, as it takes as long as a few short refits.
     """
-    if not poor(refit):
+    if not poor(refit) or _beginnings(data) is None or not list(_changes(model)):
         return None
-    progress("The validation fit is poor: short refits with channels exchanged, or of the other sign")
-    return exchanged(data, model, simulator(), mean_fit(held_out_scores(refit)))
+    progress("The validation fit is poor: trying short refits with channels exchanged, or with one of the other sign")
+    question = exchanged(data, model, simulator(), mean_fit(held_out_scores(refit)))
+    progress(FAR_BETTER_SO if question else NOTHING_CHANGED)
+    return question
 
 
 def poor(scores: Sequence[Score]) -> bool:

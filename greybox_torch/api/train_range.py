@@ -11,6 +11,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.estimate.comparison import Comparison
 from greybox_torch.estimate.problem import all_starts_free, make_problem, problem_for
+from greybox_torch.in_unit import in_unit
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.training import Trained
 from greybox_torch.training.learned_force import visited_signals
@@ -38,11 +39,11 @@ class Beyond:
     def sentence(self) -> str:
         """For a reader."""
         (low, high), (least, most) = self.learned, self.visited
-        unit = f" {self.unit}" if self.unit else ""
+        learned = f"{low:.3g} to {in_unit(f'{high:.3g}', self.unit)}"
+        visited = f"{least:.3g} to {in_unit(f'{most:.3g}', self.unit)}"
         return (
             f"In {digits(100 * self.share)} % of the validation samples the network's {self.signal} is outside the range over which it was "
-            f"learned ({low:.3g} to {high:.3g}{unit}; in validation {least:.3g} to {most:.3g}{unit}): what the network says there is "
-            "extrapolated."
+            f"learned ({learned}; in validation {visited}): what the network says there is extrapolated."
         )
 
     def as_json(self) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from rich.console import Console
 from rich.text import Text
@@ -11,7 +11,7 @@ from rich.text import Text
 from greybox_torch.api.scores import print_scores
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.effect import Effect
-from greybox_torch.diagnosis.one_of import Alternative, spoken_at
+from greybox_torch.diagnosis.one_of import spoken_at, with_shares
 from greybox_torch.diagnosis.verdict import STOPPED, Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.tables import print_table
@@ -67,17 +67,34 @@ def moved_table(verdict: Verdict) -> tuple[list[str], list[list[str | float]]]:
 
 
 def notes(verdict: Verdict) -> list[str]:
-    """Whether channels are exchanged, which experiments judge it no longer, where each effect acts, what else it could be, and what
-    remains; where there is none, the evidence for that. Both with what was not tried, where the search was stopped.
+    """Whether channels are exchanged, whether the model is of no use, which experiments judge it no longer, where each effect acts, what
+    else it could be, and what remains; where there is none, the evidence for that. Both with what was not tried, where the search was
+    stopped.
     """
     if not verdict.effects:
-        return [*verdict.asked, *verdict.short_validation, *verdict.evidence, *verdict.not_tried.sentences()]
+        return [
+            *verdict.asked,
+            *verdict.of_no_use,
+            *verdict.short_validation,
+            *verdict.evidence,
+            *verdict.not_tried.sentences(),
+        ]
     stopped = [] if verdict.complete else [STOPPED, *verdict.not_tried.sentences()]
     left = [] if verdict.left is None else [verdict.left.sentence]
     small = [f"Refinement: {refinement.sentence}." for refinement in verdict.refinements]
     by_effect = (line for effect in verdict.effects for line in _notes(effect))
     of_validation = (*verdict.no_longer_validation, *verdict.short_validation)
-    return [*verdict.asked, *of_validation, SIZE, *verdict.made_up, *by_effect, *left, *small, *stopped]
+    return [
+        *verdict.asked,
+        *verdict.of_no_use,
+        *of_validation,
+        SIZE,
+        *verdict.made_up,
+        *by_effect,
+        *left,
+        *small,
+        *stopped,
+    ]
 
 
 def verdict_scores(verdict: Verdict) -> dict[str, tuple[Score, ...]]:
@@ -115,12 +132,8 @@ def _notes(effect: Effect) -> list[str]:
     advice = f"; to tell them apart: {effect.separating_experiment}" if effect.separating_experiment else ""
     together = () if effect.one_of is None else effect.one_of.members
     if effect.one_of is not None:
-        lines.append(f"these recordings do not tell apart: {_listed(together)}{advice}")
+        lines.append(f"{effect.one_of.told}{advice}")
     others = [a for a in effect.alternatives if (a.port, a.mechanism) not in {(m.port, m.mechanism) for m in together}]
     if others:
-        lines.append(f"{head}: it could also be {_listed(others)}{'' if together else advice}")
+        lines.append(f"{head}: it could also be {with_shares(others)}{'' if together else advice}")
     return lines
-
-
-def _listed(hypotheses: Sequence[Alternative]) -> str:
-    return ", ".join(f"{spoken_at(h.mechanism, h.port)} ({h.probability:.2f})" for h in hypotheses)

@@ -14,6 +14,7 @@ from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import TIME, read_card
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.error_values import without_error_values
+from greybox_torch.data.over_files import over_files
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.source import source_of
@@ -165,8 +166,9 @@ def _in_its_file(data: DataSet, recording: Recording, name: str, sample: int) ->
         return None
     clock = said.columns.get(TIME, card.time.column) if card.time else None
     needed = [*columns, clock] if clock and said.join == "time" and clock not in columns else columns
-    read = without_error_values(read_table, card.channels, {name: formula})
-    source = source_of([data.path.parent / file for file in said.file], said.join, needed, clock, read)
+    files = [data.path.parent / file for file in said.file]
+    read = without_error_values(over_files(files, said.join, read_table), card.channels, {name: formula})
+    source = source_of(files, said.join, needed, clock, read)
     start, stop = recording.rows
     values = source.columns[columns[0]][start:stop]
     return (source.place(columns[0], start + sample), values) if len(values) == len(recording.time) else None

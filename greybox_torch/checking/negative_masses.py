@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from greybox_torch.checking.dimensions import dimension_of
 from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.source import Source
+from greybox_torch.in_unit import in_unit
 from greybox_torch.model import GreyBoxModel
 
 _KINDS = {"mass": dimension_of("kg"), "inertia": dimension_of("kg m^2")}
@@ -27,7 +28,7 @@ def negative_masses(
             yield Finding(
                 "warning",
                 "numbers",
-                f"{p.name} begins at {known[p.name]:g} {p.unit}: with a negative {kind} a model runs away",
+                f"{p.name} begins at {in_unit(f'{known[p.name]:g}', p.unit)}: with a negative {kind} a model runs away",
                 f'a value above zero, and a bound: Parameter("{p.name}", …, lower=0.0)',
                 source.file,
                 source.line_of(f'"{p.name}"'),

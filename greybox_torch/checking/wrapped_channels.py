@@ -14,6 +14,7 @@ from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.units import conversion
 from greybox_torch.data.unwrapping import TURNS, turn_within
 from greybox_torch.errors import UserError
+from greybox_torch.in_unit import in_unit
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class WrappedChannel(InASentence):
     def found(self) -> str:
         """What is there, in a sentence."""
         times = "once" if self.count == 1 else f"{self.count} times"
-        turn = f"{self.period:.6g} {self.unit}".rstrip()
+        turn = in_unit(f"{self.period:.6g}", self.unit)
         return (
             f'[[experiment]] "{self.experiment}", channel "{self.channel}": jumps by nearly {turn} within one sample {times}, first '
             f"{self.seconds:.6g} s after the start, as an encoder does that begins anew after a turn; no machine moves so"

@@ -73,23 +73,31 @@ def _findings(console: Console, first: str) -> Callable[[Standing], None]:
     return tell
 
 
+_LAST_NUMBER = re.compile(r"\d+(\.\d+)?(e[+-]?\d+)?$")
+
 LINE_SECONDS = 5.0
 """Time between two lines on the course of a computation that say nothing else new."""
 
 
 def news(write: Callable[[str], None]) -> Callable[[str], None]:
-    """Passes lines on to ``write``, but for those that differ from the last in the number of the iteration alone: one every few seconds."""
+    """Passes lines on to ``write``, but for those that differ from the last in the number of the iteration, or behind the third digit of
+    the number that they end in, alone: one every few seconds.
+    """
     before, due = "", 0.0
 
     def tell(line: str) -> None:
         nonlocal before, due
-        said, now = re.sub(r", iteration \d+:", "", line), time.perf_counter()
+        said, now = _LAST_NUMBER.sub(_in_short, re.sub(r", iteration \d+:", "", line)), time.perf_counter()
         if said == before and now < due:
             return
         before, due = said, now + LINE_SECONDS
         write(line)
 
     return tell
+
+
+def _in_short(number: re.Match[str]) -> str:
+    return f"{float(number[0]):.3g}"
 
 
 @contextmanager

@@ -146,12 +146,13 @@ class ExperimentEntry(Entry):
     """One recording: its file or files, its role, and optionally `rows` ([start, stop], counted from zero, stop left
     out) and columns of its own.
 
-    `join` says how several files belong together: "concatenate", one after the other, or "time", columns matched by their time stamps.
+    `join` says how several files belong together: "concatenate", one after the other, "time", columns matched by their time stamps, or
+    "rows", samples of one number side by side; a column by its position is then counted over the columns of all files.
     """
 
     name: Text
     file: Annotated[list[Text], Field(min_length=1, max_length=1000)]
-    join: Literal["concatenate", "time"] | None = None
+    join: Literal["concatenate", "time", "rows"] | None = None
     role: Literal["estimation", "validation"] = "estimation"
     rows: Annotated[list[int], Field(min_length=2, max_length=2)] | None = None
     columns: dict[str, Text] = {}
@@ -170,7 +171,7 @@ class ExperimentEntry(Entry):
     def _joined(self) -> Self:
         if len(self.file) > 1 and self.join is None:
             raise ValueError(
-                'several files are given without "join"; expected join = "concatenate" (one after the other) '
-                'or "time" (columns matched by their time stamps)'
+                'several files are given without "join"; expected join = "concatenate" (one after the other), '
+                '"time" (columns matched by their time stamps) or "rows" (samples of one number side by side)'
             )
         return self

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -114,3 +115,12 @@ def _from_objects(values: NDArray, place: str) -> NDArray[np.float64]:
         except (TypeError, ValueError, OverflowError) as error:
             raise UserError(f"{place}, sample {index[0]} (the first is 0): {error}; expected a number") from None
     return found
+
+
+def check_same_length(columns: Mapping[str, NDArray[np.float64]], file: Path) -> dict[str, NDArray[np.float64]]:
+    """The columns (N,) of a file. Raises UserError where they differ in length."""
+    lengths = {column: len(values) for column, values in columns.items()}
+    if len(set(lengths.values())) > 1:
+        found = ", ".join(f'"{column}" has {length}' for column, length in lengths.items())
+        raise UserError(f"{file}: columns differ in length: {found}; expected as many samples in each")
+    return dict(columns)

@@ -117,7 +117,7 @@ def _of_rate(unit: str, entry: ChannelEntry) -> str:
 
 def check_unit_of_time(path: Path, time: TimeEntry, source: Source, clock: str) -> None:
     """Raises UserError where a file says another unit of its time stamps than the card at `path`."""
-    for table in (*source.tables, *source.joined):
+    for table in source.every:
         said = table.units.get(clock, "")
         found = unit_of_time(said)
         if not found or found == time.unit.replace("µ", "u"):

@@ -20,6 +20,7 @@ from greybox_torch.data.expression import Expression
 from greybox_torch.data.file_units import check_unit_of_time, check_units, in_unit
 from greybox_torch.data.gaps import longest_gap, without_gaps
 from greybox_torch.data.missing import where_missing
+from greybox_torch.data.over_files import over_files
 from greybox_torch.data.processing import at_times, decimated, derivative, even_grid
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.recording import Channel, Recording
@@ -60,11 +61,10 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     files = [path.parent / file for file in experiment.file]
     clock = None if card.time is None else experiment.columns.get(TIME, card.time.column)
     formulas = {name: entry.expression(experiment.columns.get(name)) for name, entry in card.channels.items()}
-    needed = [column for formula in formulas.values() for column in formula.columns]
-    needed += [clock] if clock else []
+    needed = [*(c for formula in formulas.values() for c in formula.columns), *([clock] if clock else [])]
     others = [path.parent / file for other in card.experiment if other is not experiment for file in other.file[:1]]
     with asked_for(place, formulas, clock, others, read):
-        known = without_error_values(read, card.channels, formulas)
+        known = without_error_values(over_files(files, experiment.join, read), card.channels, formulas)
         source = source_of(files, experiment.join, list(dict.fromkeys(needed)), clock, known)
     start, stop = _rows(place, source, experiment.rows)
     check_length(stop - start, place)

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from greybox_torch.data.checks import check_finite, check_time
+from greybox_torch.data.checks import check_finite, check_same_length, check_time
 from greybox_torch.data.gaps import in_gaps, lost_samples
+from greybox_torch.data.joined_rows import joined_rows
 from greybox_torch.data.processing import at_times
 from greybox_torch.data.readers.table import NoSuchColumn, Table
 from greybox_torch.errors import UserError
@@ -25,16 +26,20 @@ _SHOWN = 3
 class Source:
     """Columns (N,) as they stand in the tables, which follow each other; `notes` say what was done to join them.
 
-    `joined` are the tables, with time stamps of their own, whose columns were brought to the times of the first.
+    `joined` are the tables, with time stamps of their own, whose columns were brought to the times of the first; `beside` those whose
+    samples stand beside those of the first.
     """
 
     tables: tuple[Table, ...]
     columns: dict[str, NDArray[np.float64]]
     notes: tuple[str, ...] = ()
     joined: tuple[Table, ...] = ()
+    beside: tuple[Table, ...] = ()
 
     def place(self, column: str, sample: int) -> str:
         """Where a sample stands, to begin a message with."""
+        if self.beside:
+            return self.table(column).place(column, sample)
         for table in self.tables[:-1]:
             length = len(next(iter(table.columns.values())))
             if sample < length:
@@ -44,30 +49,41 @@ class Source:
 
     def table(self, column: str) -> Table:
         """The first one that has a column."""
-        return next((table for table in (*self.tables, *self.joined) if column in table.columns), self.tables[0])
+        return next((table for table in self.every if column in table.columns), self.tables[0])
+
+    @property
+    def every(self) -> tuple[Table, ...]:
+        """All tables, of whatever join."""
+        return (*self.tables, *self.joined, *self.beside)
 
 
 def source_of(files: Sequence[Path], join: str | None, columns: Sequence[str], time: str | None, read: Read) -> Source:
     """The columns from the files.
 
     Args:
-        join: "concatenate" or "time" where there are several.
+        join: "concatenate", "time" or "rows" where there are several.
         time: the column of time stamps; None where samples are even.
 
     Raises:
-        UserError: as the readers do; columns of different length; files to be joined in time where there are no time stamps.
+        UserError: as the readers do; columns of different length; files to be joined in time where there are no time stamps; files of
+            different length whose rows are to be joined.
     """
     if len(files) == 1:
         table = read(files[0], tuple(columns))
-        return Source((table,), _same_length(table), table.notes)
+        return Source((table,), check_same_length(table.columns, table.path), table.notes)
     if join == "concatenate":
         tables = tuple(read(file, tuple(columns)) for file in files)
-        held = [_same_length(table) for table in tables]
+        held = [check_same_length(table.columns, table.path) for table in tables]
         joined = {column: np.concatenate([one[column] for one in held]) for column in columns}
         return Source(tables, joined, tuple(dict.fromkeys(note for table in tables for note in table.notes)))
+    if join == "rows":
+        tables, held = joined_rows(files, columns, time, read)
+        notes = tuple(dict.fromkeys(note for table in tables for note in table.notes))
+        return Source(tables[:1], held, notes, beside=tables[1:])
     if time is None:
         raise UserError(
-            f'{files[0]}: join = "time" needs time stamps; expected time = "<column>" at the top of the card'
+            f'{files[0]}: join = "time" needs time stamps; expected time = "<column>" at the top of the card, or, for files whose samples '
+            'were taken together, join = "rows"'
         )
     return _joined_in_time(files, columns, time, read)
 
@@ -77,7 +93,7 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
     lacking, tables, held, notes = [c for c in columns if c != time], [], {}, []
     for file in files:
         table = _what_there_is(file, lacking, time, read)
-        own = _same_length(table)
+        own = check_same_length(table.columns, table.path)
         notes += table.notes
         check_time(own[time], lambda sample, table=table: table.place(time, sample))
         if not tables:
@@ -125,11 +141,3 @@ def _what_there_is(file: Path, columns: Sequence[str], time: str, read: Read) ->
             if error.column not in wanted:
                 raise
             wanted.remove(error.column)
-
-
-def _same_length(table: Table) -> dict[str, NDArray[np.float64]]:
-    lengths = {column: len(values) for column, values in table.columns.items()}
-    if len(set(lengths.values())) > 1:
-        found = ", ".join(f'"{column}" has {length}' for column, length in lengths.items())
-        raise UserError(f"{table.path}: columns differ in length: {found}; expected as many samples in each")
-    return dict(table.columns)

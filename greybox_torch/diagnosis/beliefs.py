@@ -51,6 +51,11 @@ class Beliefs:
         """Whether an effect is not to be considered."""
         return self.weight(attachment) == 0.0
 
+    @property
+    def exclude_some(self) -> bool:
+        """Whether any hypothesis is excluded."""
+        return 0.0 in self.given.values()
+
     def exclude_all(self, model: GreyBoxModel) -> bool:
         """Whether no mechanism of the library, and no curve, is left at any port of a model."""
         laws = {**LIBRARY, Unknown.name: Unknown}

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
+
+MUCH_LIKELIER = 5.0
+"""Times as probable as another that the likeliest has to be for the two to be no longer "not told apart"."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +40,36 @@ class OneOf:
         first = self.members[0]
         named = self.statement.startswith(spoken(first.mechanism))
         return f"{'the first' if named else spoken_at(first.mechanism, first.port)} {first.probability:.2f}"
+
+    @property
+    def not_told_apart(self) -> tuple[Alternative, ...]:
+        """The likeliest member, and those that are not much less likely."""
+        return tuple(m for m in self.members if MUCH_LIKELIER * m.probability >= self.members[0].probability)
+
+    @property
+    def not_ruled_out(self) -> tuple[Alternative, ...]:
+        """The others. Seen: "do not tell apart: sensor lag (0.85), input lag (0.02)", which contradicts itself."""
+        return tuple(m for m in self.members if m not in self.not_told_apart)
+
+    @property
+    def told(self) -> str:
+        """What the recordings say of the members, without a full stop."""
+        alike, others = self.not_told_apart, self.not_ruled_out
+        if not others:
+            return f"these recordings do not tell apart: {with_shares(alike)}"
+        if len(alike) == 1:
+            return (
+                f"by far the likeliest is {with_shares(alike)}; these recordings do not rule out {with_shares(others)}"
+            )
+        return f"these recordings do not tell apart: {with_shares(alike)}; less likely, and not ruled out: {with_shares(others)}"
+
+    @property
+    def in_brief(self) -> str:
+        """The same by the number of laws, as a sentence."""
+        alike, others = len(self.not_told_apart), len(self.not_ruled_out)
+        if alike == 1:
+            return f"One law is by far the likeliest; these recordings do not rule out {others} {'other' if others == 1 else 'others'}."
+        return f"These recordings do not tell {alike} laws apart{f', and do not rule out {others} more' if others else ''}."
 
     def as_json(self) -> dict[str, Any]:
         """Its entry `one_of`."""
@@ -71,3 +105,8 @@ def spoken(mechanism: str) -> str:
 def spoken_at(mechanism: str, port: str) -> str:
     """A mechanism and its place as a sentence has them."""
     return f"{spoken(mechanism)} at {port}"
+
+
+def with_shares(hypotheses: Sequence[Alternative]) -> str:
+    """Hypotheses as a list, each with its probability."""
+    return ", ".join(f"{spoken_at(h.mechanism, h.port)} ({h.probability:.2f})" for h in hypotheses)

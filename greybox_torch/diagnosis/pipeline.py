@@ -22,6 +22,7 @@ from greybox_torch.diagnosis.describe.left import what_is_left
 from greybox_torch.diagnosis.describe.ranking import ranking
 from greybox_torch.diagnosis.describe.residual_tests import detect
 from greybox_torch.diagnosis.describe.rivals import Rival, rivals
+from greybox_torch.diagnosis.describe.unsure import unsure_candidate
 from greybox_torch.diagnosis.describe.without_a_name import A_DISTURBANCE, error_without_a_name, is_missing
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.findings import Findings
@@ -201,6 +202,7 @@ def _as_found(
         inputs=report_data.inputs(judged),
         no_longer_validation=report_data.no_longer_validation(dataset, found.dataset),
         too_short=report_data.too_short_to_choose(found.dataset, state.plain, study.settings),
+        unsure=unsure_candidate(state, study.settings),
         short_validation=report_data.too_short_to_judge(dataset, judged, effects),
         parameters=report_data.parameters(judged, bool(effects)),
         complete=found.complete,

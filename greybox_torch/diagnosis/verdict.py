@@ -10,6 +10,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.effect import Effect
+from greybox_torch.diagnosis.of_no_use import of_no_use
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.parts import small_parts
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
@@ -148,6 +149,8 @@ class Verdict:
     """A sentence where the validation experiments are short beside those of estimation or beside times of the machine."""
     too_short: str = ""
     """A clause where the recordings to choose with are too short to tell anything from chance."""
+    unsure: str = ""
+    """A clause where something would explain much of what nothing explains, and is not sure."""
     question: str | None = None
     """Whether channels are exchanged or turned, without its full stop, where that would explain much of the mismatch."""
     settings: DiagnosisSettings = DiagnosisSettings()
@@ -170,7 +173,8 @@ class Verdict:
         """The verdict in one sentence."""
         if not self.effects:
             known = (self.unexplained, mostly_in(self.counted("refit")), self.looked, self.complete, self.too_short)
-            return WithoutEffects(self.model, self.confidence, *known).sentence
+            tried = (self.beliefs.exclude_some, self.unsure)
+            return WithoutEffects(self.model, self.confidence, *known, *tried).sentence
         parts = [e.headline for e in self.effects]
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
         start = "The mismatch is" if all(e.one_of is None for e in self.effects) else "The mismatch:"
@@ -181,6 +185,12 @@ class Verdict:
         """A sentence where the sizes of several effects are much less together than what these account for together."""
         left = None if self.left is None else self.left.share
         return small_parts([(e.mechanism, e.port, e.size) for e in (*self.effects, *self.refinements)], left)
+
+    @property
+    def of_no_use(self) -> tuple[str, ...]:
+        """A sentence where something is missing and the model recommended simulates the validation experiments worse than a constant."""
+        effects = bool(self.effects)
+        return of_no_use(self.counted("augmented" if effects else "refit"), effects) if self.mismatch else ()
 
     @property
     def asked(self) -> tuple[str, ...]:

@@ -16,7 +16,8 @@ class WithoutEffects:
 
     ``unexplained``: how many times the noise the error is, None where that is not clearly more; ``output`` in which it is, where in one;
     ``looked`` and ``complete``: whether anything was looked for, and to the end; ``too_short``: a clause where the recordings to
-    choose with are too short to tell anything from chance, else "".
+    choose with are too short to tell anything from chance, else "". ``excluded``: whether beliefs kept some laws from being tried.
+    ``unsure``: a clause on a candidate that would explain much of it and is not sure, else "".
     """
 
     model: str
@@ -26,6 +27,8 @@ class WithoutEffects:
     looked: bool
     complete: bool
     too_short: str = ""
+    excluded: bool = False
+    unsure: str = ""
 
     @property
     def sentence(self) -> str:
@@ -50,5 +53,10 @@ class WithoutEffects:
         if self.too_short:
             return f"What it is cannot be told: {self.too_short}."
         if not self.complete:
-            return "The search was stopped before it could say what."
-        return "No law of the library and no curve of one signal explains it, with or without memory."
+            so_far = f": so far, {self.unsure}" if self.unsure else ""
+            return f"The search was stopped before it could say what{so_far}."
+        surely = "surely explains" if self.unsure else "explains"
+        said = f"No law of the library and no curve of one signal {surely} it, with or without memory"
+        if self.excluded:
+            said = f"None of the laws and curves that were tried {surely} it (the beliefs exclude others)"
+        return f"{said}: {self.unsure}." if self.unsure else f"{said}."

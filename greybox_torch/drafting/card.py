@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from greybox_torch.data.gaps import Gap, pieces_around
-from greybox_torch.drafting.channels import Draft, Drafted
+from greybox_torch.drafting.channels import Draft, Drafted, wanted_of
 from greybox_torch.drafting.clock import Clock, clock_of
+from greybox_torch.drafting.one_run import perhaps_one_run
 from greybox_torch.drafting.recorded import Recorded, recorded
 from greybox_torch.drafting.runs import Run, apart, names_of, runs_of
 from greybox_torch.files import toml_key, toml_text
@@ -70,6 +71,8 @@ def draft_card(
         missing += filter(None, [apart(runs)])
     if first.clock.column is None and first.clock.sample_time is None:
         missing.insert(0, f"sample_time: {first.clock.remark}")
+    if what_to_do := perhaps_one_run(files, clocks, 2 if model is None else len(wanted_of(model))):
+        missing.append(what_to_do)
     return CardDraft("\n".join(lines) + "\n", files, runs, first.clock, first.table.channels, tuple(missing))
 
 

@@ -13,6 +13,7 @@ from greybox_torch.data.units import slip
 from greybox_torch.data.unwrapping import turn_within, unwrapped
 from greybox_torch.drafting.clock import SECONDS, Clock
 from greybox_torch.drafting.column_units import unit_in, without_ending, without_unit
+from greybox_torch.drafting.likened import likened
 from greybox_torch.drafting.magnitudes import slips
 from greybox_torch.drafting.matching import Wanted, letter_unit, matched, words
 from greybox_torch.drafting.recorded import Recorded
@@ -43,6 +44,11 @@ class Drafted:
     channels: tuple[Draft, ...]
     others: tuple[str, ...] = field(default_factory=tuple)
 
+    @property
+    def columns(self) -> dict[str, str]:
+        """By channel, of those that one was found for."""
+        return {draft.name: draft.column for draft in self.channels if draft.column is not None}
+
 
 def wanted_of(model: GreyBoxModel) -> list[Wanted]:
     """The inputs and outputs of a model."""
@@ -52,16 +58,25 @@ def wanted_of(model: GreyBoxModel) -> list[Wanted]:
     ]
 
 
-def drafted(file: Recorded, clock: Clock, model: GreyBoxModel | None) -> Drafted:
-    """Columns matched with the model's inputs and outputs; without a model, every column a channel of its own name."""
+def drafted(file: Recorded, clock: Clock, model: GreyBoxModel | None, first: Drafted | None = None) -> Drafted:
+    """Columns matched with the model's inputs and outputs; without a model, every column a channel of its own name.
+
+    Args:
+        first: the channels of the first file, where this is a further one: its columns may have those names with something added.
+    """
     columns = [name for name in file.columns if name != clock.column]
     said = {name: unit for name in columns if (unit := file.units.get(name, "") or unit_in(name))}
     units = {name: understood(unit) or unit for name, unit in said.items()}
+    alike = likened(first.columns, columns) if first is not None else {}
+    if model is None and alike:
+        own = tuple(Draft(channel, units.get(name, ""), name) for channel, name in alike.items())
+        return Drafted(own, tuple(name for name in columns if name not in alike.values()))
     if model is None:
         return Drafted(tuple(Draft(_channel_name(name), units.get(name, ""), name) for name in columns))
     wanted = wanted_of(model)
     bare = _bare(columns)
     found = {channel: bare[name] for channel, name in matched(wanted, list(bare), _by(bare, units)).items()}
+    found |= alike
     found |= {channel: other for channel, column in found.items() if (other := _counting_on(file, column, columns))}
     suspected = _suspected(file, clock, model, wanted, found)
     channels = tuple(_draft(channel, found, units, suspected, columns) for channel in wanted)

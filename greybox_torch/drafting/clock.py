@@ -59,7 +59,7 @@ def clock_of(file: Recorded) -> Clock:
     """The clock of a file, as far as names and numbers tell."""
     rising = {name: values for name, values in file.columns.items() if _rises(values)}
     named = [name for name in rising if name in file.stamps or named_like_a_clock(name)]
-    other = [name for name in rising if is_clock(rising[name]) and name == next(iter(file.columns))]
+    other = [name for name in rising if is_clock(rising[name]) and _comes_first(name, file)]
     for column in (*named, *other):
         return _clock(column, rising[column], file.units.get(column, ""))
     for name, value in file.numbers.items():
@@ -79,6 +79,11 @@ def _none_rises(file: Recorded) -> str:
         if len(falls) and (name in file.stamps or nearly):
             return f'column "{name}" does not rise everywhere: {file.where(int(falls[0]) + 1)} is no later than the one before'
     return "no column rises from sample to sample"
+
+
+def _comes_first(column: str, file: Recorded) -> bool:
+    """Whether a column is the first of the file, or of a matrix in it, which is where loggers have the time."""
+    return column == next(iter(file.columns)) or column.endswith(("[:, 0]", "[0, :]"))
 
 
 def named_like_a_clock(column: str) -> bool:

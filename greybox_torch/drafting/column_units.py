@@ -14,6 +14,8 @@ _ENDINGS = {
     "kv": "kV", "kj": "kJ", "hz": "Hz", "khz": "kHz", "hpa": "hPa", "kpa": "kPa", "mpa": "MPa", "mbar": "mbar",
     "kmh": "km/h", "kph": "km/h",
 }  # fmt: skip
+_GLUED = re.compile(r"([uyUY])([A-Za-z]{2,4})")
+"""An input or output by its letter, and perhaps its unit: yrad beside y, which holds counts."""
 _AS_WRITTEN = ("mN", "MN", "mW", "MW", "mJ", "MJ", "Pa")
 """Units of which small letters would be another one, or no unit. A letter alone is none: x_m was measured, F_N is normal to something."""
 
@@ -23,6 +25,8 @@ def unit_in(column: str) -> str:
     bracketed = _BRACKETS.search(column)
     if bracketed and is_unit(bracketed[1]) and not bracketed[1].isdigit():
         return bracketed[1]
+    if glued := _GLUED.fullmatch(column):
+        return _ENDINGS.get(glued[2].lower(), "")
     _, underscore, last = column.rpartition("_")
     if not underscore:
         return ""
@@ -38,4 +42,6 @@ def without_unit(column: str) -> str:
 def without_ending(column: str) -> str:
     """The name without its unit, in brackets or behind the last underscore."""
     bare = without_unit(column)
+    if (glued := _GLUED.fullmatch(column)) and unit_in(column):
+        return glued[1]
     return column.rpartition("_")[0] if bare == column and unit_in(column) and "_" in column[1:] else bare

@@ -9,6 +9,7 @@ from difflib import SequenceMatcher
 
 from greybox_torch.data.counts import is_angle, is_count, named_as_count
 from greybox_torch.data.units import conversion
+from greybox_torch.drafting.column_units import without_ending
 from greybox_torch.errors import UserError
 
 _WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
@@ -96,7 +97,8 @@ def _score(channel: Wanted, column: str, unit: str, wanted: Sequence[Wanted]) ->
     if not _numbers(mine):  # Position4 of the fourth joint may well be the position
         theirs = [word for word in theirs if not word.isdigit()]
     score = 0.6 * _overlap(mine, theirs) + 0.4 * SequenceMatcher(None, one, other).ratio()
-    if other in ("u", "y") and (other == "u") == channel.is_input:
+    letter = without_ending(other)
+    if letter in ("u", "y") and (letter == "u") == channel.is_input:
         alone = sum(w.is_input == channel.is_input for w in wanted) == 1
         score = max(score, 0.9 if alone else 0.0)
     if _numbers(mine) and _numbers(theirs) and _numbers(mine) != _numbers(theirs):

@@ -44,7 +44,9 @@ class Run:
 
 def runs_of(files: Sequence[Recorded], clocks: Sequence[Clock], model: GreyBoxModel | None) -> tuple[Run, ...]:
     """The runs in the order of their first files: every file is one, unless files of several loggers make up one."""
-    alone = [Run((f,), f, clock, drafted(f, clock, model)) for f, clock in zip(files, clocks, strict=True)]
+    first = drafted(files[0], clocks[0], model)
+    further = [drafted(*other, model, first) for other in zip(files[1:], clocks[1:], strict=True)]
+    alone = [Run((f,), f, c, table) for f, c, table in zip(files, clocks, [first, *further], strict=True)]
     loggers = _by_logger(alone, model)
     if len(loggers) < 2 or not _may_be_joined(loggers, model):
         return tuple(alone)

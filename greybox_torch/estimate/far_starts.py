@@ -8,6 +8,7 @@ import numpy as np
 
 from greybox_torch.estimate.measured_range import noise_of
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.in_unit import in_unit
 from greybox_torch.model.sensed_states import sensed_states
 
 NOISE_AT_MOST = 6.0
@@ -44,9 +45,7 @@ def far_starts(problem: Problem, given: Collection[str] = ()) -> list[str]:
             values = records.y[[o.name for o in model.outputs].index(shown[state.name]), records.span(e)]
             sample, noise = float(values[0]), noise_of(values)
             if np.isfinite(sample) and abs(problem.initial[e, i] - sample) > _at_most(values, noise):
-                far.append(
-                    f"{state.name} at {problem.initial[e, i]:.4g} {state.unit}".rstrip() + _beside(sample, noise)
-                )
+                far.append(in_unit(f"{state.name} at {problem.initial[e, i]:.4g}", state.unit) + _beside(sample, noise))
         if far:
             told.append(f"{name} is begun with {', '.join(far)}")
     return told

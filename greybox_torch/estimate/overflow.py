@@ -11,6 +11,7 @@ from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.termination import Outcome, Termination
+from greybox_torch.in_unit import in_unit
 from greybox_torch.name_lists import listed
 from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.simulator import Simulator
@@ -45,8 +46,7 @@ class Suggestion:
     unit: str
 
     def __str__(self) -> str:
-        unit = f" {self.unit}" if self.unit else ""
-        return f"{self.name} = {self.value:.5g}{unit} (now {self.before:.5g})"
+        return f"{self.name} = {in_unit(f'{self.value:.5g}', self.unit)} (now {self.before:.5g})"
 
 
 def overflows(problem: Problem, simulated: Sequence[np.ndarray]) -> tuple[Overflow, ...]:

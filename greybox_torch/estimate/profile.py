@@ -19,6 +19,7 @@ from greybox_torch.errors import ArgumentError, did_you_mean
 from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, minimise
+from greybox_torch.in_unit import in_unit
 from greybox_torch.linear_algebra import least_squares
 from greybox_torch.simulation.simulator import Simulator
 
@@ -69,13 +70,12 @@ class Profile:
     @property
     def sentence(self) -> str:
         """The interval in words."""
-        unit = f" {self.unit}" if self.unit else ""
-        low, high = f"{self.lower:.5g}{unit}", f"{self.upper:.5g}{unit}"
+        low, high = (in_unit(f"{end:.5g}", self.unit) for end in (self.lower, self.upper))
         ends = [self.values[0], self.values[-1]]
         reached = [np.isfinite(self.lower), np.isfinite(self.upper)]
         within = f"within the {LEVEL:.0%} level".replace("%", " %")
         tried = [
-            f"{end:.5g}{unit}, {'its bound' if bound else 'as far as was tried'}"
+            f"{in_unit(f'{end:.5g}', self.unit)}, {'its bound' if bound else 'as far as was tried'}"
             for bound, end in zip((self.lower_bound, self.upper_bound), ends, strict=True)
         ]
         if all(reached):
@@ -88,7 +88,7 @@ class Profile:
             text = f"not determined: the cost stays {within} from {tried[0]}, up to {tried[1]}"
         better = self.values[np.argmin(self.rise)]
         if self.rise.min() < -0.1:
-            text += f"; the cost is lower at {better:.5g}{unit} than at the estimate: start the fit from there"
+            text += f"; the cost is lower at {in_unit(f'{better:.5g}', self.unit)} than at the estimate: start the fit from there"
         return f"{self.name}: {text}"
 
 

@@ -80,19 +80,21 @@ def fit(value: float, digits: int = 1) -> str:
 
 
 def unit(text: str) -> str:
-    """A unit as it is printed: `N m/(rad/s)^2` becomes N·m/(rad/s)²."""
+    """A unit as it is printed: `N m/(rad/s)^2` becomes N·m/(rad/s)², and "1", that of plain numbers, nothing."""
+    if text == "1":
+        return ""
     raised = re.sub(r"\^(-?\d+)", lambda found: found.group(1).translate(_SUPERSCRIPT), text)
     return re.sub(r"\s+", "·", raised.strip())
 
 
 def with_unit(text: str, of: str) -> str:
     """A number with its unit; a unit that is empty adds nothing."""
-    return f"{text} {unit(of)}" if of else text
+    return f"{text} {unit(of)}".rstrip()
 
 
 def axis(name: str, of: str) -> str:
     """A label for an axis: the quantity and its unit."""
-    return f"{words(name)} [{unit(of)}]" if of else words(name)
+    return f"{words(name)} [{unit(of)}]" if unit(of) else words(name)
 
 
 def words(name: str) -> str:

@@ -11,6 +11,7 @@ import greybox_torch as gt
 from greybox_torch.api import exchanged
 from greybox_torch.api.exchanged import MOST_ALIKE, MOST_SAMPLES
 from greybox_torch.api.verdict_summary import notes
+from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.sections.headline import Headline
 
 COUNT, STEP = 400, 2.0
@@ -128,3 +129,15 @@ def test_many_channels_of_one_unit_are_not_exchanged_one_by_one() -> None:
 
     assert sum("exchanged" in one for one in asked(few)) == MOST_ALIKE
     assert len(asked(many)) == 22 and all("sign" in one for one in asked(many))
+
+
+@pytest.mark.parametrize("found", [None, "Are the columns exchanged"])
+def test_the_log_says_what_came_of_it(found: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seen: "The validation fit is poor: short refits with channels exchanged, or of the other sign", and no more of it."""
+    told: list[str] = []
+    monkeypatch.setattr(exchanged, "exchanged", lambda *given: found)
+    data = gt.DataSet([recorded(role, k, {}, {}) for k, role in enumerate(("estimation", "validation"))])
+    poor = [Score("1", "validation", "T1", 20.0, 1.0)]
+    assert exchanged.asked_where_poor(data, Plate(), poor, lambda: None, told.append) == found  # pyright: ignore
+    assert told[0].startswith("The validation fit is poor: trying short refits")
+    assert told[1:] == [exchanged.FAR_BETTER_SO if found else exchanged.NOTHING_CHANGED]

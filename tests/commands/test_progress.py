@@ -38,3 +38,20 @@ def test_a_line_that_says_nothing_new_is_left_out(monkeypatch: pytest.MonkeyPatc
         "whole records, iteration 5: mean squared error 0.35",  # after five seconds
         "windows of 20 samples, iteration 1: mean squared error 0.35",
     ]
+
+
+def test_a_change_behind_the_third_digit_is_nothing_new(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seen: more than a hundred lines of a descent that changed in the fifth digit."""
+    told: list[str] = []
+    monkeypatch.setattr(progress.time, "perf_counter", lambda: 0.0)
+    tell = news(told.append)
+    for iteration, error in enumerate(
+        ("7.50187e-05", "7.50063e-05", "7.49799e-05", "4.38706e-05", "4.38568e-05"), start=1
+    ):
+        tell(f"whole records, iteration {iteration}: mean squared error {error}")
+    tell("interrupted: the estimate is kept")
+    assert told == [
+        "whole records, iteration 1: mean squared error 7.50187e-05",
+        "whole records, iteration 4: mean squared error 4.38706e-05",
+        "interrupted: the estimate is kept",
+    ]

@@ -79,7 +79,7 @@ FAULTS = [
     (A, "file = []", "expected the name of a file"),
     (A, "file = ['a.csv', 'a.csv']", 'several files are given without "join"'),
     (A, "file = ['a.csv', 'a.csv']\njoin = 'time'", 'join = "time" needs time stamps'),
-    (A, "file = 'a.csv'\njoin = 'append'", "join: found \"append\", expected 'concatenate' or 'time'"),
+    (A, "file = 'a.csv'\njoin = 'append'", "join: found \"append\", expected 'concatenate', 'time' or 'rows'"),
     (A, A + '\ncolumns = { volt = "u" }', 'no channel is named "volt" (did you mean "voltage"?)'),
     (A, A + '\ncolumns = { time = "t" }', '"time" needs time ='),
     (A, A + "\ncolumns = { voltage = 3 }", "no column #3"),

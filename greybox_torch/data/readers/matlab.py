@@ -35,17 +35,19 @@ def is_hdf5(path: Path) -> bool:
 
 
 def values_of(path: Path) -> dict[str, Any]:
-    """All variables of a file of version 4 to 7. Raises what a damaged file makes readers raise."""
+    """All variables of a file of version 4 to 7 but that without a name, in which MATLAB keeps what objects of classes hold. Raises what a
+    damaged file makes readers raise.
+    """
     if not is_version_5(path):
         return {name: value for name, value in _version_4(path).items() if not name.startswith("__")}
     held = variables_of(path)
-    return {name: held.value(name) for name in held.places}
+    return {name: held.value(name) for name in held.places if name}
 
 
 def _read_v5(path: Path, columns: Collection[str]) -> Table:
     try:
         held = variables_of(path) if is_version_5(path) else None
-        found = _version_4(path) if held is None else dict.fromkeys(held.places)
+        found = _version_4(path) if held is None else dict.fromkeys(name for name in held.places if name)
         roots = {column: root_of(column, found) for column in columns}
         require(path, [column for column, root in roots.items() if root not in found], list(found))
         values = {root: found[root] if held is None else held.value(root) for root in dict.fromkeys(roots.values())}

@@ -31,6 +31,7 @@ from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.notes import at_bounds
+from greybox_torch.in_unit import in_unit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.unknown import Unknown
@@ -105,7 +106,8 @@ def _effect(
     timelines = () if gain is None else gain.timelines
     mechanism, around = attachment.mechanism, study.surroundings[attachment.port]
     curve = settled_curve(attachment, around, final) or over_data(study, state.current, attachment, final.problem)
-    members = None if taken is None else one_of(model.base, taken, probability, study.settings, study.beliefs)
+    told = (study.settings, study.beliefs, final.values())
+    members = None if taken is None else one_of(model.base, taken, probability, *told)
     parameters, own = _parameters(model, attachment, final), f"{attachment.prefix}."
     named = partial(signal_name, model.base, site)
     return Effect(
@@ -202,6 +204,6 @@ def where(profiles: Sequence[Profile], timelines: Sequence[Timeline]) -> str:
         return where((), timelines)
     return (
         f"{100 * share:.0f} % of what it explains lies within "
-        + f"{low:.3g} < {first.signal} < {high:.3g} {first.unit}".rstrip()
+        + in_unit(f"{low:.3g} < {first.signal} < {high:.3g}", first.unit)
         + (f", strongest in {strongest}" if strongest else "")
     )

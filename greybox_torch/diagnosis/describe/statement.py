@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from greybox_torch.diagnosis.one_of import spoken, spoken_at
+from greybox_torch.in_unit import in_unit
 
 TIME_SHIFT = "a time shift"
 """The nature of delays and lags, which have a statement of their own."""
@@ -74,4 +75,4 @@ def _either(names: Iterable[str]) -> str:
 def _with_unit(value: float, unit: str) -> str:
     if unit == "s" and 0 < value < 0.1:
         return f"{1e3 * value:.2g} ms"
-    return f"{value:.2g} {unit}".rstrip()
+    return in_unit(f"{value:.2g}", unit)

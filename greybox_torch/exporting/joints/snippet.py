@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from xml.etree.ElementTree import Comment, Element, indent, tostring
 
 from greybox_torch.exporting.joints.counterpart import Attribute, Counterpart, Unsaid
+from greybox_torch.in_unit import in_unit
 from greybox_torch.model import GreyBoxModel
 
 
@@ -36,7 +37,7 @@ def shown(value: Attribute) -> str:
 def own_values(model: GreyBoxModel) -> str:
     """A sentence with the values of the model without effects: masses, inertias and springs are the simulation's."""
     values, units = model.values(), {p.name: p.unit for p in model.plain.declared_parameters}
-    told = ", ".join(f"{name} = {values[name]:.6g} {unit}".rstrip() for name, unit in units.items())
+    told = ", ".join(in_unit(f"{name} = {values[name]:.6g}", unit) for name, unit in units.items())
     return f"The model without effects holds {told}: compare them with what this simulation has."
 
 

@@ -31,9 +31,8 @@ def _card(sheets: Sheets, card: Card) -> None:
     name = card.statement or f"{card.title} at {card.port}"
     sheets.text(f"{name} (probability {card.probability:.2f})", 11.0, bold=True)
     if card.statement:
-        alike = sum(share.together for share in card.shares) + 1
         likely = f"The likeliest is {card.title.lower()} at {card.port}, and the model has that one."
-        sheets.text(f"These recordings do not tell {alike} laws apart. {likely}")
+        sheets.text(f"{card.alike} {likely}")
     sheets.text(card.explanation)
     sheets.gap(4.0)
     rows = [[(plain(row.symbol), row.description), (f"{row.value} {row.unit}".strip(), "")] for row in card.parameters]

@@ -46,12 +46,15 @@ class Share:
 
 @dataclass(frozen=True)
 class Card:
-    """An effect as its card shows it; ``statement`` where it stands for several that cannot be told apart, with their ``probability``.
-    ``explained`` is empty beside further effects and refinements, among which the explained error is divided by the order of the search."""
+    """An effect as its card shows it; ``statement`` where it stands for several that cannot be told apart, with their ``probability``
+    and a sentence (``alike``). ``explained`` is empty beside further effects and refinements, among which the explained error is divided by
+    the order of the search.
+    """
 
     title: str
     port: str
     statement: str
+    alike: str
     probability: float
     explanation: str
     where: str
@@ -94,6 +97,7 @@ def _card(effect: Effect, shown: Responses | None, alone: bool) -> Card:
         title=_unknown_title(effect) if unknown else text.first_capital(text.mechanism(effect.mechanism)),
         port=effect.port,
         statement="" if effect.one_of is None else text.first_capital(effect.one_of.statement),
+        alike="" if effect.one_of is None else effect.one_of.in_brief,
         probability=effect.probability if effect.one_of is None else effect.one_of.probability,
         explanation=effect.explanation,
         where=effect.where,

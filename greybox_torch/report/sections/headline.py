@@ -43,7 +43,7 @@ class Headline:
         if verdict.mismatch or (verdict.complete and verdict.looked):
             figures.append(_confidence(verdict))
         told = (verdict.dataset, verdict.model, verdict.sentence, answer, tuple(figures))
-        beside = (*verdict.asked, *verdict.no_longer_validation, *verdict.short_validation)
+        beside = (*verdict.asked, *verdict.of_no_use, *verdict.no_longer_validation, *verdict.short_validation)
         return cls(*told, verdict.complete, verdict.not_tried.sentences(), beside)
 
 
@@ -86,7 +86,7 @@ def _errors(verdict: Verdict) -> list[Figure]:
         of = units(verdict).get(output, "")
         before, after = (text.number(pooled(held_out(verdict, m, output))) for m in ("refit", "augmented"))
         label = f"Validation error of {text.words(output)}"
-        note = f"root mean square, {text.unit(of)}" if of else "root mean square"
+        note = f"root mean square, {text.unit(of)}" if text.unit(of) else "root mean square"
         figures.append(Figure(label, before if verdict.effects else "", after if verdict.effects else before, note))
     return figures
 

@@ -108,7 +108,7 @@ def _panel(found: Spectra) -> Panel:
     y = logarithmic(*found.density.values(), most_decades=MOST_DECADES)
     marks = tuple(line(x, y, found.frequency, density, name) for name, density in found.density.items())
     squared = f"{found.unit}^2" if found.unit.isalpha() else f"({found.unit})^2"
-    unit = f"{squared}/Hz" if found.unit else "1/Hz"
+    unit = f"{squared}/Hz" if found.unit not in ("", "1") else "1/Hz"
     alt = f"Spectrum of the error of {text.words(found.output)} on logarithmic axes. {_told(found)}"
     return Panel(x, y, "frequency [Hz]", text.axis(f"power density of {found.output}", unit), marks, alt, "tall")
 

@@ -20,16 +20,23 @@ SETTINGS = DiagnosisSettings()
 
 @pytest.fixture
 def told(stub, monkeypatch):
-    """What is told of the first of some hypotheses: (port, law, share, divergence from the first) each."""
+    """What is told of the first of some hypotheses: (port, law, share, divergence from the first) each, with ``sizes`` that their first
+    parameters have in the step, and ``values`` in the recommended model.
+    """
 
-    def make(*hypotheses, probability=0.6):
+    def fitted(stub, port, law, away, size):
+        name = f"{Attachment(port, law).prefix}.F_c"
+        parameters = () if size is None else (stub(name=name, unit="N m"),)
+        return stub(away=away, values=lambda: {name: size}, model=stub(declared_parameters=parameters))
+
+    def make(*hypotheses, probability=0.6, sizes=(), values=None):
         ranked = [
             stub(
                 candidate=stub(attachment=Attachment(port, law)),
                 unknown=isinstance(law, Unknown),
-                fitted=stub(away=away, values=lambda: {}, model=stub(declared_parameters=())),
+                fitted=fitted(stub, port, law, away, sizes[k] if sizes else None),
             )
-            for port, law, _, away in hypotheses
+            for k, (port, law, _, away) in enumerate(hypotheses)
         ]
         pairs = [(r, h[2]) for r, h in zip(ranked[1:], hypotheses[1:], strict=True)]
         told_shares = {r.candidate.attachment.named: p for r, p in pairs}
@@ -38,7 +45,7 @@ def told(stub, monkeypatch):
         monkeypatch.setattr(indistinguishable, "divergence", lambda one, other: other.away)
         ports = [stub(name=name, kind="body") for name in ("motor", "arm")]
         step = SelectionStep((), stub(), tuple(ranked), ranked[0])
-        return one_of(stub(all_ports=ports), step, probability, SETTINGS)
+        return one_of(stub(all_ports=ports), step, probability, SETTINGS, values=values)
 
     return make
 
@@ -99,3 +106,13 @@ def test_curves_are_no_rivals_and_have_none(told) -> None:
 def test_no_more_is_claimed_than_the_most_that_ever_is(told) -> None:
     found = told(("motor", CoulombFriction(), 0.6, 0.0), ("arm", CoulombFriction(), 0.6, 0.0))
     assert found is not None and found.probability == SETTINGS.highest_probability
+
+
+def test_the_size_is_that_of_the_recommended_model(told) -> None:
+    pair = (("motor", CoulombFriction(), 0.5, 0.0), ("arm", CoulombFriction(), 0.5, 0.0))
+    before = told(*pair, probability=0.5, sizes=(0.002, 0.003))
+    assert before is not None and before.statement == "dry friction of about 0.0025 N m at motor or arm"
+    found = told(*pair, probability=0.5, sizes=(0.002, 0.003), values={"motor.coulomb_friction.F_c": 0.004})
+    assert found is not None and found.statement == "dry friction of about 0.005 N m at motor or arm"
+    gone = told(*pair, sizes=(0.002, 0.003), values={"motor.coulomb_friction.F_c": 0.0})
+    assert gone is not None and gone.statement == "dry friction at motor or arm"

@@ -1,0 +1,27 @@
+"""A model that simulates the validation experiments worse than a constant would, whatever was found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from greybox_torch.estimate.comparison import Score, mean_fit
+
+
+def of_no_use(scores: Sequence[Score], effects: bool) -> tuple[str, ...]:
+    """A sentence where the mean fit of the recommended model on the validation experiments is negative; none elsewhere.
+
+    A law may explain most of the error over windows, which begin anew, and a free run of it still go elsewhere. Seen: "94.9 % of the
+    mismatch explained" beside a validation fit of -94 %, and not a word of it.
+    """
+    judging = [s for s in scores if s.role == "validation"]
+    fit = mean_fit(judging) if judging else 0.0
+    if fit >= 0.0:
+        return ()
+    which = "The model with what was found" if effects else "The model as it stands, re-estimated,"
+    how = f"validation fit {fit:.1f} %" if np.isfinite(fit) else "a run of it overflows"
+    whatever = ", however much of the error over windows is explained" if effects else ""
+    return (
+        f"{which} simulates the validation experiments worse than a constant would ({how}): it is of no use for predicting them{whatever}.",
+    )

@@ -1,0 +1,32 @@
+"""Why what is missing has no name: no more is denied than was tried, and what was nearly found is told."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from greybox_torch.diagnosis.beliefs import Beliefs
+from tests.diagnosis.test_verdict import verdict
+
+MISSING = replace(verdict(), unexplained=12.0)
+UNSURE = "gravity at arm would lower its mean square by 89 %, but is 2.4 standard errors from chance"
+
+
+def test_all_was_tried() -> None:
+    assert MISSING.sentence.endswith(
+        "No law of the library and no curve of one signal explains it, with or without memory."
+    )
+
+
+def test_of_laws_that_beliefs_exclude_nothing_is_said() -> None:
+    """Seen: "no curve of one signal explains it" beside beliefs that exclude all curves."""
+    told = replace(MISSING, beliefs=Beliefs({"*/unknown": 0.0})).sentence
+    assert told.endswith("None of the laws and curves that were tried explains it (the beliefs exclude others).")
+    assert "No law of the library" in replace(MISSING, beliefs=Beliefs({"*/unknown": 0.1})).sentence
+
+
+def test_a_candidate_that_is_not_sure_is_told_in_the_sentence() -> None:
+    """Seen: "no law explains it", and four lines below that gravity would lower the error by 89 %."""
+    told = replace(MISSING, unsure=UNSURE).sentence
+    assert told.endswith(f"no curve of one signal surely explains it, with or without memory: {UNSURE}.")
+    stopped = replace(MISSING, unsure=UNSURE, complete=False).sentence
+    assert stopped.endswith(f"The search was stopped before it could say what: so far, {UNSURE}.")

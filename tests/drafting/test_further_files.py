@@ -1,0 +1,90 @@
+"""Cards for files that name their columns differently, have a matrix with its time in the first column, or belong together."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.io
+
+import greybox_torch as gt
+from greybox_torch.drafting.likened import likened
+
+N = 100
+T = 0.02 * np.arange(N)
+V, Q = np.sin(T), np.cos(3 * T)
+
+
+class Arm(gt.GreyBoxModel):
+    """An arm with its angle measured."""
+
+    states = (gt.State("angle", "rad"), gt.State("speed", "rad/s"))
+    inputs = (gt.Input("voltage", "V"),)
+    outputs = (gt.Output("angle", "rad"),)
+    parameters = (gt.Parameter("k", 1.0),)
+
+    def derivative(self, x, u, p, port):
+        return {"angle": x.speed, "speed": p.k * u.voltage}
+
+    def output(self, x, u, p):
+        return {"angle": x.angle}
+
+
+def test_an_angle_with_its_unit_goes_before_counts_and_the_second_file_has_the_same_names_with_an_ending(
+    tmp_path: Path,
+) -> None:
+    """Seen: y, which are counts, taken for an angle in rad, though yrad was beside it; and uval, yradval of the second file not at all."""
+    counts = (1000 * Q).astype(np.uint16)
+    scipy.io.savemat(tmp_path / "a.mat", {"i": V, "u": V, "y": counts, "yrad": Q, "yradde": Q})
+    scipy.io.savemat(
+        tmp_path / "b.mat", {"ival": V, "uval": V, "uvalde": V, "yradval": Q, "yradvalde": Q, "yval": counts}
+    )
+    drafted = gt.card([tmp_path / "a.mat", tmp_path / "b.mat"], Arm(), sample_time=0.02)
+    assert {row["channel"]: row["column"] for row in drafted.rows} == {"voltage": "u", "angle": "yrad"}
+    assert 'columns = { voltage = "uval", angle = "yradval" }' in drafted.text
+    drafted.save()
+    loaded = gt.load_dataset(drafted.path)
+    np.testing.assert_allclose(loaded.recordings[1].signals["angle"], Q)
+
+
+def test_a_unit_that_follows_the_letter_of_an_output_is_converted(tmp_path: Path) -> None:
+    scipy.io.savemat(tmp_path / "a.mat", {"u": V, "ydeg": Q})
+    drafted = gt.card(tmp_path / "a.mat", Arm(), sample_time=0.02)
+    assert 'column = "ydeg", unit = "rad", file_unit = "deg"' in drafted.text
+
+
+@pytest.mark.parametrize(
+    ("columns", "found"),
+    [
+        (["uval", "uvalde", "yval"], {"v": "uval", "w": "yval"}),
+        (["val_u", "val_y", "t"], {"v": "val_u", "w": "val_y"}),
+        (["u", "yval"], {}),
+        (["uval", "y2"], {}),
+        ([], {}),
+    ],
+)
+def test_columns_with_one_ending_or_beginning(columns: list[str], found: dict[str, str]) -> None:
+    assert likened({"v": "u", "w": "y"}, columns) == found
+
+
+def test_the_first_column_of_a_matrix_may_be_the_time(tmp_path: Path) -> None:
+    """Seen: "no column rises from sample to sample", of a matrix whose first column was 0, 0.001, 0.002 …"""
+    scipy.io.savemat(tmp_path / "a.mat", {"Iz": Q, "data": np.column_stack([T, V, Q])})
+    drafted = gt.card(tmp_path / "a.mat")
+    assert drafted.draft.clock.column == "data[:, 0]" and not drafted.open
+
+
+def test_input_and_output_in_files_of_their_own_are_told(tmp_path: Path) -> None:
+    """Seen: two files of one column each drafted as two experiments of one channel, without a word."""
+    for name, values in (("in", V), ("out", Q)):
+        (tmp_path / f"{name}.csv").write_text("\n".join(f"{v:.9g}" for v in values))
+    files = [tmp_path / "in.csv", tmp_path / "out.csv"]
+    for drafted in (gt.card(files), gt.card(files, Arm())):
+        (told,) = (line for line in drafted.open if "one run" in line)
+        assert (
+            'file = ["in.csv", "out.csv"], join = "rows", and their columns by position: column = 1 to column = 2'
+            in told
+        )
+    (tmp_path / "out.csv").write_text("\n".join(f"{v:.9g}" for v in Q[:-1]))
+    assert not any("one run" in line for line in gt.card(files).open)
