@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from os import PathLike
 from pathlib import Path
@@ -93,7 +93,16 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
         rows=(start, stop) if len(done.time) == stop - start else (0, len(done.time)),
         units={name: entry.unit for name, entry in card.channels.items()},
         notes=(*source.notes, *done.notes),
+        between=_between(source, formulas, (start, stop)) if len(done.time) == stop - start else {},
     )
+
+
+def _between(source: Source, formulas: Mapping[str, Expression], rows: tuple[int, int]) -> dict[str, NDArray[np.bool_]]:
+    """By channel, the samples at which one of its columns lies between samples of a slower file."""
+    of = {
+        name: [source.between[c] for c in formula.columns if c in source.between] for name, formula in formulas.items()
+    }
+    return {name: np.any(columns, axis=0)[slice(*rows)] for name, columns in of.items() if columns}
 
 
 def _rows(place: str, source: Source, rows: list[int] | None) -> tuple[int, int]:

@@ -38,6 +38,23 @@ def at_times(times: Samples, stamps: Samples, values: Samples) -> Samples:
     return np.where(stamps[exact] == times, values[exact], found)
 
 
+_SLOWER = 1.5
+"""Times as long steps from which samples of another file stand for a measurement only where they were taken."""
+
+
+def between_samples(times: Samples, stamps: Samples) -> NDArray[np.bool_] | None:
+    """Which of `times` are not the nearest to any of the slower `stamps`; None where those are not slower.
+
+    A straight line between two samples has their noise once, not in every sample: what is judged by noise would count it as many times.
+    """
+    if len(times) < 2 or len(stamps) < 2 or np.median(np.diff(stamps)) < _SLOWER * np.median(np.diff(times)):
+        return None
+    after = np.clip(np.searchsorted(times, stamps), 1, len(times) - 1)
+    nearest = after - (stamps - times[after - 1] < times[after] - stamps)
+    inside = (stamps >= times[0]) & (stamps <= times[-1])
+    return ~np.isin(np.arange(len(times)), nearest[inside])
+
+
 def _missing(sample: int) -> str:
     return f"sample {sample} (the first is 0) is missing; expected no gap where a derivative is asked for"
 

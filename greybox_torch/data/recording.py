@@ -32,7 +32,8 @@ class Recording:
     experiment's `time`, in seconds, or the mean one where rounding alone tells steps apart, as that of dates in seconds since 1970.
     `rows` is the half-open slice of the file `source` that the recording stands for; `source` is None where there is no file, and
     `further` are those that were joined to it. `units` are by channel, where they are known. `notes` say what was done to
-    the file's samples, or what is remarkable about their time stamps.
+    the file's samples, or what is remarkable about their time stamps. `between`, by channel, marks the samples (N,) that lie on straight
+    lines between those of a slower file: an output was not measured there.
 
     All arrays are read-only, and no change to what they were made from reaches them.
     """
@@ -47,12 +48,18 @@ class Recording:
     units: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     further: tuple[Path, ...] = ()
+    between: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         own = {"time": _read_only(self.time), "signals": {n: _read_only(v) for n, v in self.signals.items()}}
         own |= {"units": dict(self.units), "rows": self.rows if self.rows != (0, 0) else (0, len(self.time))}
         for name, value in own.items():
             object.__setattr__(self, name, value)
+
+    def measured(self, channel: str) -> NDArray[np.float64]:
+        """Samples (N,) of an output, NaN where none was measured."""
+        values, between = self.signals[channel], self.between.get(channel)
+        return values if between is None or len(between) != len(values) else np.where(between, np.nan, values)
 
     @classmethod
     def from_arrays(
@@ -157,6 +164,7 @@ class Recording:
             time=self.time[start:stop],
             signals={channel: values[start:stop] for channel, values in self.signals.items()},
             rows=(self.rows[0] + start, self.rows[0] + stop),
+            between={channel: marked[start:stop] for channel, marked in self.between.items()},
         )
 
 

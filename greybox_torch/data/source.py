@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from greybox_torch.data.checks import check_finite, check_same_length, check_time
 from greybox_torch.data.gaps import in_gaps, lost_samples
 from greybox_torch.data.joined_rows import joined_rows
-from greybox_torch.data.processing import at_times
+from greybox_torch.data.processing import at_times, between_samples
 from greybox_torch.data.readers.table import NoSuchColumn, Table
 from greybox_torch.errors import UserError
 
@@ -27,7 +27,7 @@ class Source:
     """Columns (N,) as they stand in the tables, which follow each other; `notes` say what was done to join them.
 
     `joined` are the tables, with time stamps of their own, whose columns were brought to the times of the first; `beside` those whose
-    samples stand beside those of the first.
+    samples stand beside those of the first. `between`, by column, marks the samples that lie between those of a slower file.
     """
 
     tables: tuple[Table, ...]
@@ -35,6 +35,7 @@ class Source:
     notes: tuple[str, ...] = ()
     joined: tuple[Table, ...] = ()
     beside: tuple[Table, ...] = ()
+    between: dict[str, NDArray[np.bool_]] = field(default_factory=dict)
 
     def place(self, column: str, sample: int) -> str:
         """Where a sample stands, to begin a message with."""
@@ -90,7 +91,7 @@ def source_of(files: Sequence[Path], join: str | None, columns: Sequence[str], t
 
 def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, read: Read) -> Source:
     """Every column from the first file that has it, at the time stamps of the first file; missing where its own file has a gap."""
-    lacking, tables, held, notes = [c for c in columns if c != time], [], {}, []
+    lacking, tables, held, notes, between = [c for c in columns if c != time], [], {}, [], {}
     for file in files:
         table = _what_there_is(file, lacking, time, read)
         own = check_same_length(table.columns, table.path)
@@ -102,19 +103,22 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
             unknown = in_gaps(held[time], own[time])
             across = ", and missing across its gaps" if unknown.any() else ""
             across = f"{_also_across_lost(table, own[time])}{across}"
+            of_none = between_samples(held[time], own[time])
+            slower = "" if of_none is None else "; as an output it counts at its own samples alone"
             for column in own:
                 if column != time:
                     check_finite(own[column], lambda sample, table=table, column=column: table.place(column, sample))
                     held[column] = np.where(unknown, np.nan, at_times(held[time], own[time], own[column]))
                     notes.append(
-                        f'column "{column}" is from {file.name}, joined in time on straight lines between its samples{across}'
+                        f'column "{column}" is from {file.name}, joined in time on straight lines between its samples{across}{slower}'
                     )
+                    between |= {} if of_none is None else {column: of_none}
         tables.append(table)
         lacking = [column for column in lacking if column not in own]
     if lacking:
         names = ", ".join(file.name for file in files)
         raise NoSuchColumn(f'{files[0]}: no column "{lacking[0]}"; it is in none of {names}', lacking[0])
-    return Source((tables[0],), held, tuple(notes), tuple(tables[1:]))
+    return Source((tables[0],), held, tuple(notes), tuple(tables[1:]), between=between)
 
 
 def _also_across_lost(table: Table, stamps: NDArray[np.float64]) -> str:

@@ -74,7 +74,7 @@ class Residuals:
 
 def residuals_of(recording: Recording, output: Channel, simulated: np.ndarray, inputs: Sequence[str]) -> Residuals:
     """Measured less ``simulated`` (N,), and what that says with regard to the ``inputs`` named."""
-    errors = recording.signals[output.name] - simulated
+    errors = recording.measured(output.name) - simulated
     correlations = {name: input_correlation(errors, recording.signals[name]) for name in inputs}
     return Residuals(recording, output, errors, whiteness(errors), correlations)
 

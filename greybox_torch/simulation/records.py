@@ -79,7 +79,7 @@ def make_records(dataset: DataSet, model: GreyBoxModel, recordings: Sequence[Rec
     lengths = np.array([len(r.time) for r in recordings])
     first = np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(np.int64)
     u = [[_held(r.signals[i.name]) for r in recordings] for i in model.inputs]
-    y = [[r.signals[o.name] for r in recordings] for o in model.outputs]
+    y = [[r.measured(o.name) for r in recordings] for o in model.outputs]
     dt = [np.append(steps_of(r.time), r.sample_time) for r in recordings]
     total = int(lengths.sum())
     return Records(

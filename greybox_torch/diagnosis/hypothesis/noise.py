@@ -92,15 +92,24 @@ def _measured_floor(records: Records, weights: np.ndarray, order: int) -> float:
 
 def output_floors(problem: Problem, settings: DiagnosisSettings) -> np.ndarray:
     """The variance (E, n_y) of white sensor noise by the high-frequency floor of every output, in its unit; NaN where unknown."""
-    factor, records = float((_binomial(settings.noise_differences) ** 2).sum()), problem.records
+    records, order = problem.records, settings.noise_differences
+    spans = [records.span(e) for e in range(len(records.first))]
+    found = np.array([[_rough(y, order) for y in records.y[:, span]] for span in spans])
+    found /= float((_binomial(order) ** 2).sum())
+    return found if problem.most_noise is None else np.minimum(found, problem.most_noise)
+
+
+def _rough(y: np.ndarray, order: int) -> float:
+    """The mean square of the differences of samples (N,) in a row; NaN where there are none.
+
+    Of a slower file no two samples in a row are there: then of those that are.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # an output that is missing throughout an experiment
-        rough = [
-            np.diff(records.y[:, records.span(e)], settings.noise_differences, axis=1)
-            for e in range(len(records.first))
-        ]
-        found = np.array([np.nanmean(r**2, axis=1) for r in rough]) / factor
-    return found if problem.most_noise is None else np.minimum(found, problem.most_noise)
+        in_a_row = np.diff(y, order)
+        if np.isnan(in_a_row).all():
+            in_a_row = np.diff(y[~np.isnan(y)], order)
+        return float(np.nanmean(in_a_row**2))
 
 
 def _over_experiments(problem: Problem, settings: DiagnosisSettings) -> np.ndarray:
