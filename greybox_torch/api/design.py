@@ -15,6 +15,7 @@ from greybox_torch.api.design_result import DesignResult
 from greybox_torch.api.diagnosis_result import DiagnosisResult
 from greybox_torch.api.expected import Expected
 from greybox_torch.api.hypotheses import Hypotheses, Kept, hypotheses_of, left_out_told, read_hypotheses, to_tell_apart
+from greybox_torch.api.inseparable import same_as_first, told_one_effect
 from greybox_torch.api.nothing_open import group_in_question
 from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
 from greybox_torch.estimate.problem import with_card
@@ -165,7 +166,9 @@ def _result(
         assert best.nats is not None
         nats = best.nats
         random = _by_random_inputs(aim, limits, time, best, seed)
-        left_out = left_out_told(to_tell_apart(held)[1])
+        group, others = to_tell_apart(held)
+        same = same_as_first(group)
+        left_out = (*([f"{told_one_effect(same)}."] if len(same) > 1 else ()), *left_out_told(others))
     else:
         one = aim.contenders[0]
         after = aim.deviation_after(along[0][0], 0)

@@ -11,7 +11,7 @@ from rich.text import Text
 from greybox_torch.api.scores import print_scores
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.effect import Effect
-from greybox_torch.diagnosis.one_of import Alternative, spoken_at
+from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken_at
 from greybox_torch.diagnosis.verdict import STOPPED, Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.tables import print_table
@@ -112,15 +112,26 @@ def _notes(effect: Effect) -> list[str]:
     lines += [f"{head}: {effect.where}"] if effect.where else []
     lines += [f"{head}: {effect.bounded}"] if effect.bounded else []
     lines += [f"{head}: {effect.undetermined}"] if effect.undetermined else []
-    advice = f"; to tell them apart: {effect.separating_experiment}" if effect.separating_experiment else ""
     together = () if effect.one_of is None else effect.one_of.members
+    advice = f"; to tell them apart: {effect.separating_experiment}" if effect.separating_experiment else ""
     if effect.one_of is not None:
-        lines.append(f"these recordings do not tell apart: {_listed(together)}{advice}")
+        lines.append(f"these recordings do not tell apart: {_listed(together)}{_told_apart(effect.one_of, advice)}")
     others = [a for a in effect.alternatives if (a.port, a.mechanism) not in {(m.port, m.mechanism) for m in together}]
     if others:
         lines.append(f"{head}: it could also be {_listed(others)}{'' if together else advice}")
     return lines
 
 
+def _told_apart(whole: OneOf, advice: str) -> str:
+    """What tells the members apart: a recording, or none where they are one effect in the model."""
+    same = f"; {whole.told_one_effect}" if whole.one_effect else ""
+    if not whole.separable:
+        return same
+    return f"{same}{advice.replace('them', 'the others', 1)}" if same else advice
+
+
 def _listed(hypotheses: Sequence[Alternative]) -> str:
-    return ", ".join(f"{spoken_at(h.mechanism, h.port)} ({h.probability:.2f})" for h in hypotheses)
+    return ", ".join(
+        f"{spoken_at(h.mechanism, h.port)} ({', '.join(filter(None, [f'{h.probability:.2f}', h.told_value]))})"
+        for h in hypotheses
+    )

@@ -107,6 +107,8 @@ def _effect(
     curve = settled_curve(attachment, around, final) or over_data(study, state.current, attachment, final.problem)
     members = None if taken is None else one_of(model.base, taken, probability, study.settings, study.beliefs)
     parameters, own = _parameters(model, attachment, final), f"{attachment.prefix}."
+    if members is not None and (first := parameters.get(members.members[0].parameter)):
+        members = members.finding_with(first["value"])
     named = partial(signal_name, model.base, site)
     return Effect(
         port=attachment.port,

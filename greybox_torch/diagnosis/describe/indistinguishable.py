@@ -10,7 +10,7 @@ from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.select.posterior import shares, told_of
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
-from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.one_effect import one_effect
 from greybox_torch.model import GreyBoxModel
 
 
@@ -52,7 +52,7 @@ def one_of(
     if len(named) == 1:
         return None
     members = tuple(_member(model, candidate, share) for candidate, share in named)
-    alternatives = tuple(Alternative(m.port, m.mechanism, m.probability) for m in members)
+    alternatives = tuple(_told(taken, r, member) for (r, _), member in zip(named, members, strict=True))
     return OneOf(
         statement(members),
         round(min(sum(round(share, 4) for _, share in found), settings.highest_probability), 4),
@@ -63,7 +63,7 @@ def one_of(
 def _member(model: GreyBoxModel, candidate: RankedCandidate, probability: float) -> Member:
     attachment = candidate.candidate.attachment
     site = next(p for p in model.all_ports if p.name == attachment.port)
-    size, unit = _size(candidate, attachment)
+    _, size, unit = _first_parameter(candidate)
     return Member(
         attachment.port,
         attachment.mechanism.name,
@@ -76,8 +76,18 @@ def _member(model: GreyBoxModel, candidate: RankedCandidate, probability: float)
     )
 
 
-def _size(candidate: RankedCandidate, attachment: Attachment) -> tuple[float | None, str]:
-    """The first parameter of a law with its unit, which is what it is mostly about: a time, a force, a gain."""
-    prefix = f"{attachment.prefix}."
+def _told(taken: RankedCandidate, candidate: RankedCandidate, member: Member) -> Alternative:
+    """The member as a verdict has it, with its value, and whether it is one effect with the finding."""
+    name, value, unit = _first_parameter(candidate)
+    own, its = taken.fitted, candidate.fitted
+    same = candidate is not taken and one_effect(own.model, its.model, own.values(), its.values())
+    return Alternative(member.port, member.mechanism, member.probability, name, value, unit, same)
+
+
+def _first_parameter(candidate: RankedCandidate) -> tuple[str, float | None, str]:
+    """The name, value and unit of a law's first parameter, which is what it is mostly about: a time, a force, a gain."""
+    prefix = f"{candidate.candidate.attachment.prefix}."
     own = [p for p in candidate.fitted.model.declared_parameters if p.name.startswith(prefix)]
-    return (candidate.fitted.values()[own[0].name], own[0].unit) if own else (None, "")
+    if not own:
+        return "", None, ""
+    return own[0].name.removeprefix(prefix), candidate.fitted.values()[own[0].name], own[0].unit
