@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import greybox_torch as gt
-from greybox_torch.api import exchanged
-from greybox_torch.api.exchanged import MOST_ALIKE, MOST_SAMPLES
+from greybox_torch.api import exchanged, short_refits
+from greybox_torch.api.exchanged import MOST_ALIKE
+from greybox_torch.api.short_refits import MOST_SAMPLES
 from greybox_torch.api.verdict_summary import notes
 from greybox_torch.report.sections.headline import Headline
 
@@ -92,7 +93,7 @@ def test_a_diagnosis_asks_it_too() -> None:
 
 def test_a_sensor_that_begins_late_is_no_reason_to_fail(monkeypatch: pytest.MonkeyPatch) -> None:
     """Seen: the estimate failed after all was done, as the beginning of the experiments had no sample of a channel."""
-    monkeypatch.setattr(exchanged, "MOST_SAMPLES", 100)
+    monkeypatch.setattr(short_refits, "MOST_SAMPLES", 100)
     runs = []
     for k, role in enumerate(("estimation", "validation")):
         run = recorded(role, k, {"P1": "P2", "P2": "P1"}, {})
@@ -106,7 +107,7 @@ def test_a_change_is_compared_with_the_estimate_itself(
     achieved: float, is_asked: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Seen: "(-inf % as it is)", where the short refit as it is failed; and a question though the estimate was the better one."""
-    monkeypatch.setattr(exchanged, "_fit", lambda *given, refitted=True: 90.0 if given[3].read else -np.inf)
+    monkeypatch.setattr(exchanged, "fit_after", lambda *given, refitted=True: 90.0 if given[3].read else -np.inf)
     roles = ("estimation", "validation")
     data = gt.DataSet([recorded(role, k, {}, {}) for k, role in enumerate(roles)])
     question = exchanged.exchanged(data, Plate(), None, achieved)  # pyright: ignore[reportArgumentType]
