@@ -49,7 +49,7 @@ def print_verdict(console: Console, data: DataSet, title: str, verdict: Verdict)
 
 def effect_table(verdict: Verdict) -> tuple[list[str], list[list[str | float]]]:
     """Headings and rows of the effects and their parameters."""
-    return _COLUMNS, [row for effect in verdict.effects for row in _rows(effect)]
+    return _COLUMNS, [row for effect in verdict.shown_effects for row in _rows(effect)]
 
 
 def moved_table(verdict: Verdict) -> tuple[list[str], list[list[str | float]]]:
@@ -75,7 +75,7 @@ def notes(verdict: Verdict) -> list[str]:
     stopped = [] if verdict.complete else [STOPPED, *verdict.not_tried.sentences()]
     left = [] if verdict.left is None else [verdict.left.sentence]
     small = [f"Refinement: {refinement.sentence}." for refinement in verdict.refinements]
-    by_effect = (line for effect in verdict.effects for line in _notes(effect))
+    by_effect = (line for effect in verdict.shown_effects for line in _notes(effect))
     of_validation = (*verdict.no_longer_validation, *verdict.short_validation)
     return [*verdict.asked, *of_validation, SIZE, *verdict.made_up, *by_effect, *left, *small, *stopped]
 

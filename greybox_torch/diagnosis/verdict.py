@@ -166,12 +166,17 @@ class Verdict:
         return bool(self.effects) or self.unexplained is not None
 
     @property
+    def shown_effects(self) -> tuple[Effect, ...]:
+        """The effects as a reader is shown them, the largest first: they are found in another order. ``effects`` keeps that."""
+        return tuple(sorted(self.effects, key=lambda e: -e.size if np.isfinite(e.size) else np.inf))
+
+    @property
     def sentence(self) -> str:
         """The verdict in one sentence."""
         if not self.effects:
             known = (self.unexplained, mostly_in(self.counted("refit")), self.looked, self.complete, self.too_short)
             return WithoutEffects(self.model, self.confidence, *known).sentence
-        parts = [e.headline for e in self.effects]
+        parts = [e.headline for e in self.shown_effects]
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
         start = "The mismatch is" if all(e.one_of is None for e in self.effects) else "The mismatch:"
         return f"{start} {found}{self._gain()}."

@@ -93,7 +93,7 @@ class Effects:
     @classmethod
     def of(cls, verdict: Verdict) -> Effects | None:
         alone = len(verdict.effects) + len(verdict.refinements) == 1
-        cards = (_card(e, responses(verdict, e), alone) for e in verdict.effects)
+        cards = (_card(e, responses(verdict, e), alone) for e in verdict.shown_effects)
         return cls(tuple(cards), verdict.made_up) if verdict.effects else None
 
 
