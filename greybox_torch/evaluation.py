@@ -13,7 +13,7 @@ import numpy as np
 from greybox_torch.data import DataSet
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.comparison import Comparison, compare
-from greybox_torch.estimate.overflow import Overflow, avoidance, overflows, suggestions
+from greybox_torch.estimate.overflow import NO_NUMBER, Overflow, avoidance, overflows, suggestions
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.residuals import Residuals, residuals_of
 from greybox_torch.estimate.simulators import simulator_for
@@ -136,4 +136,5 @@ def _told(data: DataSet, found: tuple[Overflow, ...]) -> str:
     at = [f"at {times[o.experiment][o.sample]:.6g} s" for o in found[:MOST_NAMED]]
     others = [f"of '{o.experiment}' {when}" for o, when in zip(found[1:], at[1:], strict=False)]
     others += [f"of {len(found) - MOST_NAMED} more experiments"] if len(found) > MOST_NAMED else []
-    return ", ".join([f"the simulation of '{found[0].experiment}' overflows {at[0]}", *others])
+    told = ", ".join([f"the simulation of '{found[0].experiment}' overflows {at[0]}", *others])
+    return f"{told} ({NO_NUMBER})" if found[0].no_number else told

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -14,8 +15,9 @@ from greybox_torch.api.data_warnings import all_warnings
 from greybox_torch.checking.examine import examine
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.checking.negative_masses import negative_masses
-from greybox_torch.checking.not_finite import not_finite_at_start
+from greybox_torch.checking.not_finite import not_finite_at_start, not_finite_where_recorded
 from greybox_torch.checking.points import Points, start_of
+from greybox_torch.checking.recorded_points import recorded_points
 from greybox_torch.checking.source import source_of
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.beliefs import beliefs_from_mapping
@@ -60,10 +62,13 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
     if data is not None:
         usable = None if any(f.level == "error" for f in findings) else examined.model
         if usable is not None:
-            more, values = _with_data(data, usable)
+            told = {f.line for f in findings if f.topic == "numbers"}
+            more, values = _with_data(data, usable, told)
             findings += more
         findings += [Finding("warning", "card", one.found, one.write, data.path) for one in all_warnings(data, usable)]
-    return CheckResult(name, replace(examined, findings=in_order(findings)), in_order(findings), values)
+    return CheckResult(
+        name, replace(examined, findings=in_order(findings)), in_order(findings), values, data is not None
+    )
 
 
 def _given(model: Any) -> tuple[str, GreyBoxModel | type[GreyBoxModel]]:
@@ -82,18 +87,24 @@ def _file(given: GreyBoxModel | type[GreyBoxModel]) -> Path:
     return source_of(given if isinstance(given, type) else type(given)).file or Path("model")
 
 
-def _with_data(data: DataSet, model: GreyBoxModel) -> tuple[list[Finding], dict[str, float]]:
-    """What is wrong between the two, and the parameter values that the model begins with there."""
+def _with_data(
+    data: DataSet, model: GreyBoxModel, told: Collection[int | None]
+) -> tuple[list[Finding], dict[str, float]]:
+    """What is wrong between the two, and the parameter values that the model begins with there.
+
+    Args:
+        told: lines of which random points have shown already that they give no numbers.
+    """
     try:
         problem = make_problem(data, model, data.recordings)
     except UserError as error:
         return [_of_the_card(error, data)], {}
     values = problem.values_by_name
     source = source_of(type(model))
-    of_values = [
-        *not_finite_at_start(model, source, values, _begun(problem)),
-        *negative_masses(model, source, values),
-    ]
+    starts = list(not_finite_at_start(model, source, values, _begun(problem)))
+    recorded = () if starts else not_finite_where_recorded(model, *recorded_points(problem), source)
+    lost = [*starts, *(f for f in recorded if f.line not in told)]
+    of_values = [*lost, *negative_masses(model, source, values)]
     return [*of_values, *_tables(data, model)], values
 
 

@@ -29,13 +29,14 @@ class CheckResult(Result):
     False where one is an error, of the model or of the card.
 
     ``compiled`` is False where equations work but have no compiled form, which makes a diagnosis far too slow. ``values``: of parameters,
-    where a data card was given; those declared otherwise.
+    where a data card was given; those declared otherwise. ``with_data``: whether one was given.
     """
 
     name: str
     examined: Examination
     findings: tuple[Finding, ...]
     values: Mapping[str, float] = field(default_factory=dict)
+    with_data: bool = False
 
     @property
     def usable(self) -> bool:
@@ -55,7 +56,9 @@ class CheckResult(Result):
         if not self.usable:
             return f"{self._at_fault}: {told}."
         return f"{self.name} can be used" + (
-            f": {told}." if told else "; nothing is wrong with it that shows without data."
+            f": {told}."
+            if told
+            else f"; nothing is wrong with it that shows without {'a simulation' if self.with_data else 'data'}."
         )
 
     @property

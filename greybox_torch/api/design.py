@@ -15,6 +15,7 @@ from greybox_torch.api.design_result import DesignResult
 from greybox_torch.api.diagnosis_result import DiagnosisResult
 from greybox_torch.api.expected import Expected
 from greybox_torch.api.hypotheses import Hypotheses, Kept, hypotheses_of, left_out_told, read_hypotheses, to_tell_apart
+from greybox_torch.api.inseparable import same_as_first, told_one_effect
 from greybox_torch.api.nothing_open import group_in_question
 from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
 from greybox_torch.estimate.problem import with_card
@@ -30,6 +31,7 @@ from greybox_torch.experiment_design.limits import Limits, limits_of
 from greybox_torch.experiment_design.search import MOST_SAMPLES, frequencies, sampled, search
 from greybox_torch.experiment_design.simulated import input_records, predictions, within
 from greybox_torch.linear_algebra import on_one_thread
+from greybox_torch.name_lists import listed
 
 RANDOM = 5
 """Random multisines of the same power that the best input (or set point) is compared with."""
@@ -112,10 +114,16 @@ def _aim(held: Hypotheses, precision: str | None, loops: Sequence[Loop]) -> Aim:
         one = _contender(held.recommended, held, loops)
         free = list(one.problem.free_names)
         if precision not in free:
-            hint = did_you_mean(precision, free)
+            hint = _ends_so(precision, free) or did_you_mean(precision, free)
             raise ArgumentError("precision", precision, f"expected a free parameter{hint}: {', '.join(free)}")
         return Aim((one,), free.index(precision))
     return Aim(tuple(_contender(kept, held, loops) for kept in group_in_question(held)))
+
+
+def _ends_so(name: str, known: Sequence[str]) -> str:
+    """The parameters of effects that a bare name may mean, ` (did you mean "actuator.input_lag.T"?)`; "" where none ends so."""
+    meant = [f'"{one}"' for one in known if one.rpartition(".")[2] == name]
+    return f" (did you mean {listed(meant, 'or')}?)" if meant else ""
 
 
 def _begun(aim: Aim, limits: Limits) -> tuple[Aim, Beginning]:
@@ -165,7 +173,9 @@ def _result(
         assert best.nats is not None
         nats = best.nats
         random = _by_random_inputs(aim, limits, time, best, seed)
-        left_out = left_out_told(to_tell_apart(held)[1])
+        group, others = to_tell_apart(held)
+        same = same_as_first(group)
+        left_out = (*([f"{told_one_effect(same)}."] if len(same) > 1 else ()), *left_out_told(others))
     else:
         one = aim.contenders[0]
         after = aim.deviation_after(along[0][0], 0)
@@ -196,6 +206,7 @@ def _result(
         on_one_input=tuple(p.y[0] for p in along[0]),
         left_out=left_out,
         moving=begins.moving,
+        resting=begins.resting,
     )
 
 

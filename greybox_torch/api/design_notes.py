@@ -9,6 +9,7 @@ from greybox_torch.api.design_files import CARD, INPUT, RECORDED
 from greybox_torch.api.design_groups import AGAINST_GROUPS
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.experiment_design.limits import EVERY_INPUT
+from greybox_torch.name_lists import listed
 
 if TYPE_CHECKING:
     from greybox_torch.api.design_result import DesignResult
@@ -41,7 +42,9 @@ def design_notes(found: DesignResult) -> list[str]:
 
 def _beginning(found: DesignResult) -> Iterator[str]:
     """How it begins; where that is in motion, how to ask for a start at rest."""
-    began = ", ".join(f"{name} = {value:.3g}" for name, value in found.start.items())
+    moved = [f"{name} = {value:.3g}" for name, value in found.start.items() if name not in found.resting]
+    rest = [f"{listed(found.resting)} at rest"] if found.resting else []
+    began = ", ".join([*rest, *moved])
     if found.limits.start:
         yield f"Begin with {began}: {', '.join(found.limits.start)} as asked for, all else as {found.begins_like} began."
     else:

@@ -47,7 +47,7 @@ class DesignResult(Result):
     designed, and ``driven`` (N,) by input what that makes of them under each hypothesis; ``inputs`` are then those under the first one.
     ``on_one_input`` (N, n_y) is what each hypothesis predicts on these.
     ``left_out`` says which rivals are not among the hypotheses. ``moving``: the
-    speeds that it begins with, where it does not begin at rest.
+    speeds that it begins with, where it does not begin at rest; ``resting``: those that are next to nothing.
     """
 
     data: DataSet
@@ -75,6 +75,7 @@ class DesignResult(Result):
     on_one_input: tuple[np.ndarray, ...] = ()
     left_out: tuple[str, ...] = ()
     moving: tuple[str, ...] = ()
+    resting: tuple[str, ...] = ()
 
     @property
     def seconds(self) -> float:

@@ -16,9 +16,9 @@ from greybox_torch.api.arguments import (
     check_seconds,
     check_seed,
 )
+from greybox_torch.api.asked_of_channels import asked_where_poor, poor
 from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.diagnosis_result import DiagnosisResult
-from greybox_torch.api.exchanged import asked_where_poor, poor
 from greybox_torch.codegen.build import check_compiler
 from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, until

@@ -16,8 +16,8 @@ from greybox_torch.api.arguments import (
     check_seed,
     check_whole,
 )
+from greybox_torch.api.asked_of_channels import asked_where_poor
 from greybox_torch.api.data_argument import check_data
-from greybox_torch.api.exchanged import asked_where_poor
 from greybox_torch.api.fit_result import FitResult
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Comparison, compare

@@ -7,10 +7,14 @@ import numpy as np
 from greybox_torch.api.scores import Scores
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import held_out_scores, mean_fit, of_moving_outputs
-from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.problem import Problem, with_card
+from greybox_torch.name_lists import listed
 
 WORSE = 1.0
 """Points of the mean fit in % by which an estimate counts as worse than the values that it began with."""
+
+RAN_AWAY = 1e8
+"""Times its start value from which an estimate has run away: no card is that far off, but by a unit that is wrong."""
 
 DIAGNOSE = "`greybox diagnose` says what."
 
@@ -40,6 +44,44 @@ def fit_advice(scores: Scores, begun: str) -> str | None:
             f"parameters make up for something that the model lacks: {DIAGNOSE}"
         )
     return None
+
+
+def lost_outputs(scores: Scores) -> str | None:
+    """A sentence where outputs are simulated no better than a constant would, and a mean fit above zero hides it; else None.
+
+    Arguments as for :func:`fit_advice`.
+    """
+    judging = of_moving_outputs(held_out_scores(scores["refit"]))
+    fits = {
+        name: mean_fit([s for s in judging if s.output == name]) for name in dict.fromkeys(s.output for s in judging)
+    }
+    lost = [name for name, fit in fits.items() if np.isfinite(fit) and fit <= 0.0]
+    if not lost or not mean_fit(judging) > 0.0:
+        return None
+    told = listed([f"{name} ({fits[name]:.3g} %)" for name in lost])
+    it, its = ("it", "its") if len(lost) == 1 else ("they", "their")
+    return (
+        f"{told} {'is' if len(lost) == 1 else 'are'} simulated no better than a constant would, which the mean fit of "
+        f"{mean_fit(judging):.3g} % hides: {its} column, sign, scale or unit on the card may be wrong, or that of what drives {it}, or the "
+        f"model lacks something there. {DIAGNOSE}"
+    )
+
+
+def ran_away(problem: Problem, data: DataSet) -> str | None:
+    """A sentence where free parameters have ended at a hundred million times their start values or more; else None."""
+    held = problem.model.held_values()
+    begun = {p.name: held.get(p.name, p.value) for p in with_card(data, problem.model)}
+    far = [
+        f"{name} = {value:.3g} (begun with {begun[name]:.3g})"
+        for name, value in problem.values_by_name.items()
+        if name in problem.free_names and abs(value) >= RAN_AWAY * abs(begun[name]) > 0.0
+    ]
+    if not far:
+        return None
+    return (
+        f"Ran away: {listed(far)}. Nothing in these recordings holds a value there: look whether a column has the unit and scale that the "
+        "card says, give bounds on the card (upper = …), or fix what is known"
+    )
 
 
 def begun_with(problem: Problem, data: DataSet) -> str:

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from greybox_torch.api.estimated import EstimatedParameter, EstimatedStart, estimated_parameters, estimated_starts
 from greybox_torch.api.estimated_model import EstimatedModel
-from greybox_torch.api.fit_advice import begun_with, fit_advice
+from greybox_torch.api.fit_advice import begun_with, fit_advice, lost_outputs, ran_away
 from greybox_torch.api.fit_json import estimation_json, identifiability_json, profile_json, status
 from greybox_torch.api.fit_summary import beginnings, parameter_table, print_estimate, warnings
 from greybox_torch.api.free_runs import plot_simulated
@@ -140,10 +140,13 @@ class FitResult(EstimatedModel):
 
     @property
     def _advice(self) -> list[str]:
-        """What the free runs say about the model itself: up to two sentences."""
-        said = fit_advice(self._scores, begun_with(self.estimation.problem, self.data))
+        """What the free runs, and parameters that ran away, say about model and card: up to four sentences."""
+        problem = self.estimation.problem
+        away = ran_away(problem, self.data)
+        said = fit_advice(self._scores, begun_with(problem, self.data))
         asked = None if self.question is None else f"{self.question}."
-        return [line for line in (said, asked) if line is not None]
+        lines = (None if away is None else f"{away}.", said, lost_outputs(self._scores), asked)
+        return [line for line in lines if line is not None]
 
     @property
     def _given(self) -> list[str]:

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from greybox_torch.api.expected import AS_IN_A_DIAGNOSIS, NOTHING
+from greybox_torch.api.expected import AS_IN_A_DIAGNOSIS, NOTHING, decided
+from greybox_torch.api.inseparable import inseparable
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.diagnosis.one_of import spoken_at
@@ -188,6 +189,8 @@ def _starts(content: Mapping[str, Mapping[str, Any]]) -> Starts:
 def to_tell_apart(held: Hypotheses) -> tuple[Sequence[Kept], Sequence[Kept]]:
     """The hypotheses of the finding that is least sure, nothing where none has a rival; and the rivals of all findings that are left out.
 
+    Of findings that are as unsure as may be whatever is recorded, as their rivals are one effect with them, only where no other is open.
+
     The finding is the recommended model, which has all effects. A rival that was fitted when another of these was still missing would be
     told from it by that one, so it is left out.
     """
@@ -200,7 +203,9 @@ def to_tell_apart(held: Hypotheses) -> tuple[Sequence[Kept], Sequence[Kept]]:
             (group if len(lacking) <= 1 else left_out).append(rival)  # one is the finding itself
         groups.append(group)
     open_ones = [group for group in groups if len(group) > 1]
-    return min(open_ones, key=lambda group: group[0].probability, default=()), left_out
+    in_turn = sorted(open_ones, key=lambda group: group[0].probability)
+    first = in_turn[0] if in_turn else ()
+    return next((g for g in in_turn if not (decided([k.probability for k in g]) or inseparable(g))), first), left_out
 
 
 def left_out_told(left_out: Sequence[Kept]) -> tuple[str, ...]:

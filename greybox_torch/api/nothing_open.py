@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from greybox_torch.api.expected import NOTHING, WANTED, decided
 from greybox_torch.api.hypotheses import Hypotheses, Kept, left_out_told, to_tell_apart
+from greybox_torch.api.inseparable import inseparable, told_one_effect
 from greybox_torch.diagnosis.verdict import OF_ESTIMATION
 from greybox_torch.errors import UserError
 
@@ -16,7 +17,7 @@ def group_in_question(held: Hypotheses) -> Sequence[Kept]:
     """The hypotheses that a recording is to tell apart.
 
     Raises:
-        UserError: there are no rivals, or one hypothesis is decided.
+        UserError: there are no rivals, one hypothesis is decided, or all are one effect in the model.
     """
     group, left_out = to_tell_apart(held)
     told = "".join(f". {sentence.rstrip('.')}" for sentence in left_out_told(left_out))
@@ -30,6 +31,10 @@ def group_in_question(held: Hypotheses) -> Sequence[Kept]:
         raise UserError(
             f"between the named hypotheses all is already decided: {_decided(best, held.complete)}"
             f"{_all_the_same(held)}; expected a finding that is open, {_OR_A_PARAMETER}{told}"
+        )
+    if same := inseparable(group):
+        raise UserError(
+            f"{told_one_effect(same)}{_all_the_same(held)}; expected a finding that a recording can decide, {_OR_A_PARAMETER}{told}"
         )
     return group
 

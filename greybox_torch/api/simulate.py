@@ -36,6 +36,13 @@ OPPOSITE = -0.8
 """Correlation of simulated with measured below which an output is told to move the other way: noise and wrong parameters leave less."""
 
 
+class Outputs(dict[str, np.ndarray]):
+    """Simulated outputs (N,) by name; another name is a KeyError that lists them."""
+
+    def __missing__(self, name: str) -> np.ndarray:
+        raise KeyError(f"no output {name!r}; there are: {', '.join(self)}")
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class SimulationResult(Result):
     """Free runs of a model on all experiments: ``result["sweep"]["speed"]`` is a simulated output (N,), in its unit.
@@ -70,7 +77,7 @@ class SimulationResult(Result):
         if experiment not in self.run.simulated:
             raise KeyError(f"no experiment {experiment!r}; there are: {', '.join(self)}")
         values = self.run.simulated[experiment]
-        return {output.name: values[:, k] for k, output in enumerate(self.run.problem.model.outputs)}
+        return Outputs({output.name: values[:, k] for k, output in enumerate(self.run.problem.model.outputs)})
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.run.simulated)

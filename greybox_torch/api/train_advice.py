@@ -43,10 +43,12 @@ def _outputs_told(who: str, scores: Scores, name: str) -> list[str]:
     return found
 
 
-def explained_sentence(explained: Explanation, scores: Scores) -> str:
-    """What the network stands for, without the advice to keep it where :func:`train_advice` is against that."""
+def explained_sentence(explained: Explanation, scores: Scores, *, judged: bool = True) -> str:
+    """What the network stands for, without the advice to keep it where :func:`train_advice` is against that, or where the held-out
+    stretches have not ``judged`` it, as most free runs there ran away.
+    """
     said = explained.sentence
-    return said.removesuffix(KEEP).rstrip() if _is_worse(_fits(scores), HYBRID) else said
+    return said.removesuffix(KEEP).rstrip() if not judged or _is_worse(_fits(scores), HYBRID) else said
 
 
 def _fits(scores: Scores) -> dict[str, float]:

@@ -12,6 +12,7 @@ from rich.text import Text
 from greybox_torch.api.fit_json import parameters_json
 from greybox_torch.api.scores import Scores
 from greybox_torch.api.train_advice import explained_sentence
+from greybox_torch.api.train_held_out import mostly_lost
 from greybox_torch.mechanisms.matching import LEAST_MATCH
 from greybox_torch.report.tables import print_table
 from greybox_torch.training import Explanation, Trained
@@ -26,7 +27,7 @@ def explanation_json(found: Trained, explained: Explanation, scores: Scores) -> 
     """Curves with their band, shares per signal, every law compared, the laws put in the network's place, and the recommendation."""
     force_unit = found.hybrid.surroundings[found.hybrid.network.port].force_unit
     result: dict[str, Any] = {
-        "sentence": explained_sentence(explained, scores),
+        "sentence": explained_sentence(explained, scores, judged=not mostly_lost(found)),
         "drop_network": explained.term is not None,
         "band": band(explained),
         "members": explained.members,
@@ -47,9 +48,9 @@ def band(explained: Explanation) -> str:
     return own if explained.members < 2 else f"{own}; and the differences of {explained.members} seeds"
 
 
-def print_explanation(console: Console, explained: Explanation, scores: Scores) -> None:
+def print_explanation(console: Console, explained: Explanation, scores: Scores, *, judged: bool = True) -> None:
     """The recommendation, which signals count, and the laws compared."""
-    console.print(Text(f"\n{explained_sentence(explained, scores)}", style="bold"), soft_wrap=True)
+    console.print(Text(f"\n{explained_sentence(explained, scores, judged=judged)}", style="bold"), soft_wrap=True)
     if not explained.curves:
         return
     shares = ", ".join(f"{curve.signal} {100 * curve.share:.0f} %" for curve in explained.curves)

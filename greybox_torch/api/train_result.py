@@ -16,6 +16,7 @@ from greybox_torch.api.estimated_model import EstimatedModel
 from greybox_torch.api.free_runs import plot_simulated
 from greybox_torch.api.scores import score_table, scores_side_by_side
 from greybox_torch.api.train_advice import explained_sentence, train_advice
+from greybox_torch.api.train_held_out import mostly_lost
 from greybox_torch.api.train_json import training_json
 from greybox_torch.api.train_range import Beyond
 from greybox_torch.api.train_scores import START
@@ -144,11 +145,7 @@ class TrainingResult(EstimatedModel):
 
     def _repr_html_(self) -> str:
         learned = self.plot_learned()
-        said = (
-            []
-            if self.explanation is None
-            else [notebook.sentence(explained_sentence(self.explanation, self._scores), "found")]
-        )
+        said = [] if self.explanation is None else [notebook.sentence(self._explained(self.explanation), "found")]
         return notebook.page(
             f"{self.data.name}: {self.given.title}",
             notebook.sentence(self.sentence, "found"),
@@ -159,6 +156,9 @@ class TrainingResult(EstimatedModel):
             *(notebook.sentence(line) for line in self.advice),
             notebook.picture(self.plot(), "outputs over time, measured, and simulated by each model"),
         )
+
+    def _explained(self, explanation: Explanation) -> str:
+        return explained_sentence(explanation, self._scores, judged=not mostly_lost(self.trained))
 
     def _copy(self, found: Estimation) -> GreyBoxModel:
         problem = found.problem

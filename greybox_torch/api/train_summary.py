@@ -4,20 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
 from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.api.scores import Scores, print_scores, print_substeps, squared_unit
 from greybox_torch.api.train_explained import print_explanation
+from greybox_torch.api.train_held_out import lost_choices, mostly_lost
 from greybox_torch.data import DataSet
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.report.tables import print_table
 from greybox_torch.training import Explanation, Trained
 
-RUNS_AWAY = 100.0
-"""Times the mean squared error of a constant from which a free run shows no more than that the model ran away."""
-LOST = "ran away: to have less says little"
+LOST = "ran away"
+MOST_LOST = (
+    "Most of these free runs ran away, with the physics alone as well: their errors say hardly anything of what the network has learned. "
+    "Run `greybox diagnose` first, and train beside the model that it recommends."
+)
 
 
 def print_training(
@@ -39,7 +41,7 @@ def print_training(
     print_table(console, columns, rows, prose=["description"])
     _print_choices(console, found)
     if explained is not None:
-        print_explanation(console, explained, scores)
+        print_explanation(console, explained, scores, judged=not mostly_lost(found))
     print_substeps(console, found.result.substeps)
     console.print()
     print_scores(console, data, scores)
@@ -78,12 +80,9 @@ def parameter_table(found: Trained) -> tuple[list[str], list[list[str | float]]]
 
 def choice_rows(found: Trained) -> list[list[str | float]]:
     """Every penalty and the physics alone, with its mean squared error on the held-out stretches."""
-    problem = found.result.problem
-    constant = float(np.mean(np.nanvar(problem.records.y * problem.weights[:, None], axis=1)))
     rows: list[list[str | float]] = []
-    for choice in found.polished.choices:
+    for choice, lost in zip(found.polished.choices, lost_choices(found), strict=True):
         name = "physics alone" if choice.weight is None else f"penalty {choice.weight:g}"
-        lost = not choice.held_out < RUNS_AWAY * constant
         rows.append([name, choice.held_out, "chosen" if choice is found.polished.chosen else LOST if lost else ""])
     return rows
 
@@ -95,3 +94,5 @@ def _print_choices(console: Console, found: Trained) -> None:
         ["free run on the held-out stretches", f"mean squared error\n{unit.strip()}".strip(), ""],
         choice_rows(found),
     )
+    if mostly_lost(found):
+        console.print(Text(MOST_LOST, style="yellow"), soft_wrap=True)

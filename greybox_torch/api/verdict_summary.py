@@ -11,7 +11,7 @@ from rich.text import Text
 from greybox_torch.api.scores import print_scores
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.effect import Effect
-from greybox_torch.diagnosis.one_of import spoken_at, with_shares
+from greybox_torch.diagnosis.one_of import OneOf, spoken_at, with_shares
 from greybox_torch.diagnosis.verdict import STOPPED, Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.tables import print_table
@@ -49,7 +49,7 @@ def print_verdict(console: Console, data: DataSet, title: str, verdict: Verdict)
 
 def effect_table(verdict: Verdict) -> tuple[list[str], list[list[str | float]]]:
     """Headings and rows of the effects and their parameters."""
-    return _COLUMNS, [row for effect in verdict.effects for row in _rows(effect)]
+    return _COLUMNS, [row for effect in verdict.shown_effects for row in _rows(effect)]
 
 
 def moved_table(verdict: Verdict) -> tuple[list[str], list[list[str | float]]]:
@@ -82,7 +82,7 @@ def notes(verdict: Verdict) -> list[str]:
     stopped = [] if verdict.complete else [STOPPED, *verdict.not_tried.sentences()]
     left = [] if verdict.left is None else [verdict.left.sentence]
     small = [f"Refinement: {refinement.sentence}." for refinement in verdict.refinements]
-    by_effect = (line for effect in verdict.effects for line in _notes(effect))
+    by_effect = (line for effect in verdict.shown_effects for line in _notes(effect))
     of_validation = (*verdict.no_longer_validation, *verdict.short_validation)
     return [
         *verdict.asked,
@@ -129,11 +129,19 @@ def _notes(effect: Effect) -> list[str]:
     lines += [f"{head}: {effect.where}"] if effect.where else []
     lines += [f"{head}: {effect.bounded}"] if effect.bounded else []
     lines += [f"{head}: {effect.undetermined}"] if effect.undetermined else []
-    advice = f"; to tell them apart: {effect.separating_experiment}" if effect.separating_experiment else ""
     together = () if effect.one_of is None else effect.one_of.members
+    advice = f"; to tell them apart: {effect.separating_experiment}" if effect.separating_experiment else ""
     if effect.one_of is not None:
-        lines.append(f"{effect.one_of.told}{advice}")
+        lines.append(f"{effect.one_of.told}{_told_apart(effect.one_of, advice)}")
     others = [a for a in effect.alternatives if (a.port, a.mechanism) not in {(m.port, m.mechanism) for m in together}]
     if others:
         lines.append(f"{head}: it could also be {with_shares(others)}{'' if together else advice}")
     return lines
+
+
+def _told_apart(whole: OneOf, advice: str) -> str:
+    """What tells the members apart: a recording, or none where they are one effect in the model."""
+    same = f"; {whole.told_one_effect}" if whole.one_effect else ""
+    if not whole.separable:
+        return same
+    return f"{same}{advice.replace('them', 'the others', 1)}" if same else advice

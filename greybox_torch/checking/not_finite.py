@@ -19,6 +19,7 @@ from greybox_torch.checking.influence import Influence
 from greybox_torch.checking.points import Points, start_of
 from greybox_torch.checking.source import Source
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.sensed_states import sensed_states
 
 _WRITE = "torch.sqrt(a.clamp(min=1e-9)), torch.log(a.clamp(min=…)), a denominator that stays away from zero"
 
@@ -35,6 +36,33 @@ def not_finite(model: GreyBoxModel, influence: Influence, points: Points, source
     one = Points(*(of.detach()[:, at : at + 1] for of in (points.x, points.u, points.p, points.f)))
     yield _finding(
         f"the equations are no numbers at {lost.size} of {len(influence.finite)} random points, such as {', '.join(shown[:6])}",
+        source,
+        _origin(model, one, source.file)[1],
+    )
+
+
+def not_finite_where_recorded(model: GreyBoxModel, points: Points, tries: int, source: Source) -> Iterator[Finding]:
+    """A finding where the equations give no number at recorded samples, whatever the states are that no sensor shows.
+
+    Args:
+        points: with so many ``tries`` of these states for each sample, one behind the other.
+    """
+    x, u, p, f = points.signals(model)
+    with torch.no_grad():
+        given = [*model.derivative(x, u, p, f).values(), *model.outputs_with(x, u, p, f).values()]
+    fine = torch.stack([torch.isfinite(torch.as_tensor(row)).expand(points.x.shape[1]) for row in given]).all(0)
+    by_sample = fine.reshape(-1, tries).any(1).numpy()
+    lost = np.flatnonzero(~by_sample)
+    if not lost.size:
+        return
+    at, seen = int(lost[0]) * tries, sensed_states(model)
+    one = Points(*(of[:, at : at + 1] for of in (points.x, points.u, points.p, points.f)))
+    named = [(s.name, float(one.x[i, 0])) for i, s in enumerate(model.states) if s.name in seen]
+    named += [(s.name, float(one.u[i, 0])) for i, s in enumerate(model.inputs)]
+    others = ", whatever the other states are" if len(seen) < len(model.states) else ""
+    yield _finding(
+        f"the equations are no numbers (a root or logarithm of a negative number, or 0/0) at {lost.size} of {len(by_sample)} recorded "
+        f"samples{others}, such as {', '.join(f'{name} = {value:.3g}' for name, value in named[:6])}",
         source,
         _origin(model, one, source.file)[1],
     )

@@ -3,24 +3,45 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
+
+from greybox_torch.diagnosis.digits import digits
+from greybox_torch.name_lists import listed
 
 MUCH_LIKELIER = 5.0
 """Times as probable as another that the likeliest has to be for the two to be no longer "not told apart"."""
 
+DECIDED_BY = "no recording tells them apart, only what is known of the machine does (the table [beliefs] of the card)"
+"""What is said of hypotheses that are one effect in a model."""
+
 
 @dataclass(frozen=True)
 class Alternative:
-    """A hypothesis with its probability."""
+    """A hypothesis with its probability, and the first parameter of its law, ``value`` None where that is not told.
+
+    ``one_effect``: it is one effect with the finding in the model's equations, so that no recording tells them apart.
+    """
 
     port: str
     mechanism: str
     probability: float
+    parameter: str = ""
+    value: float | None = None
+    unit: str = ""
+    one_effect: bool = False
 
     def as_json(self) -> dict[str, Any]:
         """Its entry under `alternatives` or `members`."""
-        return {"port": self.port, "mechanism": self.mechanism, "probability": self.probability}
+        told: dict[str, Any] = {"port": self.port, "mechanism": self.mechanism, "probability": self.probability}
+        if self.value is not None:
+            told |= {"parameter": self.parameter, "value": self.value, "unit": self.unit}
+        return told | ({"one_effect": True} if self.one_effect else {})
+
+    @property
+    def told_value(self) -> str:
+        """Its parameter with value and unit, "bias = 87.5 W"; "" where that is not told."""
+        return "" if self.value is None else f"{self.parameter} = {digits(self.value, 3)} {self.unit}".rstrip()
 
 
 @dataclass(frozen=True)
@@ -71,6 +92,33 @@ class OneOf:
             return f"One law is by far the likeliest; these recordings do not rule out {others} {'other' if others == 1 else 'others'}."
         return f"These recordings do not tell {alike} laws apart{f', and do not rule out {others} more' if others else ''}."
 
+    @property
+    def one_effect(self) -> tuple[Alternative, ...]:
+        """The finding, which is the first member, and those that are one effect with it in the model; none where none is."""
+        same = tuple(m for m in self.members[1:] if m.one_effect)
+        return (self.members[0], *same) if same else ()
+
+    @property
+    def told_one_effect(self) -> str:
+        """In a sentence, that no recording tells these members apart, and what does; "" where there are none."""
+        same = self.one_effect
+        if not same:
+            return ""
+        if len(same) == len(self.members):
+            return f"in this model they are one effect: {DECIDED_BY}"
+        named = listed([spoken_at(m.mechanism, m.port) for m in same])
+        return f"in this model {named} are one effect: {DECIDED_BY}"
+
+    @property
+    def separable(self) -> bool:
+        """Whether there are members that a recording may tell from the finding."""
+        return len(self.one_effect) < len(self.members)
+
+    def finding_with(self, value: float) -> OneOf:
+        """The same with another value of the finding's parameter, where that is told: windows and whole records differ a little."""
+        first, *rest = self.members
+        return self if first.value is None else replace(self, members=(replace(first, value=value), *rest))
+
     def as_json(self) -> dict[str, Any]:
         """Its entry `one_of`."""
         return {
@@ -108,5 +156,8 @@ def spoken_at(mechanism: str, port: str) -> str:
 
 
 def with_shares(hypotheses: Sequence[Alternative]) -> str:
-    """Hypotheses as a list, each with its probability."""
-    return ", ".join(f"{spoken_at(h.mechanism, h.port)} ({h.probability:.2f})" for h in hypotheses)
+    """Hypotheses as a list, each with its probability and its value where that is told."""
+    return ", ".join(
+        f"{spoken_at(h.mechanism, h.port)} ({', '.join(filter(None, [f'{h.probability:.2f}', h.told_value]))})"
+        for h in hypotheses
+    )

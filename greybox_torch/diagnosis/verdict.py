@@ -14,6 +14,7 @@ from greybox_torch.diagnosis.of_no_use import of_no_use
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.parts import small_parts
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
+from greybox_torch.diagnosis.traces import InputTrace, Trace
 from greybox_torch.diagnosis.without_effects import WithoutEffects
 from greybox_torch.estimate.comparison import Score, fit_rows, mostly_in
 from greybox_torch.estimate.metrics import digits_between
@@ -70,33 +71,6 @@ class NotTried:
             "stages": list(self.stages),
             "candidates": [{"port": port, "mechanism": mechanism} for port, mechanism in self.candidates],
         }
-
-
-@dataclass(frozen=True)
-class Trace:
-    """One output of one experiment: time (N,) s, measured (N,) with NaN = missing, and simulated by the three models (N,)."""
-
-    experiment: str
-    role: str
-    output: str
-    unit: str
-    time: np.ndarray
-    measured: np.ndarray
-    start: np.ndarray
-    refit: np.ndarray
-    augmented: np.ndarray
-
-
-@dataclass(frozen=True)
-class InputTrace:
-    """One input of one experiment as recorded: time (N,) s, values (N,) in ``unit``; ``held`` between samples, else on straight lines."""
-
-    experiment: str
-    input: str
-    unit: str
-    time: np.ndarray
-    values: np.ndarray
-    held: bool = False
 
 
 @dataclass(frozen=True)
@@ -169,13 +143,18 @@ class Verdict:
         return bool(self.effects) or self.unexplained is not None
 
     @property
+    def shown_effects(self) -> tuple[Effect, ...]:
+        """The effects as a reader is shown them, the largest first: they are found in another order. ``effects`` keeps that."""
+        return tuple(sorted(self.effects, key=lambda e: -e.size if np.isfinite(e.size) else np.inf))
+
+    @property
     def sentence(self) -> str:
         """The verdict in one sentence."""
         if not self.effects:
             known = (self.unexplained, mostly_in(self.counted("refit")), self.looked, self.complete, self.too_short)
             tried = (self.beliefs.exclude_some, self.unsure)
             return WithoutEffects(self.model, self.confidence, *known, *tried).sentence
-        parts = [e.headline for e in self.effects]
+        parts = [e.headline for e in self.shown_effects]
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
         start = "The mismatch is" if all(e.one_of is None for e in self.effects) else "The mismatch:"
         return f"{start} {found}{self._gain()}."

@@ -142,7 +142,7 @@ def descending(
                 return Optimum(point, here, iteration, evaluations, Termination.small_step)
             there = (yield Evaluated(trial)) if predicted > 0 else None
             evaluations += 1
-            gain = -1.0 if there is None else float((here.cost - there.cost) / predicted)
+            gain = -1.0 if there is None else _part_of(float(here.cost - there.cost), float(predicted))
             if there is not None and gain > 1e-4:
                 change = (here.cost - there.cost) / here.cost
                 point, here, moved = trial, there, True
@@ -157,6 +157,12 @@ def descending(
         if change < settings.tolerance:
             return Optimum(point, here, iteration, evaluations, Termination.converged)
     return Optimum(point, here, settings.iterations, evaluations, Termination.iteration_limit)
+
+
+def _part_of(gained: float, predicted: float) -> float:
+    """What was gained as a part of what was predicted; of next to nothing that was predicted, more than any number can say."""
+    with np.errstate(over="ignore"):
+        return float(np.divide(gained, predicted))
 
 
 def _diagonal(hessian: np.ndarray, before: np.ndarray | None) -> np.ndarray:

@@ -23,17 +23,28 @@ FACTORS = (0.5, 2.0, 0.1, 10.0, 1e-2, 1e2, 1e-3, 1e3, 0.0, -1.0)
 LARGEST = float(np.sqrt(np.finfo(float).max))
 """Size of an output from which its squared error is no number."""
 
+HARDLY_LARGER = 100.0
+"""Times the largest measured value up to which a simulation has not run away."""
+
+NO_NUMBER = "no number (nan) with nothing large before it, as the root or logarithm of a negative number is, or 0/0"
+"""What is said of outputs that cease to be numbers without having grown."""
+
 LANES = 64
 """How many experiments are simulated side by side at most while searching: whole records take memory."""
 
 
 @dataclass(frozen=True)
 class Overflow:
-    """The first output whose square is not finite: in which experiment, how many s after its first sample, at which sample of it."""
+    """The first output whose square is not finite: in which experiment, how many s after its first sample, at which sample of it.
+
+    ``no_number``: whether it is no number (nan) at once, after values that are not large: the equations took the root or the logarithm of a
+    negative number, or divided zero by zero.
+    """
 
     experiment: str
     time: float
     sample: int
+    no_number: bool = False
 
 
 @dataclass(frozen=True)
@@ -56,8 +67,18 @@ def overflows(problem: Problem, simulated: Sequence[np.ndarray]) -> tuple[Overfl
         broken = np.flatnonzero(~_countable(values).all(axis=1))
         if broken.size:
             sample = int(broken[0])
-            found.append(Overflow(problem.records.names[e], float(problem.records.time(e)[sample]), sample))
+            time, at_once = float(problem.records.time(e)[sample]), _no_number(problem, e, values[: sample + 1])
+            found.append(Overflow(problem.records.names[e], time, sample, at_once))
     return tuple(found)
+
+
+def _no_number(problem: Problem, experiment: int, values: np.ndarray) -> bool:
+    """Whether the last of some outputs (n, n_y) is nan where those before it are hardly larger than what was measured."""
+    if len(values) < 2 or not np.isnan(values[-1]).any():
+        return False
+    y = np.abs(problem.records.y[:, problem.records.span(experiment)])
+    largest = np.max(np.where(np.isnan(y), 0.0, y), axis=1)
+    return bool((np.abs(values[-2]) <= HARDLY_LARGER * largest).all())
 
 
 def _countable(values: np.ndarray) -> np.ndarray:
@@ -108,6 +129,7 @@ def overflow_error(doing: str, problem: Problem, simulator: Simulator) -> Numeri
         detail = "the outputs stay finite, their sensitivities do not"
     else:
         where = f"at t = {found[0].time:.6g} s in '{found[0].experiment}'"
+        where += f", {NO_NUMBER}" if found[0].no_number else ""
         detail = f"{where}; {avoidance(suggestions(problem, simulator))}"
     return NumericalError(f"{doing} {problem.model.title}: {Outcome(Termination.overflow, detail).sentence}")
 

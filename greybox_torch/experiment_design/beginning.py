@@ -19,11 +19,14 @@ AT_REST = 0.02
 
 @dataclass(frozen=True)
 class Beginning:
-    """As the recording ``like`` began, but for the states ``given``. ``moving``: the speeds that are not zero then."""
+    """As the recording ``like`` began, but for the states ``given``. ``moving``: the speeds that are not zero then; ``resting``: those that
+    are, but for what an estimate of a start state is uncertain by.
+    """
 
     like: str
     given: Mapping[str, float] = field(default_factory=dict)
     moving: tuple[str, ...] = ()
+    resting: tuple[str, ...] = ()
 
 
 def beginning_of(one: Contender, given: Mapping[str, float]) -> Beginning:
@@ -34,7 +37,8 @@ def beginning_of(one: Contender, given: Mapping[str, float]) -> Beginning:
     """
     names, tried = one.problem.records.names, [_moving(one, row, given) for row in one.problem.initial]
     k = 0 if given else next((k for k, moving in enumerate(tried) if not moving), 0)
-    return Beginning(names[k], given, tried[k])
+    speeds = [name for name in speeds_of(one.problem.model.plain) if name not in given]
+    return Beginning(names[k], given, tried[k], tuple(name for name in speeds if name not in tried[k]))
 
 
 def _moving(one: Contender, start: np.ndarray, given: Mapping[str, float]) -> tuple[str, ...]:

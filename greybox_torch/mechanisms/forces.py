@@ -30,7 +30,7 @@ class ConstantBias(LinearLaw):
     kinds = ("body", "balance")
     akin = ("input_bias",)
     nature = "a constant offset"
-    explanation = "A constant force acts (offset of an amplifier, unbalanced weight, preload)."
+    explanation = "Something constant acts: a force (offset of an amplifier, unbalanced weight, preload), or a flow of heat or of a fluid."
     source = "A. Janot, M. Gautier, M. Brunot, Data set and reference models of EMPS, 2019"
     experiment = "standstill and reversals without load: a bias pushes at rest, an asymmetry does not"
     parameter, measured_in, description = "bias", Per(), "constant force"

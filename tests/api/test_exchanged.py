@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import greybox_torch as gt
-from greybox_torch.api import exchanged
-from greybox_torch.api.exchanged import MOST_ALIKE, MOST_SAMPLES
+from greybox_torch.api import asked_of_channels, exchanged, short_refits
+from greybox_torch.api.exchanged import MOST_ALIKE
+from greybox_torch.api.short_refits import MOST_SAMPLES
 from greybox_torch.api.verdict_summary import notes
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.sections.headline import Headline
@@ -93,7 +94,7 @@ def test_a_diagnosis_asks_it_too() -> None:
 
 def test_a_sensor_that_begins_late_is_no_reason_to_fail(monkeypatch: pytest.MonkeyPatch) -> None:
     """Seen: the estimate failed after all was done, as the beginning of the experiments had no sample of a channel."""
-    monkeypatch.setattr(exchanged, "MOST_SAMPLES", 100)
+    monkeypatch.setattr(short_refits, "MOST_SAMPLES", 100)
     runs = []
     for k, role in enumerate(("estimation", "validation")):
         run = recorded(role, k, {"P1": "P2", "P2": "P1"}, {})
@@ -107,7 +108,7 @@ def test_a_change_is_compared_with_the_estimate_itself(
     achieved: float, is_asked: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Seen: "(-inf % as it is)", where the short refit as it is failed; and a question though the estimate was the better one."""
-    monkeypatch.setattr(exchanged, "_fit", lambda *given, refitted=True: 90.0 if given[3].read else -np.inf)
+    monkeypatch.setattr(exchanged, "fit_after", lambda *given, refitted=True: 90.0 if given[3].read else -np.inf)
     roles = ("estimation", "validation")
     data = gt.DataSet([recorded(role, k, {}, {}) for k, role in enumerate(roles)])
     question = exchanged.exchanged(data, Plate(), None, achieved)  # pyright: ignore[reportArgumentType]
@@ -135,9 +136,10 @@ def test_many_channels_of_one_unit_are_not_exchanged_one_by_one() -> None:
 def test_the_log_says_what_came_of_it(found: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
     """Seen: "The validation fit is poor: short refits with channels exchanged, or of the other sign", and no more of it."""
     told: list[str] = []
-    monkeypatch.setattr(exchanged, "exchanged", lambda *given: found)
+    monkeypatch.setattr(asked_of_channels, "exchanged", lambda *given: found)
+    monkeypatch.setattr(asked_of_channels, "rescaled", lambda *given: None)
     data = gt.DataSet([recorded(role, k, {}, {}) for k, role in enumerate(("estimation", "validation"))])
     poor = [Score("1", "validation", "T1", 20.0, 1.0)]
-    assert exchanged.asked_where_poor(data, Plate(), poor, lambda: None, told.append) == found  # pyright: ignore
+    assert asked_of_channels.asked_where_poor(data, Plate(), poor, lambda: None, told.append) == found  # pyright: ignore
     assert told[0].startswith("The validation fit is poor: trying short refits")
-    assert told[1:] == [exchanged.FAR_BETTER_SO if found else exchanged.NOTHING_CHANGED]
+    assert told[1:] == [asked_of_channels.FAR_BETTER_SO if found else asked_of_channels.NOTHING_CHANGED]

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import greybox_torch as gt
-from greybox_torch.api.fit_advice import begun_with, fit_advice
+from greybox_torch.api.fit_advice import begun_with, fit_advice, lost_outputs, ran_away
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.estimate.problem import make_problem
 from tests.api.motor import Motor
@@ -61,6 +63,32 @@ def test_of_outputs_that_never_move_nothing_is_said() -> None:
     assert fit_advice({"start": [still], "refit": [still]}, BEGUN) is None
     told = fit_advice({"start": [still, bad], "refit": [still, bad]}, BEGUN)
     assert told is not None and "(mean fit -40 %)" in told
+
+
+def test_an_output_that_is_lost_behind_a_good_mean_is_told() -> None:
+    """Seen: a pressure read a hundred times too small, of which a mean fit of 21 % said nothing."""
+
+    def of(*fits: float) -> str | None:
+        return lost_outputs({"refit": [Score("one", "validation", f"y{k}", fit, 1.0) for k, fit in enumerate(fits)]})
+
+    told = of(95.0, 96.0, -10.0)
+    assert told is not None and told.startswith("y2 (-10 %) is simulated no better than a constant would")
+    assert "the mean fit of 60.3 % hides" in told
+    two = of(99.0, -1.0, -2.0)
+    assert two is not None and two.startswith("y1 (-1 %) and y2 (-2 %) are simulated")
+    assert of(95.0, 3.0) is None and of(10.0, -90.0) is None, "of all that is lost the other sentence speaks"
+    assert of(95.0, -np.inf) is None
+
+
+def test_parameters_that_ran_away_are_told() -> None:
+    """Seen: a parameter of 1e+87 in the table, without a word."""
+    (data,) = motors(1)
+    own = gt.DataSet(data.recordings, parameters={"J": {"value": 0.02}})
+    problem = make_problem(own, Motor(), own.estimation())
+    assert ran_away(problem, own) is None
+    k = problem.names.index("J")
+    away = ran_away(replace(problem, values=np.where(np.arange(len(problem.names)) == k, 1e87, problem.values)), own)
+    assert away is not None and away.startswith("Ran away: J = 1e+87 (begun with 0.02)")
 
 
 def test_where_the_start_values_came_from_is_named() -> None:

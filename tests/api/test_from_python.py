@@ -27,6 +27,8 @@ def test_simulate(folder: Path, data: gt.DataSet) -> None:
     check_shown(found, folder / "saved", {f"{name}.{kind}" for name in names for kind in ("csv", "png")})
     with pytest.raises(KeyError, match="no experiment 'sweep'; there are: Steps, More steps, Sweep"):
         _ = found["sweep"]
+    with pytest.raises(KeyError, match="no output 'pos'; there are: speed"):
+        _ = found["Sweep"]["pos"]
 
 
 def test_fit(folder: Path, data: gt.DataSet) -> None:

@@ -59,6 +59,8 @@ def test_there_is_one_recommendation() -> None:
     assert kept.sentence.endswith("stands for it. Keep the network.")
     assert explained_sentence(kept, scores(physics=59.7, hybrid=42.3)).endswith("stands for it.")
     assert explained_sentence(kept, scores(physics=59.7, hybrid=80.0)) == kept.sentence
+    not_judged = explained_sentence(kept, scores(physics=59.7, hybrid=80.0), judged=False)
+    assert not_judged.endswith("stands for it."), "seen: Keep the network, of which nearly all held-out runs ran away"
     (told,) = said(physics=59.7, hybrid=42.3, named=90.0)
     assert told.endswith("Use the model with the law in the network's place (`named`).")
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from greybox_torch.api.verdict_summary import SIZE, effect_table, moved_table, notes
+from greybox_torch.diagnosis.one_of import DECIDED_BY, Alternative, OneOf
 from greybox_torch.diagnosis.verdict import MOST_NAMED, STOPPED, Estimate, Left, NotTried
 from greybox_torch.estimate.notes import told_at_bound
 from greybox_torch.report.sections.effects import Effects
@@ -124,3 +125,39 @@ def test_the_models_own_parameters_that_moved_are_listed() -> None:
         ["d", 0.2, 0.7, 0.25, "", "N m s/rad"],
     ]
     assert moved_table(replace(found, parameters=(replace(stiff, augmented=None),)))[1] == []
+
+
+BIAS = replace(
+    BACKLASH, port="air_heat", mechanism="constant_bias", alternatives=(), separating_experiment="standstill"
+)
+MEMBERS = (
+    Alternative("air_heat", "constant_bias", 0.33, "bias", 85.2, "W"),
+    Alternative("actuator", "input_bias", 0.32, "bias", -0.0941, "", one_effect=True),
+)
+
+
+def test_hypotheses_that_are_one_effect_are_told_with_their_values_and_no_experiment() -> None:
+    """Seen: an offset of a compressor and a constant heat, "to tell them apart: standstill and reversals"."""
+    effect = replace(BIAS, one_of=OneOf("a constant offset", 0.65, MEMBERS))
+    (told,) = [line for line in notes(verdict(effect)) if line.startswith("these recordings do not tell apart")]
+    assert told == (
+        "these recordings do not tell apart: constant bias at air_heat (0.33, bias = 85.2 W), input bias at actuator (0.32, bias = "
+        f"-0.0941); in this model they are one effect: {DECIDED_BY}"
+    )
+    section = Effects.of(verdict(effect))
+    assert section is not None
+    (card,) = section.cards
+    assert card.experiment == "" and card.one_effect == f"In this model they are one effect: {DECIDED_BY}"
+    assert [share.value for share in card.shares] == ["bias = 85.2 W", "bias = -0.0941"]
+
+
+def test_some_of_several_hypotheses_are_one_effect() -> None:
+    other = Alternative("room_heat", "constant_bias", 0.2, "bias", 70.0, "W")
+    effect = replace(BIAS, one_of=OneOf("a constant offset", 0.85, (*MEMBERS, other)))
+    (told,) = [line for line in notes(verdict(effect)) if line.startswith("these recordings do not tell apart")]
+    same = f"in this model constant bias at air_heat and input bias at actuator are one effect: {DECIDED_BY}"
+    assert told.endswith(
+        f"room_heat (0.2, bias = 70 W); {same}; to tell the others apart: standstill".replace("0.2,", "0.20,")
+    )
+    section = Effects.of(verdict(effect))
+    assert section is not None and section.cards[0].experiment_tells == "What would tell the others apart"

@@ -131,3 +131,48 @@ def test_numbers_far_from_zero_alone_are_enough() -> None:
     assert {f.level for f in found} == {"warning"}
     assert [f for f in found if "at 128 of 128 random points" in f.found]
     assert not [f for f in found if "moves no output" in f.found]
+
+
+class Orifice(gt.GreyBoxModel):
+    """A volume that fills through an orifice from a supply of 200 bar."""
+
+    states = [gt.State("pressure", "Pa", initial="measured"), gt.State("valve", "")]
+    inputs = [gt.Input("command", "")]
+    outputs = [gt.Output("pressure", "Pa")]
+    parameters = [gt.Parameter("k", 1e3, unit="Pa^0.5/s", lower=0.0), gt.Parameter("ps", 200e5, unit="Pa", fixed=True)]
+    ports = [gt.Balance("oil", level="pressure")]
+
+    def derivative(self, x, u, p, port):
+        flow = p.k * x.valve * torch.sqrt(p.ps - 40.0 * x.pressure)
+        return {"pressure": flow + port.oil, "valve": (u.command - x.valve) / 0.1}
+
+    def output(self, x, u, p):
+        return {"pressure": x.pressure}
+
+
+def test_recorded_values_are_tried_where_there_are_recordings(data_set) -> None:
+    """Seen: "nothing is wrong with it that shows without data" of a card whose pressures the root does not allow."""
+    assert not [f for f in gt.check(Orifice()).findings if f.topic == "numbers"]
+    names = {"command": "", "pressure": "Pa"}
+    low, high = (
+        [{"command": [1.0 + k for k in range(20)], "pressure": [step * k + 1e4 for k in range(20)]}]
+        for step in (1e4, 1e5)
+    )
+    fine = gt.check(Orifice(), data_set(names, low))
+    assert not fine.findings and fine.sentence.endswith("nothing is wrong with it that shows without a simulation.")
+    (found,) = [f for f in gt.check(Orifice(), data_set(names, high)).findings if f.topic == "numbers"]
+    assert (
+        found.level == "warning"
+        and "at 15 of 20 recorded samples, whatever the other states are, such as" in found.found
+    )
+    assert "pressure = 5.1e+05, command = 6" in found.found and found.line is not None
+
+
+def test_a_line_of_which_random_points_have_told_is_not_told_again(data_set) -> None:
+    class Tank(Orifice):
+        def derivative(self, x, u, p, port):
+            return {"pressure": torch.sqrt(x.pressure - 2e5) + port.oil, "valve": u.command - x.valve}
+
+    recorded = [{"command": [1.0] * 20, "pressure": [3e5 if k < 10 else 1e5 for k in range(20)]}]
+    found = [f.found for f in gt.check(Tank(), data_set({"command": "", "pressure": "Pa"}, recorded)).findings]
+    assert sum("no numbers" in one for one in found) == 1

@@ -16,7 +16,8 @@ from greybox_torch.diagnosis.beliefs import NO_BELIEFS
 from greybox_torch.diagnosis.effect import Curve, Effect
 from greybox_torch.diagnosis.one_of import Alternative
 from greybox_torch.diagnosis.progress import Progress
-from greybox_torch.diagnosis.verdict import Trace, Verdict
+from greybox_torch.diagnosis.traces import Trace
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.files import json_text
 from greybox_torch.model import GreyBoxModel

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -38,7 +39,7 @@ def test_a_recording_that_begins_at_rest_is_preferred(undecided, speeds, like: s
     """Seen: a design that began in mid-swing, as the first of the recordings did."""
     one = two(undecided, *speeds)
     begins = beginning_of(one, {})
-    assert (begins.like, begins.moving) == (like, moving)
+    assert (begins.like, begins.moving) == (like, moving) and begins.resting == (() if moving else ("speed",))
     assert one.beginning(like, {}).start["speed"] == speeds[like == "more"]
 
 
@@ -46,6 +47,8 @@ def test_a_start_that_is_asked_for(undecided) -> None:
     moving = gt.design(undecided, precision="J", seconds=0.5)
     assert moving.moving == ("speed",) and moving.start == {"speed": 2.0}
     assert any("start = { speed = 0 }" in line for line in moving.notes)
+    noise = replace(moving, moving=(), resting=("speed",), start={"speed": -0.00394})
+    assert "Begin as steps began: speed at rest." in noise.notes, "seen: speed = -0.00394"
     limits = {**undecided.data.limits, "start": {"speed": 0.0}}
     rest = gt.design(undecided, precision="J", seconds=0.5, limits=limits)
     assert rest.start == {"speed": 0.0} and rest.moving == () and abs(rest.outputs[0][0, 0]) < 1e-12

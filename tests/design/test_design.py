@@ -126,6 +126,10 @@ def test_what_a_folder_keeps_is_what_the_diagnosis_had(results: Path, undecided)
     ("options", "message"),
     [
         (["--precision", "mass"], "--precision mass: expected a free parameter"),
+        (
+            ["--precision", "F_c"],
+            '--precision F_c: expected a free parameter (did you mean "rotor.coulomb_friction.F_c"?)',
+        ),
         (["--seconds", "0"], "--seconds"),
         (["--model", "no.py:Motor"], "no.py"),
     ],

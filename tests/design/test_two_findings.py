@@ -17,6 +17,7 @@ from greybox_torch.api.hypotheses import _left, hypotheses_of, hypothesis_files,
 from greybox_torch.diagnosis.describe.rivals import Rival
 from greybox_torch.diagnosis.verdict import Left
 from greybox_torch.errors import UserError
+from greybox_torch.mechanisms.actuator import InputBias
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.forces import ConstantBias
@@ -157,3 +158,41 @@ def test_without_groups_each_pair_is_told() -> None:
     assert not apart.by_groups and [len(group) for group in apart.groups] == [1, 1, 1]
     chain = Expected((0.6, 0.3, 0.07), np.array([[0.0, 0.1, 9.0], [9.0, 0.0, 0.1], [9.0, 9.0, 0.0]]), None)
     assert chain.decides and not chain.by_groups and chain.groups == [[0, 1, 2]]
+
+
+def instead(alone: Rival, finding: str, probability: float, *laws) -> Rival:
+    """A hypothesis with other laws, (port, law) each, of which the last one is of the finding."""
+    assert isinstance(alone.model, AugmentedModel)
+    made = AugmentedModel(alone.model.plain, [Attachment(*law) for law in laws], alone.model.surroundings)
+    held = {p.name: alone.values.get(p.name, 0.2 if "bias" in p.name else p.value) for p in made.declared_parameters}
+    return Rival(finding, laws[-1][0], laws[-1][1].name, probability, made, held, alone.initial)
+
+
+TORQUE, VOLTAGE, DRAG = ("rotor", ConstantBias()), ("actuator", InputBias()), ("rotor", QuadraticDrag())
+
+
+def test_hypotheses_that_are_one_effect_are_no_matter_of_a_recording(undecided: DiagnosisResult) -> None:
+    """Seen: "No input within the limits was found … Wider limits or more seconds may help", of two names of one constant torque."""
+    alone = undecided.found.rivals[0]
+    torque, voltage = instead(alone, FIRST, 0.5, TORQUE), instead(alone, FIRST, 0.46, VOLTAGE)
+    found = replace(undecided.found, model=torque.model, values=dict(torque.values), rivals=(torque, voltage))
+    told = "constant bias at rotor and input bias at actuator are one effect in this model, whatever the input"
+    with pytest.raises(UserError, match=told):
+        gt.design(replace(undecided, found=found))
+    friction = replace(alone, probability=0.3)
+    of_three = gt.design(replace(undecided, found=replace(found, rivals=(torque, voltage, friction))), seconds=0.5)
+    assert any(told in line for line in of_three.notes)
+
+
+def test_another_finding_is_designed_for_where_one_is_no_matter_of_a_recording(undecided: DiagnosisResult) -> None:
+    alone = undecided.found.rivals[0]
+    torque, voltage = instead(alone, FIRST, 0.5, DRAG, TORQUE), instead(alone, FIRST, 0.46, DRAG, VOLTAGE)
+    drag = instead(alone, SECOND, 0.6, TORQUE, DRAG)
+    friction = instead(alone, SECOND, 0.3, TORQUE, ("rotor", CoulombFriction()))
+    rivals = (torque, voltage, drag, friction)
+    found = replace(undecided.found, model=drag.model, values=dict(drag.values), rivals=rivals)
+    group, _ = to_tell_apart(hypotheses_of(replace(undecided, found=found)))
+    assert [kept.name for kept in group] == ["quadratic drag at rotor", "Coulomb friction at rotor"]
+    alone_open = replace(found, rivals=(torque, voltage, drag))
+    group, _ = to_tell_apart(hypotheses_of(replace(undecided, found=alone_open)))
+    assert group[0].name == "constant bias at rotor"

@@ -8,10 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from greybox_torch.api.verdict_summary import effect_table
 from greybox_torch.diagnosis.effect import Curve, Effect
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
 from greybox_torch.diagnosis.verdict import Left, Verdict
 from greybox_torch.estimate.comparison import Score
+from greybox_torch.report.sections.effects import Effects
 
 BACKLASH = Effect(
     port="gear_spring",
@@ -192,3 +194,16 @@ def test_where_the_error_without_a_name_is(second: float, words: str) -> None:
         f"Something is missing from Motor: {words} at least 12 times the noise that the recordings' highest frequencies show, over short "
         "windows and in free runs alike." in told
     )
+
+
+def test_the_largest_effect_is_shown_first() -> None:
+    """Seen: a report that began with a lag of size 0.6 %, before a dead zone of 31 % and a friction of 34 %."""
+    small = replace(BACKLASH, port="motor", mechanism="input_lag", size=0.006)
+    unknown = replace(BACKLASH, port="arm", mechanism="gravity", size=float("nan"))
+    found = verdict(unknown, small, BACKLASH)
+    assert [e.port for e in found.shown_effects] == ["gear_spring", "motor", "arm"]
+    assert found.sentence.startswith("The mismatch is backlash at gear_spring (probability 0.94), input lag at motor")
+    assert [e["port"] for e in found.as_json()["effects"]] == ["arm", "motor", "gear_spring"], "as they were found"
+    assert [row[0] for row in effect_table(found)[1]] == ["gear_spring", "motor", "arm"]
+    section = Effects.of(found)
+    assert section is not None and [card.port for card in section.cards] == ["gear_spring", "motor", "arm"]

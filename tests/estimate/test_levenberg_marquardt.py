@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from greybox_torch.estimate.levenberg_marquardt import Quadratic, Settings, minimise
+from greybox_torch.estimate.levenberg_marquardt import Quadratic, Settings, _part_of, minimise
 from greybox_torch.estimate.termination import Termination
 
 OPEN = np.full(2, np.inf)
@@ -124,3 +124,9 @@ def test_unknown_that_does_not_matter() -> None:
     found = minimise(evaluate, np.array([0.0, 7.0]), -OPEN, OPEN)
     assert found is not None
     assert found.point == pytest.approx([3.0, 7.0], abs=1e-6)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_gain_beyond_all_numbers_is_no_warning() -> None:
+    """Seen: "RuntimeWarning: overflow encountered in scalar divide" of a simulation from Python."""
+    assert _part_of(1e10, 1e-300) == np.inf and _part_of(1.0, 2.0) == 0.5

@@ -6,12 +6,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+import torch
 
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.fit import fit_records
 from greybox_torch.estimate.free_run import simulate
-from greybox_torch.estimate.overflow import avoidance, overflow_error, overflows, suggestions
+from greybox_torch.estimate.overflow import NO_NUMBER, avoidance, overflow_error, overflows, suggestions
 from greybox_torch.estimate.problem import Problem, make_problem
+from greybox_torch.evaluation import evaluated
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.simulation.simulator import Simulator
 
@@ -84,3 +86,26 @@ def test_the_error_says_all_of_it(problem: Problem) -> None:
 def test_fit_of_what_cannot_be_simulated(problem: Problem) -> None:
     with pytest.raises(NumericalError, match=r"estimating Growth: failed: .* in 'run 1'"):
         fit_records(make_narrow(problem.with_values(np.array([4e6, 1.0]))))
+
+
+class Orifice(GreyBoxModel):
+    """A volume that fills through an orifice from a supply, up to where the root is of a negative number."""
+
+    states, inputs, outputs = [State("p", "bar")], [Input("v", "")], [Output("p", "bar")]
+    parameters = [Parameter("k", 1.0, unit="1/s")]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return {"p": p.k * u.v * (0.1 + torch.sqrt(1.0 - x.p))}
+
+    def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+        return {"p": x.p}
+
+
+def test_the_root_of_a_negative_number_is_told_from_growth(data_set: Any, problem: Problem) -> None:
+    """Seen: "overflows at 0.854 s … it does not with Kq = 2e-09" of a root of a negative number."""
+    data = data_set({"v": "", "p": "bar"}, [{"v": [1.0] * 400, "p": [0.5] * 400}])
+    own = make_problem(data, Orifice(), data.recordings)
+    message = str(overflow_error("simulating", own, Simulator.of(own.model, own.free_names)))
+    assert NO_NUMBER in message
+    assert NO_NUMBER not in str(overflow_error("simulating", problem, Simulator.of(problem.model, problem.free_names)))
+    assert NO_NUMBER in (evaluated(data, Orifice()).overflow or "")

@@ -10,7 +10,8 @@ import pytest
 from greybox_torch.diagnosis.effect import Curve, Effect, Profile
 from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.diagnosis.one_of import Alternative
-from greybox_torch.diagnosis.verdict import Trace, Verdict
+from greybox_torch.diagnosis.traces import Trace
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.estimate.metrics import fit_percent, root_mean_square
 from greybox_torch.report.about import About

@@ -11,7 +11,8 @@ import numpy as np
 from greybox_torch.diagnosis.beliefs import Beliefs
 from greybox_torch.diagnosis.effect import FreeCurve
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
-from greybox_torch.diagnosis.verdict import Estimate, InputTrace, Verdict
+from greybox_torch.diagnosis.traces import InputTrace
+from greybox_torch.diagnosis.verdict import Estimate, Verdict
 from greybox_torch.report.about import About
 from greybox_torch.report.page import render_page
 from tests.browser import after_scripts, needs_browser

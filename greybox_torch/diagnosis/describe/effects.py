@@ -109,6 +109,8 @@ def _effect(
     told = (study.settings, study.beliefs, final.values())
     members = None if taken is None else one_of(model.base, taken, probability, *told)
     parameters, own = _parameters(model, attachment, final), f"{attachment.prefix}."
+    if members is not None and (first := parameters.get(members.members[0].parameter)):
+        members = members.finding_with(first["value"])
     named = partial(signal_name, model.base, site)
     return Effect(
         port=attachment.port,

@@ -13,8 +13,8 @@ from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.select.posterior import shares, told_of
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
-from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.model import GreyBoxModel, Parameter
+from greybox_torch.mechanisms.one_effect import one_effect
+from greybox_torch.model import GreyBoxModel
 
 
 def one_of(
@@ -57,7 +57,7 @@ def one_of(
     if len(named) == 1:
         return None
     members = _as_recommended([_member(model, candidate, share) for candidate, share in named], taken, values or {})
-    alternatives = tuple(Alternative(m.port, m.mechanism, m.probability) for m in members)
+    alternatives = tuple(_told(taken, r, member) for (r, _), member in zip(named, members, strict=True))
     return OneOf(
         statement(members),
         round(min(sum(round(share, 4) for _, share in found), settings.highest_probability), 4),
@@ -68,7 +68,7 @@ def one_of(
 def _member(model: GreyBoxModel, candidate: RankedCandidate, probability: float) -> Member:
     attachment = candidate.candidate.attachment
     site = next(p for p in model.all_ports if p.name == attachment.port)
-    size, unit = _size(candidate, attachment)
+    _, size, unit = _first_parameter(candidate)
     return Member(
         attachment.port,
         attachment.mechanism.name,
@@ -88,20 +88,25 @@ def _as_recommended(members: list[Member], taken: RankedCandidate, values: Mappi
     as a mode found beside it had taken much of what friction made up for.
     """
     first = members[0]
-    sized = _first_of(taken, taken.candidate.attachment)
-    final = None if sized is None else values.get(sized.name)
+    final = values.get(f"{taken.candidate.attachment.prefix}.{_first_parameter(taken)[0]}")
     if final is None or not first.size:
         return tuple(members)
     by = abs(final / first.size)
     return tuple(m if m.size is None else replace(m, size=by * m.size or None) for m in members)
 
 
-def _size(candidate: RankedCandidate, attachment: Attachment) -> tuple[float | None, str]:
-    """The first parameter of a law with its unit, which is what it is mostly about: a time, a force, a gain."""
-    first = _first_of(candidate, attachment)
-    return (None, "") if first is None else (candidate.fitted.values()[first.name], first.unit)
+def _told(taken: RankedCandidate, candidate: RankedCandidate, member: Member) -> Alternative:
+    """The member as a verdict has it, with its value, and whether it is one effect with the finding."""
+    name, _, unit = _first_parameter(candidate)
+    own, its = taken.fitted, candidate.fitted
+    same = candidate is not taken and one_effect(own.model, its.model, own.values(), its.values())
+    return Alternative(member.port, member.mechanism, member.probability, name, member.size, unit, same)
 
 
-def _first_of(candidate: RankedCandidate, attachment: Attachment) -> Parameter | None:
-    own = (p for p in candidate.fitted.model.declared_parameters if p.name.startswith(f"{attachment.prefix}."))
-    return next(own, None)
+def _first_parameter(candidate: RankedCandidate) -> tuple[str, float | None, str]:
+    """The name, value and unit of a law's first parameter, which is what it is mostly about: a time, a force, a gain."""
+    prefix = f"{candidate.candidate.attachment.prefix}."
+    own = [p for p in candidate.fitted.model.declared_parameters if p.name.startswith(prefix)]
+    if not own:
+        return "", None, ""
+    return own[0].name.removeprefix(prefix), candidate.fitted.values()[own[0].name], own[0].unit

@@ -12,6 +12,9 @@ from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.verdict import OF_ESTIMATION, Left
 from greybox_torch.diagnosis.without_effects import NOISE_SHOWN
 
+TOLD_AS_NOISE, MOSTLY_NOISE = 0.02, 1.4
+"""Share of the mismatch from which it is told that what remains is noise, and the error in units of the noise up to which most of it is."""
+
 
 def what_is_left(
     judged: Judgement,
@@ -59,6 +62,7 @@ def what_is_left(
     if effects:
         part = "Less than 0.01" if share < 1e-4 else digits(100 * share)
         whole = f"{part} % of the mismatch remains" if shown else "As much remains as without it"
+        whole += ", most of it noise" if shown and share >= TOLD_AS_NOISE and times < MOSTLY_NOISE else ""
     return Left(share, times, f"{whole}: {size}. {OF_ESTIMATION}, {how}.")
 
 

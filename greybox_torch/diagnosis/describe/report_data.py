@@ -16,7 +16,8 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import too_few_windows
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.settings import DiagnosisSettings
-from greybox_torch.diagnosis.verdict import Estimate, InputTrace, Trace
+from greybox_torch.diagnosis.traces import InputTrace, Trace
+from greybox_torch.diagnosis.verdict import Estimate
 from greybox_torch.estimate.short_validation import short_validation
 from greybox_torch.estimate.slowest_time_constant import slowest_time_constant
 from greybox_torch.mechanisms.actuator import InputDelay

@@ -17,7 +17,7 @@ import torch
 from scipy.special import ndtri
 
 from greybox_torch.diagnosis.settings import DiagnosisSettings
-from greybox_torch.diagnosis.verdict import Trace
+from greybox_torch.diagnosis.traces import Trace
 from greybox_torch.estimate.excitation import excited_band
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.residuals import NORMAL_99, Correlation, feedback_correlation, input_correlation, whiteness

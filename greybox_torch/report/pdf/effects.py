@@ -59,9 +59,12 @@ def _card(sheets: Sheets, card: Card) -> None:
         sheets.need(60.0)
         sheets.text("What it could be" if card.statement else "What else it could be", 9.5, bold=True)
         draw_bars(sheets, [_share(share) for share in card.shares])
+    if card.one_effect:
+        sheets.gap(3.0)
+        sheets.text(f"{card.one_effect}.")
     if card.experiment:
         sheets.gap(3.0)
-        sheets.text(f"{'What would tell them apart' if card.shares else 'What would show it best'}: {card.experiment}.")
+        sheets.text(f"{card.experiment_tells}: {card.experiment}.")
     sheets.gap(8.0)
     for chart in (*card.curves, *(card.responses.charts if card.responses else ()), card.profiles, card.timelines):
         if chart is not None:
@@ -73,6 +76,7 @@ def _card(sheets: Sheets, card: Card) -> None:
 def _share(share: Share) -> tuple[str, float, str, str]:
     kind = "chosen" if share.chosen else "together" if share.together else "other"
     name = f"{share.mechanism} at {share.port}" if share.port else share.mechanism
+    name += f" ({share.value})" if share.value else ""
     return name, share.probability, f"{share.probability:.2f}", BARS[kind]
 
 

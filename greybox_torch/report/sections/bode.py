@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from greybox_torch.diagnosis.verdict import InputTrace, Trace
+from greybox_torch.diagnosis.traces import InputTrace, Trace
 from greybox_torch.report import text
 from greybox_torch.report.chart.marks import Mark, band, line, points
 from greybox_torch.report.chart.panel import Chart, Key, Panel

@@ -33,7 +33,7 @@ class ParameterRow:
 @dataclass(frozen=True)
 class Share:
     """A hypothesis and its probability. ``together``: the recordings do not tell it from the chosen one; ``rest`` is left over for all
-    hypotheses that are not listed.
+    hypotheses that are not listed. ``value``: of its law's first parameter, where that is told.
     """
 
     mechanism: str
@@ -42,6 +42,7 @@ class Share:
     chosen: bool = False
     together: bool = False
     rest: bool = False
+    value: str = ""
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,7 @@ class Card:
     bounded: str
     undetermined: str
     shares: tuple[Share, ...]
+    one_effect: str
     experiment: str
     source: str
     unknown: bool
@@ -74,6 +76,13 @@ class Card:
     responses: Responses | None
     profiles: Chart | None
     timelines: Chart | None
+
+    @property
+    def experiment_tells(self) -> str:
+        """What the experiment is good for, in words."""
+        if not self.shares:
+            return "What would show it best"
+        return f"What would tell {'the others' if self.one_effect else 'them'} apart"
 
 
 @dataclass(frozen=True)
@@ -87,18 +96,18 @@ class Effects:
     @classmethod
     def of(cls, verdict: Verdict) -> Effects | None:
         alone = len(verdict.effects) + len(verdict.refinements) == 1
-        cards = (_card(e, responses(verdict, e), alone) for e in verdict.effects)
+        cards = (_card(e, responses(verdict, e), alone) for e in verdict.shown_effects)
         return cls(tuple(cards), verdict.made_up) if verdict.effects else None
 
 
 def _card(effect: Effect, shown: Responses | None, alone: bool) -> Card:
-    unknown = effect.mechanism == "unknown"
+    unknown, whole = effect.mechanism == "unknown", effect.one_of
     return Card(
         title=_unknown_title(effect) if unknown else text.first_capital(text.mechanism(effect.mechanism)),
         port=effect.port,
-        statement="" if effect.one_of is None else text.first_capital(effect.one_of.statement),
-        alike="" if effect.one_of is None else effect.one_of.in_brief,
-        probability=effect.probability if effect.one_of is None else effect.one_of.probability,
+        statement="" if whole is None else text.first_capital(whole.statement),
+        alike="" if whole is None else whole.in_brief,
+        probability=effect.probability if whole is None else whole.probability,
         explanation=effect.explanation,
         where=effect.where,
         signals=effect.signals,
@@ -110,7 +119,8 @@ def _card(effect: Effect, shown: Responses | None, alone: bool) -> Card:
         bounded=effect.bounded,
         undetermined=effect.undetermined,
         shares=_shares(effect),
-        experiment=effect.separating_experiment,
+        one_effect="" if whole is None or not whole.one_effect else text.first_capital(whole.told_one_effect),
+        experiment=effect.separating_experiment if whole is None or whole.separable else "",
         source=effect.source,
         unknown=unknown,
         curves=_own_charts(effect),
@@ -152,12 +162,13 @@ def _shares(effect: Effect) -> tuple[Share, ...]:
     members = () if effect.one_of is None else effect.one_of.members
     inside = {(m.port, m.mechanism) for m in members}
     rivals = {(a.port, a.mechanism): a for a in (*members, *effect.alternatives)}
-    rivals.pop((effect.port, effect.mechanism), None)
+    own = rivals.pop((effect.port, effect.mechanism), None)
     if not rivals:
         return ()
-    listed = [Share(text.mechanism(effect.mechanism), effect.port, effect.probability, chosen=True)]
+    value = "" if own is None else own.told_value
+    listed = [Share(text.mechanism(effect.mechanism), effect.port, effect.probability, chosen=True, value=value)]
     listed += [
-        Share(text.mechanism(a.mechanism), a.port, a.probability, together=place in inside)
+        Share(text.mechanism(a.mechanism), a.port, a.probability, together=place in inside, value=a.told_value)
         for place, a in sorted(rivals.items(), key=lambda item: -item[1].probability)
     ]
     left = 1.0 - sum(share.probability for share in listed)

@@ -9,7 +9,8 @@ import numpy as np
 
 from greybox_torch.diagnosis.describe.residual_tests import input_answers
 from greybox_torch.diagnosis.effect import Effect
-from greybox_torch.diagnosis.verdict import InputTrace, Trace, Verdict
+from greybox_torch.diagnosis.traces import InputTrace, Trace
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.excitation import excited_band
 from greybox_torch.estimate.frequency_response import Response, frequency_response
 from greybox_torch.mechanisms.library import LIBRARY

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from greybox_torch.diagnosis.verdict import Trace, Verdict
+from greybox_torch.diagnosis.traces import Trace
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report import text
 from greybox_torch.report.chart.marks import line
 from greybox_torch.report.chart.panel import Chart, Key, Panel, side_by_side

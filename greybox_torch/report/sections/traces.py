@@ -8,7 +8,8 @@ from itertools import islice
 
 import numpy as np
 
-from greybox_torch.diagnosis.verdict import InputTrace, Trace, Verdict
+from greybox_torch.diagnosis.traces import InputTrace, Trace
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.metrics import root_mean_square
 from greybox_torch.report import text
 from greybox_torch.report.chart.marks import Mark, line, span

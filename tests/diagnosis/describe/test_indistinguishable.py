@@ -29,7 +29,7 @@ def told(stub, monkeypatch):
         parameters = () if size is None else (stub(name=name, unit="N m"),)
         return stub(away=away, values=lambda: {name: size}, model=stub(declared_parameters=parameters))
 
-    def make(*hypotheses, probability=0.6, sizes=(), values=None):
+    def make(*hypotheses, probability=0.6, sizes=(), values=None, one_effect=False):
         ranked = [
             stub(
                 candidate=stub(attachment=Attachment(port, law)),
@@ -43,6 +43,7 @@ def told(stub, monkeypatch):
         monkeypatch.setattr(indistinguishable, "shares", lambda *given: pairs)
         monkeypatch.setattr(indistinguishable, "told_of", lambda *given: told_shares)
         monkeypatch.setattr(indistinguishable, "divergence", lambda one, other: other.away)
+        monkeypatch.setattr(indistinguishable, "one_effect", lambda *given: one_effect)
         ports = [stub(name=name, kind="body") for name in ("motor", "arm")]
         step = SelectionStep((), stub(), tuple(ranked), ranked[0])
         return one_of(stub(all_ports=ports), step, probability, SETTINGS, values=values)
@@ -101,6 +102,16 @@ def test_curves_are_no_rivals_and_have_none(told) -> None:
     curve = Unknown("speed")
     assert told(("motor", CoulombFriction(), 0.6, 0.0), ("motor", curve, 0.3, 0.0)) is None
     assert told(("motor", curve, 0.6, 0.0), ("motor", CoulombFriction(), 0.3, 0.0)) is None
+
+
+def test_members_that_are_one_effect_with_the_finding(told) -> None:
+    """Seen: an offset of a heater and a constant heat, with an experiment "to tell them apart"."""
+    both = (("motor", ConstantBias(), 0.6, 0.0), ("arm", ConstantBias(), 0.3, 1.0))
+    found = told(*both, one_effect=True)
+    assert found is not None and [m.one_effect for m in found.members] == [False, True]
+    assert found.one_effect == found.members and not found.separable
+    apart = told(*both)
+    assert apart is not None and apart.one_effect == () and apart.separable
 
 
 def test_no_more_is_claimed_than_the_most_that_ever_is(told) -> None:

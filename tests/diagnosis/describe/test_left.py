@@ -52,6 +52,19 @@ def test_shares_are_plain_numbers(stub, share, words) -> None:
     assert left.sentence.startswith(f"{words} of the mismatch remains")
 
 
+def test_much_that_remains_and_is_noise_is_told_as_such(stub) -> None:
+    """Seen: "26 % of the mismatch remains … 1.2 times the noise", which read as a contradiction."""
+    left = what_is_left(stub(left=lambda effects: (0.26, 1.2, "Run 2")), [], True, 1.3)
+    assert left.sentence.startswith(
+        "26 % of the mismatch remains, most of it noise: in Run 2 the free run's error is 1.2 times"
+    )
+    for share, times in ((0.26, 1.5), (0.26, np.nan), (0.01, 1.2)):
+        assert (
+            "most of it"
+            not in what_is_left(stub(left=lambda effects, s=share, t=times: (s, t, "Run 2")), [], True, 1.3).sentence
+        )
+
+
 def test_where_noise_is_not_known(stub) -> None:
     left = what_is_left(stub(left=lambda effects: (1.0, np.nan, "")), [], False, 1.3)
     assert left.sentence.startswith(

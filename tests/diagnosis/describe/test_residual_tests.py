@@ -8,7 +8,7 @@ from scipy.signal import lfilter
 
 from greybox_torch.diagnosis.describe.residual_tests import Detection, detect
 from greybox_torch.diagnosis.settings import DiagnosisSettings
-from greybox_torch.diagnosis.verdict import Trace
+from greybox_torch.diagnosis.traces import Trace
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.residuals import input_correlation
 

@@ -9,7 +9,8 @@ from scipy.signal import lfilter
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
 from greybox_torch.diagnosis.settings import DiagnosisSettings
-from greybox_torch.diagnosis.verdict import InputTrace, Trace, Verdict
+from greybox_torch.diagnosis.traces import InputTrace, Trace
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.excitation import excited_band
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.report.about import About

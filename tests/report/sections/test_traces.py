@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.verdict import InputTrace, Verdict
+from greybox_torch.diagnosis.traces import InputTrace
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report.about import About
 from greybox_torch.report.page import render_page
 from greybox_torch.report.sections.traces import MOST_INPUTS, Traces

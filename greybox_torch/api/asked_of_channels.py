@@ -1,0 +1,50 @@
+"""What a user is asked of channels where an estimate simulates the validation experiments badly: exchanged, turned, of another scale?"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from greybox_torch.api.exchanged import exchanged
+from greybox_torch.api.rescaled import rescaled
+from greybox_torch.api.short_refits import beginnings
+from greybox_torch.data import DataSet
+from greybox_torch.estimate.comparison import Score, held_out_scores, mean_fit
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulation.simulator import Simulator
+
+POOR = 80.0
+"""Mean fit in % below which it is asked."""
+
+FAR_BETTER_SO = "One of these changes makes it far better: the question is asked with the results"
+NOTHING_CHANGED = "None of these changes makes it far better: the channels seem to be what the card says"
+"""What came of it, in the log."""
+
+
+def asked_where_poor(
+    data: DataSet,
+    model: GreyBoxModel,
+    refit: Sequence[Score],
+    simulator: Callable[[], Simulator],
+    progress: Callable[[str], None],
+) -> str | None:
+    """The question of :func:`exchanged`, or else of :func:`rescaled`, where the re-estimated model, with the scores ``refit``, is poor on
+    the validation experiments.
+
+    Args:
+        simulator: makes the one that is needed then.
+        progress: is told of it, as it takes as long as a few short refits.
+    """
+    if not poor(refit) or beginnings(data) is None:
+        return None
+    progress(
+        "The validation fit is poor: trying short refits with channels exchanged, of the other sign, or of another scale"
+    )
+    made, achieved = simulator(), mean_fit(held_out_scores(refit))
+    question = exchanged(data, model, made, achieved) or rescaled(data, model, made, achieved)
+    progress(FAR_BETTER_SO if question else NOTHING_CHANGED)
+    return question
+
+
+def poor(scores: Sequence[Score]) -> bool:
+    """Whether the scores of a model are so poor on the validation experiments that it is asked."""
+    return not mean_fit(held_out_scores(scores)) >= POOR

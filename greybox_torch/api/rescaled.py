@@ -1,0 +1,86 @@
+"""Whether a channel is read with another scale than it was recorded in: asked where an estimate simulates the validation experiments badly.
+
+Free parameters make up for a part of a wrong scale, so that a refit alone does not tell 100 from 60. The start values, which are right
+within less than that on most cards, do.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import numpy as np
+
+from greybox_torch.api.short_refits import (
+    AS_GOOD,
+    AS_IT_IS,
+    FAR_BETTER,
+    FOLLOWS,
+    REFITTED,
+    Change,
+    beginnings,
+    fit_after,
+    judging,
+)
+from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.digits import digits
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulation.simulator import Simulator
+
+DECADES = (10.0, 100.0, 1000.0)
+"""Factors that any channel may be read with too much or too little."""
+
+PER_MINUTE, DEGREES = 60.0, 180.0 / np.pi
+"""Those of units with a time or an angle in them."""
+
+MOST_CHANNELS = 8
+"""Inputs, and outputs, up to which each is tried with every factor: seven simulations or so for one."""
+
+
+def rescaled(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:
+    """A question to the user, where other values of one channel, by a factor that units differ by, make a short refit far better on the
+    validation experiments than these are as they stand; else None. Only factors are refitted with which the start values alone simulate
+    better.
+
+    Arguments as for :func:`greybox_torch.api.exchanged.exchanged`.
+    """
+    short, changes = beginnings(data), list(_changes(model))
+    if short is None or not changes:
+        return None
+    as_begun = fit_after(short, model, simulator, AS_IT_IS, refitted=False)
+    by_start = {k: fit_after(short, model, simulator, change, refitted=False) for k, change in enumerate(changes)}
+    nearer = [k for k, fit in by_start.items() if fit > as_begun]
+    tried = sorted(nearer, key=lambda k: -by_start[k])[:REFITTED]
+    if not tried:
+        return None
+    left = 100.0 - max(fit_after(short, model, simulator, AS_IT_IS), achieved if np.isfinite(achieved) else -np.inf)
+    lefts = {k: 100.0 - fit_after(short, model, simulator, changes[k]) for k in tried}
+    least = min(lefts.values())
+    if not least < min(FAR_BETTER * left, 100.0 - FOLLOWS):
+        return None
+    told = next(k for k in tried if lefts[k] <= AS_GOOD * least)  # in the order of what the start values say
+    as_it_is = f" instead of {digits(100.0 - left, 3)} %" if np.isfinite(left) else ""
+    return (
+        f"{changes[told].question}, a short refit reaches a mean fit of {100.0 - lefts[told]:.3g} % on {judging(data)}{as_it_is}. "
+        "If that is so, mend its scale, unit or file_unit on the card; if not, disregard this"
+    )
+
+
+def _changes(model: GreyBoxModel) -> Iterator[Change]:
+    for signals in (model.inputs, model.outputs):
+        for signal in signals if len(signals) <= MOST_CHANNELS else ():
+            for times in _factors(signal.unit):
+                larger, smaller = _question(signal.name, times, "as large"), _question(signal.name, times, "smaller")
+                yield Change({signal.name: signal.name}, larger, times)
+                yield Change({signal.name: signal.name}, smaller, 1.0 / times)
+
+
+def _factors(unit: str) -> list[float]:
+    words = set(re.findall(r"[A-Za-z]+", unit))
+    per_minute = [PER_MINUTE] if words & {"s", "min", "h", "Hz", "rpm"} else []
+    return [*DECADES, *per_minute, *([DEGREES] if words & {"rad", "deg"} else [])]
+
+
+def _question(name: str, times: float, size: str) -> str:
+    known = {PER_MINUTE: " (s and min differ by that)", DEGREES: " (rad and deg differ by that)"}
+    return f"Is the scale of {name} right? With values {digits(times, 3)} times {size}{known.get(times, '')}"

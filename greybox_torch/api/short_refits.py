@@ -1,0 +1,93 @@
+"""Short refits with channels changed: what a slip on the card would explain, on the beginnings of the experiments."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from greybox_torch.data import DataSet, Recording
+from greybox_torch.errors import NumericalError, UserError
+from greybox_torch.estimate.comparison import compare, held_out_scores, mean_fit
+from greybox_torch.estimate.fit import fit_records
+from greybox_torch.estimate.levenberg_marquardt import ROUGH
+from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate.simulators import fine_enough
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.simulation.simulator import Simulator
+
+MOST_SAMPLES = 4000
+"""Samples of the experiments of a role that it is asked with: the beginnings of all. A hint is worth no more time."""
+
+REFITTED = 3
+"""Changes that are refitted, those that simulate best with the start values."""
+
+FAR_BETTER = 0.5
+"""Part of what is missing to a fit of 100 % that may be left for a change to be told."""
+
+FOLLOWS = 30.0
+"""Mean fit in % that a change has to reach: of free runs that go elsewhere, the one that goes least far says nothing."""
+
+AS_GOOD = 1.2
+"""Times as much that others may leave and be told with it."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """A channel by which another is read instead, by name, and how a reader is asked; ``factor`` by which its values are multiplied, −1
+    where its sign is turned.
+    """
+
+    read: Mapping[str, str]
+    question: str
+    factor: float = 1.0
+
+    def of(self, recording: Recording) -> Recording:
+        """A recording with the change."""
+        changed = {name: self.factor * recording.signals[other] for name, other in self.read.items()}
+        return replace(recording, signals={**recording.signals, **changed})
+
+
+AS_IT_IS = Change({}, "")
+
+
+def beginnings(data: DataSet) -> DataSet | None:
+    """The data set with the beginnings of its experiments, and what the card says of the model; None where one has no sample of a channel
+    there.
+    """
+    runs = []
+    for recording in data.recordings:
+        count = MOST_SAMPLES // sum(other.role == recording.role for other in data.recordings)
+        signals = {name: values[:count] for name, values in recording.signals.items()}
+        runs.append(replace(recording, time=recording.time[:count], signals=signals))
+    own = {"hold": data.hold, "channels": data.channels, "parameters": data.parameters, "initial": data.initial}
+    try:
+        return DataSet(runs, **own, held_out_by_default=data.held_out_by_default)
+    except UserError:  # a sensor that begins late, or more experiments than samples
+        return None
+
+
+def fit_after(
+    data: DataSet, model: GreyBoxModel, simulator: Simulator, change: Change, *, refitted: bool = True
+) -> float:
+    """The mean fit (%) on the validation experiments after a change, of a short refit or of the start values; -inf where none simulates."""
+    runs = [change.of(recording) for recording in data.recordings]
+    judged = [recording for recording in runs if recording.role == "validation"] or runs
+    try:
+        values = None
+        if refitted:
+            estimated = [recording for recording in runs if recording.role == "estimation"]
+            problem = make_problem(data, model, estimated)
+            found = fit_records(problem, simulator=simulator, settings=ROUGH, with_uncertainty=False, starts=1)
+            values = found.problem.values_by_name
+        judging = make_problem(data, model, judged, values=values)
+        fit = mean_fit(held_out_scores(compare(judging, judged, fine_enough(simulator, judging)).scores))
+    except (NumericalError, UserError):  # a change may lead where nothing simulates
+        return -np.inf
+    return fit if np.isfinite(fit) else -np.inf
+
+
+def judging(data: DataSet) -> str:
+    """The experiments that a change is judged on, in words."""
+    return "the validation experiments" if data.validation() else "the experiments"

@@ -1,0 +1,80 @@
+"""Where a channel is read with the wrong scale, an estimate and a diagnosis ask whether it is right."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import greybox_torch as gt
+from greybox_torch.api import rescaled
+from greybox_torch.api.rescaled import MOST_CHANNELS
+from tests.api.test_exchanged import Plate, fitted, recordings
+
+
+@pytest.mark.parametrize(
+    ("sign", "asked"),
+    [
+        (
+            {"T2": 0.01},
+            "Is the scale of T2 right? With values 100 times as large, a short refit reaches a mean fit of 9",
+        ),
+        (
+            {"T1": 1000.0},
+            "Is the scale of T1 right? With values 1000 times smaller, a short refit reaches a mean fit of 9",
+        ),
+        (
+            {"P2": 0.001},
+            "Is the scale of P2 right? With values 1000 times as large, a short refit reaches a mean fit of 9",
+        ),
+    ],
+)
+def test_a_wrong_scale_of_one_channel_is_asked_for(sign: dict[str, float], asked: str) -> None:
+    """Seen: a pressure in bar read a hundred times too small, a fit of 21 %, and not a word."""
+    question = fitted(None, **sign).question
+    assert (
+        question is not None
+        and question.startswith(asked)
+        and " % on the validation experiments instead of" in question
+    )
+
+
+def test_a_diagnosis_asks_it_too() -> None:
+    """Seen: a pressure in bar read a hundred times too small, told as a lag of its sensor (0.85)."""
+    question = gt.diagnose(Plate(), recordings(T2=0.01), time_limit=2).verdict.question
+    assert question is not None and "the scale of T2 right? With values 100 times as large" in question
+
+
+def test_only_what_the_start_values_bear_out_is_refitted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A factor that free parameters make up for is none that the card is asked about."""
+    refits: list[float] = []
+
+    def fit_after(data, model, simulator, change, *, refitted=True) -> float:
+        if refitted:
+            refits.append(change.factor)
+        return 90.0 if refitted and change.read else 20.0 if change.factor != 10.0 else 40.0
+
+    monkeypatch.setattr(rescaled, "fit_after", fit_after)
+    question = rescaled.rescaled(recordings(), Plate(), None, 10.0)  # pyright: ignore[reportArgumentType]
+    assert (
+        refits == [1.0, 10.0, 10.0, 10.0]
+        and question is not None
+        and "90 %" in question
+        and "instead of 20 %" in question
+    )
+    refits.clear()
+    monkeypatch.setattr(rescaled, "fit_after", lambda *given, refitted=True: 20.0)
+    assert rescaled.rescaled(recordings(), Plate(), None, 10.0) is None  # pyright: ignore[reportArgumentType]
+
+
+def test_factors_of_times_and_angles_are_tried_where_the_unit_has_them() -> None:
+    inputs = (gt.Input("speed", "rad/s"), gt.Input("force", "N"))
+    outputs = tuple(gt.Output(f"T{k}", "degC") for k in range(MOST_CHANNELS + 1))
+    changes = list(rescaled._changes(type("Oven", (), {"inputs": inputs, "outputs": outputs})))  # pyright: ignore
+    factors = {name: {c.factor for c in changes if name in c.read} for name in ("speed", "force", "T0")}
+    assert len(factors["force"]) == 6 and factors["T0"] == set()
+    assert sorted(factors["speed"] - factors["force"]) == pytest.approx([1 / 60, np.pi / 180, 180 / np.pi, 60.0])
+    told = {c.factor: c.question for c in changes if "speed" in c.read}
+    assert (
+        told[180 / np.pi] == "Is the scale of speed right? With values 57.3 times as large (rad and deg differ by that)"
+    )
+    assert told[1 / 60].endswith("With values 60 times smaller (s and min differ by that)")
