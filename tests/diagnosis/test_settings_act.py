@@ -38,7 +38,8 @@ def test_a_budget_changes_the_number_of_refits_and_a_setting_the_outcome(dead_zo
     assert effects == 1
     few, _ = refits(dead_zone_search, named_per_length=1, curves_per_length=0, most_screen_ties=1, finalists=1)
     assert 0 < few < many
-    assert refits(dead_zone_search, least_significance=1e9, least_likelihood_significance=1e9)[1] == 0
+    unsure = {"least_significance": 1e9, "least_likelihood_significance": 1e9, "least_significance_of_doubtful": 1e9}
+    assert refits(dead_zone_search, **unsure)[1] == 0
 
 
 def run(card: Path, monkeypatch, *more: str) -> tuple[Any, Any]:

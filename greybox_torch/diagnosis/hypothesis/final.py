@@ -89,8 +89,7 @@ def finish(
     point = point if ended is None else ended.point
     run, point = weighed_by_what_is_left(run, point, budget.record_iterations)
     # What compares hypotheses goes by the weights that all of them share.
-    problem = replace(run.at(point), weights=hypothesis.problem.weights)
-    return Final(problem, _determined(uncertainty(run, point)) or _over_windows(hypothesis))
+    return Final(replace(run.at(point), weights=hypothesis.problem.weights), uncertainty(run, point))
 
 
 def _weighed(hypothesis: Hypothesis, begun: Sequence[Problem], records: Records | None) -> Final | None:
@@ -122,12 +121,6 @@ def as_windows_have_it(hypothesis: Hypothesis, records: Records | None = None) -
     problem = from_windows(hypothesis.fits[-1])
     run = whole_runs(hypothesis, [problem])[0] if records is None else _on_all(hypothesis, records, problem)
     return Final(run.at(run.start), _over_windows(hypothesis))
-
-
-def _determined(found: Uncertainty | None) -> Uncertainty | None:
-    """The uncertainty where it says anything of any parameter: of a run that bounces on, whose errors depend on all of them without bound,
-    it does not, and windows do."""
-    return found if found is not None and np.isfinite(found.deviations("plain")).any() else None
 
 
 def _over_windows(hypothesis: Hypothesis) -> Uncertainty | None:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, partial
-
-import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
@@ -123,7 +122,7 @@ def _sure(cost_before: Callable[[], float], ranked: RankedCandidate, settings: D
     A law that removes most of the error is taken where windows leave that open, too: held-out experiments then decide. Seen: the weight
     of an arm that a propeller lifts, 89 % of the error, 2.4 standard errors, as the arm was at rest in most windows.
     """
-    most = -float(np.log1p(-settings.least_share_of_doubtful))
+    most = -math.log1p(-settings.least_share_of_doubtful)
     likely = ranked.significance > settings.least_significance_of_doubtful
     doubtful = not ranked.unknown and likely and ranked.of_errors > most
     return doubtful or ranked.significance > settings.least_significance or likelier(cost_before, ranked, settings)
