@@ -172,8 +172,8 @@ def inspect(data: DataSet, model: GreyBoxModel | str | None = None) -> Inspectio
 
 
 def _extent(recording: Recording) -> str:
-    """Where the samples are from, where that are files, and how long they take. Rows are those of the first file, or of all one after the
-    other.
+    """Where the samples are from, where they are from files, and how long they take. Rows are those of the first file, or of
+    all one after the other.
     """
     files = [] if recording.source is None else [recording.source.name, *(file.name for file in recording.further)]
     file = f"{brief(files)}, rows = {list(recording.rows)}, " if files else ""

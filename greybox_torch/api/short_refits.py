@@ -46,7 +46,9 @@ class Change:
     def of(self, recording: Recording) -> Recording:
         """A recording with the change."""
         changed = {name: self.factor * recording.signals[other] for name, other in self.read.items()}
-        return replace(recording, signals={**recording.signals, **changed})
+        between = {name: recording.between[other] for name, other in self.read.items() if other in recording.between}
+        kept = {name: marked for name, marked in recording.between.items() if name not in self.read}
+        return replace(recording, signals={**recording.signals, **changed}, between={**kept, **between})
 
 
 AS_IT_IS = Change({}, "")
@@ -60,7 +62,8 @@ def beginnings(data: DataSet) -> DataSet | None:
     for recording in data.recordings:
         count = MOST_SAMPLES // sum(other.role == recording.role for other in data.recordings)
         signals = {name: values[:count] for name, values in recording.signals.items()}
-        runs.append(replace(recording, time=recording.time[:count], signals=signals))
+        between = {name: marked[:count] for name, marked in recording.between.items()}
+        runs.append(replace(recording, time=recording.time[:count], signals=signals, between=between))
     own = {"hold": data.hold, "channels": data.channels, "parameters": data.parameters, "initial": data.initial}
     try:
         return DataSet(runs, **own, held_out_by_default=data.held_out_by_default)

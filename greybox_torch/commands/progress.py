@@ -73,7 +73,7 @@ def _findings(console: Console, first: str) -> Callable[[Standing], None]:
     return tell
 
 
-_LAST_NUMBER = re.compile(r"\d+(\.\d+)?(e[+-]?\d+)?$")
+_LAST_NUMBER = re.compile(r"\d+(\.\d+(e[+-]?\d+)?|e[+-]?\d+)$")
 
 LINE_SECONDS = 5.0
 """Time between two lines on the course of a computation that say nothing else new."""

@@ -82,6 +82,10 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
 
     done = _processed(place, card, time, sample_time, signals, missing)
     check_length(len(done.time), place)
+    between = _between(source, formulas, (start, stop)) if np.array_equal(done.time, time) else {}
+    slower = (
+        f"of a slower file, and as outputs counted at its own samples alone: {', '.join(between)}" if between else ""
+    )
     return Recording(
         name=experiment.name,
         role=experiment.role,
@@ -92,8 +96,8 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
         further=tuple(files[1:]),
         rows=(start, stop) if len(done.time) == stop - start else (0, len(done.time)),
         units={name: entry.unit for name, entry in card.channels.items()},
-        notes=(*source.notes, *done.notes),
-        between=_between(source, formulas, (start, stop)) if len(done.time) == stop - start else {},
+        notes=(*source.notes, *done.notes, *filter(None, [slower])),
+        between=between,
     )
 
 

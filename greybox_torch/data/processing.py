@@ -43,7 +43,7 @@ _SLOWER = 1.5
 
 
 def between_samples(times: Samples, stamps: Samples) -> NDArray[np.bool_] | None:
-    """Which of `times` are not the nearest to any of the slower `stamps`; None where those are not slower.
+    """Which of `times` are nearest to none of the slower `stamps`; None where those are not slower.
 
     A straight line between two samples has their noise once, not in every sample: what is judged by noise would count it as many times.
     """

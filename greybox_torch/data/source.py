@@ -104,13 +104,12 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
             across = ", and missing across its gaps" if unknown.any() else ""
             across = f"{_also_across_lost(table, own[time])}{across}"
             of_none = between_samples(held[time], own[time])
-            slower = "" if of_none is None else "; as an output it counts at its own samples alone"
             for column in own:
                 if column != time:
                     check_finite(own[column], lambda sample, table=table, column=column: table.place(column, sample))
                     held[column] = np.where(unknown, np.nan, at_times(held[time], own[time], own[column]))
                     notes.append(
-                        f'column "{column}" is from {file.name}, joined in time on straight lines between its samples{across}{slower}'
+                        f'column "{column}" is from {file.name}, joined in time on straight lines between its samples{across}'
                     )
                     between |= {} if of_none is None else {column: of_none}
         tables.append(table)

@@ -21,7 +21,7 @@ def of_no_use(scores: Sequence[Score], effects: bool) -> tuple[str, ...]:
         return ()
     which = "The model with what was found" if effects else "The model as it stands, re-estimated,"
     how = f"validation fit {fit:.1f} %" if np.isfinite(fit) else "a run of it overflows"
-    whatever = ", however much of the error over windows is explained" if effects else ""
+    whatever = ", though it explains much of the error over short windows" if effects else ""
     return (
         f"{which} simulates the validation experiments worse than a constant would ({how}): it is of no use for predicting them{whatever}.",
     )

@@ -10,7 +10,7 @@ def likened(first: Mapping[str, str], columns: Sequence[str]) -> dict[str, str]:
     one beginning leads from all of those to some of these; the shortest one. Empty where none does.
     """
     known, wanted = set(columns), list(first.values())
-    if not wanted or known & set(wanted):
+    if not all(wanted) or not wanted or known & set(wanted):
         return {}
     endings = {name.removeprefix(wanted[0]) for name in columns if name.startswith(wanted[0])}
     beginnings = {name.removesuffix(wanted[0]) for name in columns if name.endswith(wanted[0])}

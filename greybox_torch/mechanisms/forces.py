@@ -1,4 +1,4 @@
-"""Forces on a body that depend neither on its position nor on friction: a constant, one more mass."""
+"""Other forces on a body: a constant, and those of one more mass."""
 
 from __future__ import annotations
 

@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 
 from greybox_torch import Body, GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.data.processing import between_samples
-from greybox_torch.diagnosis.hypothesis.noise import output_floors
+from greybox_torch.diagnosis.hypothesis.noise import floor_known, noise_floor, output_floors
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.simulation.records import make_records
@@ -66,12 +67,15 @@ def test_an_output_counts_at_its_own_samples_and_an_input_everywhere(tmp_path: P
     first, held_out = data.recordings
     counted = ~np.isnan(np.concatenate([first.measured("y"), held_out.measured("y")]))
     assert counted.sum() == 299 and not np.isnan(first.signals["y"][1:]).any()
-    assert first.notes[0].endswith("between its samples; as an output it counts at its own samples alone")
+    assert first.notes[-1] == "of a slower file, and as outputs counted at its own samples alone: y"
     records = make_records(data, Cart(), data.recordings)
     np.testing.assert_array_equal(np.isnan(records.y[0]), ~counted)
     assert not np.isnan(records.u).any()
     (variance,) = output_floors(make_problem(data, Cart(), [first]), DiagnosisSettings())[0]
     assert (0.8 * NOISE) ** 2 < variance < (1.2 * NOISE) ** 2
+    problem = make_problem(data, Cart(), [first])
+    over_all = noise_floor(problem, DiagnosisSettings()) / problem.weights[0] ** 2
+    assert over_all == pytest.approx(variance) and floor_known(problem, DiagnosisSettings(noise_floors_agree=1.2))
 
 
 def test_of_a_file_as_fast_every_sample_counts(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from greybox_torch.diagnosis.confirm.simpler_laws import with_simpler_laws
 from greybox_torch.diagnosis.confirm.standing import sharing_with_the_rest
 from greybox_torch.diagnosis.confirm.wider_laws import with_wider_laws
 from greybox_torch.diagnosis.hypothesis.size import size
+from greybox_torch.diagnosis.refit.ranked import doubtful
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -129,8 +130,21 @@ def _to_take_back(study: Study, state: SearchState, gains: Mapping[str, Gain], o
     settings = others.study.settings
     if not _borne_out(gains[weakest], settings.least_held_out, settings):
         return weakest
+    left_open = [
+        p
+        for p, found in gains.items()
+        if found.errors_away <= settings.least_held_out and _doubtful(state, p, settings)
+    ]
+    if left_open:
+        return left_open[0]
     idle = _idle(state, gains, others.fits(state.current), others)
     return sharing_with_the_rest(study, state, others, gains) if idle is None else idle
+
+
+def _doubtful(state: SearchState, prefix: str, settings: DiagnosisSettings) -> bool:
+    """Whether windows left a law open, which then has to show on held-out experiments, and is not kept where they do not exercise it."""
+    done = state.step_of(prefix)
+    return done is not None and done.taken is not None and doubtful(done.taken, settings)
 
 
 def _borne_out(gain: Gain, least: float, settings: DiagnosisSettings) -> bool:

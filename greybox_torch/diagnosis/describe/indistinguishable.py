@@ -82,7 +82,7 @@ def _member(model: GreyBoxModel, candidate: RankedCandidate, probability: float)
 
 
 def _as_recommended(members: list[Member], taken: RankedCandidate, values: Mapping[str, float]) -> tuple[Member, ...]:
-    """The members, that which was ``taken`` first, with its size in the recommended model, and the others' in proportion.
+    """The members, that which was ``taken`` first, with its size in the recommended model, and those of its unit in proportion.
 
     A step knows nothing of the effects that were found after it. Seen: dry friction of "about 0.0027 N m" above a table that had 0.0048,
     as a mode found beside it had taken much of what friction made up for.
@@ -92,7 +92,10 @@ def _as_recommended(members: list[Member], taken: RankedCandidate, values: Mappi
     if final is None or not first.size:
         return tuple(members)
     by = abs(final / first.size)
-    return tuple(m if m.size is None else replace(m, size=by * m.size or None) for m in members)
+    alike = (m.size is not None and m.unit == first.unit for m in members)
+    return tuple(
+        replace(m, size=by * (m.size or 0.0) or None) if same else m for m, same in zip(members, alike, strict=True)
+    )
 
 
 def _told(taken: RankedCandidate, candidate: RankedCandidate, member: Member) -> Alternative:

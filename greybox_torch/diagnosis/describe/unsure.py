@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.hypothesis.significance import too_few_windows
 from greybox_torch.diagnosis.one_of import spoken_at
-from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
@@ -21,19 +18,15 @@ def unsure_candidate(state: SearchState, settings: DiagnosisSettings) -> str:
     Seen: "No law of the library explains it", and four lines below that gravity would lower the error by 89 % (2.4 standard errors).
     """
     tried = [r for step in state.steps if step.taken is None and not step.parent.effects for r in step.ranked]
-    unsure = [r for r in tried if _removes(r) >= MUCH and r.significance <= settings.least_significance]
-    best = max(unsure, key=_removes, default=None)
+    unsure = [r for r in tried if r.removed >= MUCH and r.significance <= settings.least_significance]
+    best = max(unsure, key=lambda r: r.removed, default=None)
     if best is None:
         return ""
     attachment = best.candidate.attachment
     sure = (
         "there are too few windows to be sure"
         if too_few_windows(best.fitted, settings)
-        else f"is {best.significance:.1f} standard errors from chance, where {settings.least_significance:.3g} are wanted"
+        else f"by only {best.significance:.1f} times its standard error, where {settings.least_significance:.3g} are required"
     )
-    named, lowered = spoken_at(attachment.mechanism.name, attachment.port), digits(100 * _removes(best))
+    named, lowered = spoken_at(attachment.mechanism.name, attachment.port), digits(100 * best.removed)
     return f"{named} would lower its mean square by {lowered} %, but {sure}; more windows or longer records would tell"
-
-
-def _removes(candidate: RankedCandidate) -> float:
-    return 1.0 - float(np.exp(-candidate.of_errors))

@@ -87,6 +87,9 @@ def _measured_floor(records: Records, weights: np.ndarray, order: int) -> float:
         rough = np.diff(y, order, axis=1)
         known = rough[~np.isnan(rough)]
         squares, count = squares + float((known**2).sum()), count + known.size
+        for slow in y[np.isnan(rough).all(axis=1)]:
+            apart = _differences(slow, order)
+            squares, count = squares + float((apart**2).sum()), count + apart.size
     return squares / factor / max(count, 1)
 
 
@@ -100,16 +103,16 @@ def output_floors(problem: Problem, settings: DiagnosisSettings) -> np.ndarray:
 
 
 def _rough(y: np.ndarray, order: int) -> float:
-    """The mean square of the differences of samples (N,) in a row; NaN where there are none.
-
-    Of a slower file no two samples in a row are there: then of those that are.
-    """
+    """The mean square of the differences of samples (N,) in a row; NaN where there are none."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # an output that is missing throughout an experiment
         in_a_row = np.diff(y, order)
-        if np.isnan(in_a_row).all():
-            in_a_row = np.diff(y[~np.isnan(y)], order)
-        return float(np.nanmean(in_a_row**2))
+        return float(np.nanmean((_differences(y, order) if np.isnan(in_a_row).all() else in_a_row) ** 2))
+
+
+def _differences(slow: np.ndarray, order: int) -> np.ndarray:
+    """Those of the samples (N,) that are there, for an output from a slower file, of which no few in a row are."""
+    return np.diff(slow[~np.isnan(slow)], order)
 
 
 def _over_experiments(problem: Problem, settings: DiagnosisSettings) -> np.ndarray:

@@ -36,6 +36,11 @@ class RankedCandidate:
         return self.gain - self.plausible
 
     @property
+    def removed(self) -> float:
+        """The share of the mean squared error that it removes, the mean over window lengths in logarithms."""
+        return 1.0 - float(np.exp(-self.of_errors))
+
+    @property
     def unknown(self) -> bool:
         """Whether the newest effect is a free curve rather than a law."""
         return self.candidate.unknown
@@ -87,6 +92,12 @@ def judged_beside(
     """A refit compared with the hypothesis ``step_before`` a step or, where that step was taken with fewer experiments, with ``plain``."""
     before = step_before if over_the_same_windows(step_before, fitted) else plain
     return judged(candidate, before, fitted, settings)
+
+
+def doubtful(ranked: RankedCandidate, settings: DiagnosisSettings) -> bool:
+    """Whether windows leave open if it is chance, of a law that removes most of the error: for held-out experiments to decide."""
+    open_still = settings.least_significance_of_doubtful < ranked.significance <= settings.least_significance
+    return open_still and not ranked.unknown and ranked.removed > settings.least_share_of_doubtful
 
 
 def sound(study: Study, ranked: RankedCandidate) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, partial
@@ -13,7 +12,7 @@ from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.refit.likelihood import cost_of, likelier
 from greybox_torch.diagnosis.refit.rank import rank
-from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, doubtful, in_order
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
 from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist, with_card, with_motion
 from greybox_torch.diagnosis.select.bent_model import unbent_first
@@ -122,10 +121,8 @@ def _sure(cost_before: Callable[[], float], ranked: RankedCandidate, settings: D
     A law that removes most of the error is taken where windows leave that open, too: held-out experiments then decide. Seen: the weight
     of an arm that a propeller lifts, 89 % of the error, 2.4 standard errors, as the arm was at rest in most windows.
     """
-    most = -math.log1p(-settings.least_share_of_doubtful)
-    likely = ranked.significance > settings.least_significance_of_doubtful
-    doubtful = not ranked.unknown and likely and ranked.of_errors > most
-    return doubtful or ranked.significance > settings.least_significance or likelier(cost_before, ranked, settings)
+    over_windows = ranked.significance > settings.least_significance or doubtful(ranked, settings)
+    return over_windows or likelier(cost_before, ranked, settings)
 
 
 def little_is_left(study: Study, state: SearchState) -> bool:
@@ -215,11 +212,9 @@ def _at_other_ports(
 ) -> list[Candidate]:
     """The best named law at the ports where the screen did not put it among the first, if it pays."""
     best = next((r for r in ranked if not r.unknown), None)
-    if (
-        best is None
-        or best.gain < least_gain(best.fitted, study.settings)
-        or best.significance < study.settings.least_significance
-    ):
+    if best is None or best.gain < least_gain(best.fitted, study.settings):
+        return []
+    if best.significance < study.settings.least_significance and not doubtful(best, study.settings):
         return []
     known = [k.attachment for k in found]
     return at_other_ports(study, best.candidate.attachment, known, screened, state.current.fits)

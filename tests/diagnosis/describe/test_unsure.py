@@ -21,7 +21,7 @@ def told(stub):
         ranked = tuple(
             stub(
                 candidate=stub(attachment=Attachment("arm", law)),
-                of_errors=-np.log(1.0 - share),
+                removed=share,
                 significance=errors,
                 fitted=stub(fits=fits),
             )
@@ -35,7 +35,7 @@ def told(stub):
 
 def test_the_one_that_removes_most(told) -> None:
     assert told((ConstantBias(), 0.6, 1.0), (CoulombFriction(), 0.89, 2.4)) == (
-        "Coulomb friction at arm would lower its mean square by 89 %, but is 2.4 standard errors from chance, where 3 are wanted; more "
+        "Coulomb friction at arm would lower its mean square by 89 %, but by only 2.4 times its standard error, where 3 are required; more "
         "windows or longer records would tell"
     )
 
