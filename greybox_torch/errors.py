@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 
@@ -49,6 +49,14 @@ class ArgumentError(UserError):
     def for_option(self) -> str:
         """The message with the option's name in place of the argument's."""
         return f"--{self.option} {self.found}: {self.problem}"
+
+
+def check_none(problems: Sequence[str], place: str, before_one: str = ": ") -> None:
+    """Raises UserError, beginning with ``place``, where there are ``problems``: one in its line, several in a line each."""
+    if len(problems) == 1:
+        raise UserError(f"{place}{before_one}{problems[0]}")
+    if problems:
+        raise UserError(f"{place}: {len(problems)} problems:\n" + "\n".join(f"  {problem}" for problem in problems))
 
 
 class NumericalError(GreyboxError):

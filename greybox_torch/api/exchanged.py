@@ -9,12 +9,10 @@ import numpy as np
 
 from greybox_torch.api.short_refits import (
     AS_GOOD,
-    AS_IT_IS,
-    FAR_BETTER,
-    FOLLOWS,
     REFITTED,
     Change,
     beginnings,
+    far_better,
     fit_after,
     judging,
 )
@@ -42,13 +40,13 @@ def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved
     if short is None or not changes:
         return None
     by_start = {k: fit_after(short, model, simulator, change, refitted=False) for k, change in enumerate(changes)}
-    tried = sorted(by_start, key=lambda k: -by_start[k])[:REFITTED]
-    left = 100.0 - max(fit_after(short, model, simulator, AS_IT_IS), achieved if np.isfinite(achieved) else -np.inf)
-    lefts = {k: 100.0 - fit_after(short, model, simulator, changes[k]) for k in sorted(tried)}
-    least = min(lefts.values(), default=np.inf)
-    if not least < min(FAR_BETTER * left, 100.0 - FOLLOWS):
+    tried = [changes[k] for k in sorted(sorted(by_start, key=lambda k: -by_start[k])[:REFITTED])]
+    found = far_better(short, model, simulator, tried, achieved)
+    if found is None:
         return None
-    asked = [changes[k].question for k, one in lefts.items() if one <= AS_GOOD * least]
+    left, lefts = found
+    least = min(lefts)
+    asked = [change.question for change, one in zip(tried, lefts, strict=True) if one <= AS_GOOD * least]
     question = ", or ".join(asked)
     as_it_is = f" ({digits(100.0 - left, 3)} % as it is)" if np.isfinite(left) else ""
     return (

@@ -14,11 +14,10 @@ import numpy as np
 from greybox_torch.api.short_refits import (
     AS_GOOD,
     AS_IT_IS,
-    FAR_BETTER,
-    FOLLOWS,
     REFITTED,
     Change,
     beginnings,
+    far_better,
     fit_after,
     judging,
 )
@@ -50,18 +49,16 @@ def rescaled(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved:
     as_begun = fit_after(short, model, simulator, AS_IT_IS, refitted=False)
     by_start = {k: fit_after(short, model, simulator, change, refitted=False) for k, change in enumerate(changes)}
     nearer = [k for k, fit in by_start.items() if fit > as_begun]
-    tried = sorted(nearer, key=lambda k: -by_start[k])[:REFITTED]
-    if not tried:
+    tried = [changes[k] for k in sorted(nearer, key=lambda k: -by_start[k])[:REFITTED]]
+    found = far_better(short, model, simulator, tried, achieved) if tried else None
+    if found is None:
         return None
-    left = 100.0 - max(fit_after(short, model, simulator, AS_IT_IS), achieved if np.isfinite(achieved) else -np.inf)
-    lefts = {k: 100.0 - fit_after(short, model, simulator, changes[k]) for k in tried}
-    least = min(lefts.values())
-    if not least < min(FAR_BETTER * left, 100.0 - FOLLOWS):
-        return None
-    told = next(k for k in tried if lefts[k] <= AS_GOOD * least)  # in the order of what the start values say
+    left, lefts = found
+    # in the order of what the start values say
+    told, rest = next(pair for pair in zip(tried, lefts, strict=True) if pair[1] <= AS_GOOD * min(lefts))
     as_it_is = f" instead of {digits(100.0 - left, 3)} %" if np.isfinite(left) else ""
     return (
-        f"{changes[told].question}, a short refit reaches a mean fit of {100.0 - lefts[told]:.3g} % on {judging(data)}{as_it_is}. "
+        f"{told.question}, a short refit reaches a mean fit of {100.0 - rest:.3g} % on {judging(data)}{as_it_is}. "
         "If that is so, mend its scale, unit or file_unit on the card; if not, disregard this"
     )
 

@@ -16,7 +16,7 @@ from greybox_torch.data.source import Source
 from greybox_torch.data.time_units import unit_of_time
 from greybox_torch.data.understood_units import capitals_alone, other_quantity, understood
 from greybox_torch.data.units import conversion, slip
-from greybox_torch.errors import UserError
+from greybox_torch.errors import UserError, check_none
 from greybox_torch.files import toml_text
 
 
@@ -40,10 +40,7 @@ def check_units(
                 _check_unit(where, channels[name], formula, path, found)
         except UserError as error:
             problems.append(str(error))
-    if len(problems) == 1:
-        raise UserError(f"{place}, {problems[0]}")
-    if problems:
-        raise UserError(f"{place}: {len(problems)} problems:\n" + "\n".join(f"  {problem}" for problem in problems))
+    check_none(problems, place, before_one=", ")
 
 
 def _said(source: Source, column: str) -> dict[Path, str]:

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from greybox_torch.errors import UserError, did_you_mean
+from greybox_torch.errors import UserError, check_none, did_you_mean
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.unknown import Unknown
@@ -86,10 +86,7 @@ def beliefs_from_mapping(mapping: Mapping[str, Any], model: GreyBoxModel, where:
             given[_key(key, model)] = _probability(value, key)
         except UserError as error:
             problems.append(str(error))
-    if len(problems) == 1:
-        raise UserError(f"{where}: {problems[0]}")
-    if problems:
-        raise UserError(f"{where}: {len(problems)} problems:\n" + "\n".join(f"  {problem}" for problem in problems))
+    check_none(problems, where)
     return Beliefs(given)
 
 

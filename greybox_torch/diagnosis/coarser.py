@@ -49,9 +49,7 @@ def coarser(
             samples are kept.
     """
     most = min(budget.most_passed_over + 1, _fewest(dataset) // budget.least_samples)
-    slower = any(
-        recording.between for recording in dataset.recordings
-    )  # what is measured may not be among the samples kept
+    slower = any(r.between for r in dataset.recordings)  # what is measured may not be among the samples kept
     if most < 2 or slower or (left is None and not floor_known(problem, settings)):
         return Coarser(dataset, problem)
     beside = np.zeros(len(problem.weights)) if left is None else settings.between_samples * left()

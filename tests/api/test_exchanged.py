@@ -108,7 +108,8 @@ def test_a_change_is_compared_with_the_estimate_itself(
     achieved: float, is_asked: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Seen: "(-inf % as it is)", where the short refit as it is failed; and a question though the estimate was the better one."""
-    monkeypatch.setattr(exchanged, "fit_after", lambda *given, refitted=True: 90.0 if given[3].read else -np.inf)
+    for module in (exchanged, short_refits):
+        monkeypatch.setattr(module, "fit_after", lambda *given, refitted=True: 90.0 if given[3].read else -np.inf)
     roles = ("estimation", "validation")
     data = gt.DataSet([recorded(role, k, {}, {}) for k, role in enumerate(roles)])
     question = exchanged.exchanged(data, Plate(), None, achieved)  # pyright: ignore[reportArgumentType]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import greybox_torch as gt
-from greybox_torch.api import rescaled
+from greybox_torch.api import rescaled, short_refits
 from greybox_torch.api.rescaled import MOST_CHANNELS
 from tests.api.test_exchanged import Plate, fitted, recordings
 
@@ -53,7 +53,8 @@ def test_only_what_the_start_values_bear_out_is_refitted(monkeypatch: pytest.Mon
             refits.append(change.factor)
         return 90.0 if refitted and change.read else 20.0 if change.factor != 10.0 else 40.0
 
-    monkeypatch.setattr(rescaled, "fit_after", fit_after)
+    for module in (rescaled, short_refits):
+        monkeypatch.setattr(module, "fit_after", fit_after)
     question = rescaled.rescaled(recordings(), Plate(), None, 10.0)  # pyright: ignore[reportArgumentType]
     assert (
         refits == [1.0, 10.0, 10.0, 10.0]
@@ -62,7 +63,8 @@ def test_only_what_the_start_values_bear_out_is_refitted(monkeypatch: pytest.Mon
         and "instead of 20 %" in question
     )
     refits.clear()
-    monkeypatch.setattr(rescaled, "fit_after", lambda *given, refitted=True: 20.0)
+    for module in (rescaled, short_refits):
+        monkeypatch.setattr(module, "fit_after", lambda *given, refitted=True: 20.0)
     assert rescaled.rescaled(recordings(), Plate(), None, 10.0) is None  # pyright: ignore[reportArgumentType]
 
 
