@@ -13,14 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from greybox_torch.estimate.integrated_speeds import integrated_speeds
+from greybox_torch.estimate.carried_starts import carried_starts
 from greybox_torch.estimate.levenberg_marquardt import ROUGH, Settings
 from greybox_torch.estimate.open_starts import begun_with, open_starts
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.rival import Rival
 from greybox_torch.estimate.rough_starts import rough_starts
 from greybox_torch.estimate.window_step import Hold, WindowModel, held, stepped
-from greybox_torch.simulation.passes import Pass, Restarts
+from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records, once
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import Windows, cut
@@ -69,6 +69,7 @@ def fit_windows(
     size: float | None = None,
     rival: Rival | None = None,
     damping: float = FIRST_DAMPING,
+    carried: bool = False,
 ) -> WindowFit | None:
     """Estimate the free parameters on windows of ``length`` samples with free start states; None where even these overflow.
 
@@ -79,6 +80,7 @@ def fit_windows(
         size: the size at which a shrunk parameter costs :data:`SHRINKING` samples' worth of error; the largest start value by default.
         rival: a fit of the same windows from another start, beside which this one is given up early where it is far behind.
         damping: to begin with; that of a fit which is carried on.
+        carried: whether ``starts`` are what :func:`carried_starts` brings along with the values of ``problem``.
     """
     windows = cut(problem.records, length)
     states = starts
@@ -93,7 +95,8 @@ def fit_windows(
     expected = np.abs(problem.expected[problem.free])
     sizes = expected if size is None else np.where(expected > 0, expected, 1.0)  # weights of a network: of order one
     here = held(here, hold)
-    evaluations, accepted_steps, growth, change, along = 1, 0, 2.0, 1.0, None
+    evaluations, accepted_steps, growth, change = 1, 0, 2.0, 1.0
+    along = states if carried else None  # carried with the values and starts as they now are
     for iteration in range(settings.iterations):
         if rival is not None and rival.lost(here.mean_square, change, iteration, settings.iterations - iteration):
             break
@@ -102,10 +105,13 @@ def fit_windows(
             trial, trial_states, predicted = stepped(problem, here, states, damping, sizes)
             if predicted <= NEGLIGIBLE * settings.tolerance * here.cost:
                 break
-            there = None
+            there, most = None, here.cost - LEAST_GAIN_RATIO * predicted
+            # After one rejected step the next is as likely to be another: its cost alone takes a third of a pass with tangents.
+            rejected_before = growth > 2.0
             if problem.admissible(trial.values):
-                there = evaluate(trial, simulator, windows, trial_states, hold)
                 evaluations += 1
+                if not (rejected_before and _exceeds(most, trial, simulator, windows, trial_states, hold)):
+                    there = evaluate(trial, simulator, windows, trial_states, hold)
             gain = -1.0 if there is None else (here.cost - there.cost) / predicted
             if there is not None and gain > LEAST_GAIN_RATIO:
                 change = (here.cost - there.cost) / here.cost
@@ -115,7 +121,7 @@ def fit_windows(
                 break
             damping, growth = damping * growth, growth * 2.0
         still = not accepted or change < settings.tolerance
-        if problem.carried.any() and (still or accepted_steps % CARRY_EVERY == 0):
+        if along is None and problem.carried.any() and (still or accepted_steps % CARRY_EVERY == 0):
             along = carried_starts(problem, simulator, windows, states)
             again = evaluate(problem, simulator, windows, along, hold)
             evaluations += 1
@@ -155,35 +161,6 @@ def states_along(fit: WindowFit, simulator: Simulator) -> np.ndarray:
     for w, (first, last) in enumerate(zip(windows.start, windows.last, strict=True)):
         states[first : last + 1] = run.states[w, : last - first + 1]
     return states
-
-
-def carried_starts(problem: Problem, simulator: Simulator, windows: Windows, starts: np.ndarray) -> np.ndarray:
-    """``starts`` (W, n_x) with the carried states brought along each experiment: simulated, or the integral of a measured speed.
-
-    Args:
-        windows: as :func:`cut` makes them.
-    """
-    records = problem.records
-    experiment = records.experiments(windows.start)
-    chains = [np.flatnonzero(experiment == e) for e in range(len(records.first))]
-    most = max(len(c) for c in chains)
-    if most == 1 or not problem.carried.any():
-        return starts
-    result, simulated, first = starts.copy(), problem.carried.copy(), np.searchsorted(experiment, experiment)
-    for i, way in integrated_speeds(problem, windows.start).items():
-        result[:, i], simulated[i] = starts[first, i] + way, False
-    if not simulated.any():
-        return result
-    longest = next(c for c in chains if len(c) == most)
-    every = int(windows.start[longest[1]] - windows.start[longest[0]])
-    of_chain = np.array([c[np.minimum(np.arange(most), len(c) - 1)] for c in chains])
-    begin = Windows(windows.start[of_chain[:, 0]], records.last, every * (most - 1) + 1)
-    restarts = Restarts(every, problem.carried, starts[of_chain])
-    run = simulator.run(problem.driving_records, Pass(begin, problem.values, starts[of_chain[:, 0]], restarts=restarts))
-    assert run.begun is not None
-    for chain, begun in zip(chains, run.begun, strict=True):
-        result[np.ix_(chain[1:], simulated)] = np.nan_to_num(begun[1 : len(chain)][:, simulated])
-    return result
 
 
 def _weak_hold(problem: Problem, states: np.ndarray, mean_square: float, steps: int, size: float | None) -> Hold:
@@ -241,6 +218,18 @@ def evaluate(
         moved=problem.values[problem.free],
     )
     return found if hold is None else held(found, hold)
+
+
+def _exceeds(
+    most: float, problem: Problem, simulator: Simulator, windows: Windows, states: np.ndarray, hold: Hold
+) -> bool:
+    """Whether the cost of :func:`evaluate` exceeds ``most`` or overflows, by a pass without tangents."""
+    run = simulator.run(problem.window_records, Pass(windows, problem.values, states, weights=problem.weights))
+    assert run.normal is not None
+    begun = open_starts(problem, windows)
+    cost = 0.5 * float(run.normal[:, -1, -1].sum())
+    cost += hold.cost(states[:, begun.states], begun.states, begun.bound, problem.values[problem.free])
+    return not cost < most
 
 
 def _weighted_samples(records: Records, windows: Windows) -> int:

@@ -20,6 +20,15 @@ class Hold:
     values: np.ndarray
     value_weights: np.ndarray
 
+    def away(self, states: np.ndarray, open_states: np.ndarray, bound: np.ndarray) -> np.ndarray:
+        """How far open start ``states`` (W, n_s) are from where they are held; not at all where they are ``bound`` (W, n_s)."""
+        return np.where(bound, 0.0, states - self.starts[:, open_states])
+
+    def cost(self, states: np.ndarray, open_states: np.ndarray, bound: np.ndarray, values: np.ndarray) -> float:
+        """What it adds to the cost at open start ``states`` (W, n_s) and free ``values`` (n_p,)."""
+        away, moved = self.away(states, open_states, bound), values - self.values
+        return 0.5 * float((self.weights[open_states] * away**2).sum() + (self.value_weights * moved**2).sum())
+
 
 @dataclass(frozen=True)
 class WindowModel:
@@ -45,14 +54,12 @@ class WindowModel:
 def held(found: WindowModel, hold: Hold) -> WindowModel:
     """The pass with the weak holds added to cost, gradient and Hessian."""
     weights = hold.weights[found.open_states]
-    away = np.where(found.bound, 0.0, found.away - hold.starts[:, found.open_states])
-    moved = found.moved - hold.values
-    cost = float((weights * away**2).sum() + (hold.value_weights * moved**2).sum())
+    away = hold.away(found.away, found.open_states, found.bound)
     return replace(
         found,
-        cost=found.cost + 0.5 * cost,
+        cost=found.cost + hold.cost(found.away, found.open_states, found.bound, found.moved),
         hpp=found.hpp + np.diag(hold.value_weights),
-        gp=found.gp + hold.value_weights * moved,
+        gp=found.gp + hold.value_weights * (found.moved - hold.values),
         hss=found.hss + np.diag(weights),
         gs=found.gs + weights * away,
     )

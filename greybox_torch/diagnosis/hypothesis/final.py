@@ -15,6 +15,7 @@ from greybox_torch.diagnosis.hypothesis.whole_records import coloured, from_wind
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.free_run import FreeRun, descended
 from greybox_torch.estimate.problem import Problem
+from greybox_torch.estimate.returned import returned
 from greybox_torch.estimate.uncertainty import Uncertainty, of_information, uncertainty
 from greybox_torch.estimate.window_information import window_information
 from greybox_torch.simulation.records import Records
@@ -88,6 +89,7 @@ def finish(
     ended = descended(run, point, budget.record_iterations)
     point = point if ended is None else ended.point
     run, point = weighed_by_what_is_left(run, point, budget.record_iterations)
+    point = returned(run, point)
     # What compares hypotheses goes by the weights that all of them share.
     return Final(replace(run.at(point), weights=hypothesis.problem.weights), uncertainty(run, point))
 

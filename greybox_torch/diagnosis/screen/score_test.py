@@ -16,8 +16,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from greybox_torch.diagnosis.screen.linear_answer import LinearAnswer
+from greybox_torch.estimate.carried_starts import carried_starts
 from greybox_torch.estimate.problem import Problem, problem_for
-from greybox_torch.estimate.window_fit import WindowFit, carried_starts
+from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.linear_algebra import cholesky, solve
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
