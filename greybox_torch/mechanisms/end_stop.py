@@ -53,6 +53,8 @@ class EndStop(Mechanism):
 
     def __init__(self, both: bool = False) -> None:
         self.both = both
+        if both:
+            self.generalises = (self.name,)
 
     def described_here(self) -> str:
         return "−k (θ − high) − c ω above high, −k (θ − low) − c ω below low" if self.both else self.described()

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greybox_torch.estimate.carried_starts import carried_starts
 from greybox_torch.estimate.integrated_speeds import integrated_speeds
 from greybox_torch.estimate.problem import Problem, make_problem
-from greybox_torch.estimate.window_fit import carried_starts
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Range, Surroundings

@@ -10,7 +10,7 @@ import pytest
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.rival import Rival
-from greybox_torch.estimate.window_fit import WindowFit, fit_windows
+from greybox_torch.estimate.window_fit import WindowFit, _exceeds, _weak_hold, evaluate, fit_windows
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import cut
@@ -152,3 +152,20 @@ def test_a_fit_is_the_same_in_any_units(data_set: Any, width: float, pressure: f
     own, other = at(1.0, 1.0), at(width, pressure)
     assert other.mean_square == pytest.approx(own.mean_square, rel=1e-6)
     assert other.problem.values / [1.0, width**3, 1.0, 1.0] == pytest.approx(own.problem.values, rel=1e-4)
+
+
+def test_a_pass_without_tangents_tells_the_same_cost(data_set: Any) -> None:
+    """After a rejected step the next is judged by its cost alone: it has to be that of a pass with tangents."""
+    problem = recorded(data_set, 0.5)
+    simulator, windows = Simulator.of(problem.model, problem.free_names), cut(problem.records, 100)
+    draw = np.random.default_rng(6)
+    begun = draw.normal(size=(len(windows.start), 1))
+    hold = _weak_hold(problem, begun, 0.1, windows.steps, None)
+    for _ in range(5):
+        there = problem.with_values(draw.uniform(0.5, 3.0, 3))
+        states = begun + draw.normal(size=begun.shape)
+        found = evaluate(there, simulator, windows, states, hold)
+        assert found is not None
+        assert not _exceeds(found.cost * (1 + 1e-9), there, simulator, windows, states, hold)
+        assert _exceeds(found.cost * (1 - 1e-9), there, simulator, windows, states, hold)
+    assert _exceeds(np.inf, problem, simulator, windows, np.full_like(begun, np.inf), hold), "it overflows"

@@ -14,6 +14,7 @@ from greybox_torch.diagnosis.select import finer_steps
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.end_stop import EndStop
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 
@@ -62,6 +63,32 @@ def test_bristles_too_short_to_be_seen_are_dry_friction_that_sticks(motor_data, 
     ((_, ended),) = _contained(search.study, state, state.effects[0])
     assert (ended.score < fitted.score + 0.05) is sticks
     assert ended.values()["rotor.coulomb_friction.F_c"] == pytest.approx(0.05, rel=0.1) or not sticks
+
+
+def test_stops_at_both_ends_contain_one_at_one_end(motor_data, motor, begun) -> None:
+    """Seen: the lower stop of a dancer roll, told as stops at both ends; the upper one stopped the roll in the held-out experiments."""
+    search = begun(motor_data(torque=lambda q, v: 2.0 * max(2.0 - q, 0.0), noise=0.002), motor)
+    low, high = (getattr(search.surroundings["rotor"].ranges["position"], end) for end in ("low", "high"))
+    assert low < 1.6
+    ranked = []
+    for law, values in (
+        (EndStop(both=True), {"k": 2.0, "low": 1.6, "high": high}),
+        (EndStop(), {"k": 2.0, "where": 1.6, "side": -1.0}),
+    ):
+        effect = attach(motor, "rotor", law)
+        start = search.plain.values() | {f"{effect.prefix}.{n}": v for n, v in values.items()}
+        fitted = search.refitted((effect,), search.plain, [start])
+        ranked.append(judged(Candidate(effect, (), 0.9), search.plain, fitted, search.study.settings))
+    both, one = ranked
+    assert both.gain > 1.0 and both.gain == pytest.approx(one.gain, abs=0.05)
+    state = search.at(both.fitted, steps=(SelectionStep((), search.plain, (both, one), both),)).state
+    ((rival, fitted),) = _contained(search.study, state, state.effects[0])
+    assert rival is one
+    assert fitted.values()["rotor.end_stop.where"] == pytest.approx(1.6, abs=0.05), (
+        "the motor begins at 0.4 rad, the model at zero"
+    )
+    state = search.at(one.fitted, steps=(SelectionStep((), search.plain, (both, one), one),)).state
+    assert _contained(search.study, state, state.effects[0]) == [], "one end contains no other"
 
 
 @pytest.mark.parametrize(
