@@ -11,6 +11,7 @@ from rich.text import Text
 from greybox_torch.api.scores import print_scores
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.effect import Effect
+from greybox_torch.diagnosis.equation_lines import in_lines
 from greybox_torch.diagnosis.one_of import OneOf, spoken_at, with_shares
 from greybox_torch.diagnosis.verdict import STOPPED, Verdict
 from greybox_torch.estimate.comparison import Score
@@ -77,11 +78,12 @@ def notes(verdict: Verdict) -> list[str]:
             *verdict.of_no_use,
             *verdict.short_validation,
             *verdict.evidence,
+            *verdict.at_bounds,
             *verdict.not_tried.sentences(),
         ]
     stopped = [] if verdict.complete else [STOPPED, *verdict.not_tried.sentences()]
     left = [] if verdict.left is None else [verdict.left.sentence]
-    small = [f"Refinement: {refinement.sentence}." for refinement in verdict.refinements]
+    small = [f"Refinement: {r.sentence}.{f' {r.bounded}.' if r.bounded else ''}" for r in verdict.refinements]
     by_effect = (line for effect in verdict.shown_effects for line in _notes(effect))
     of_validation = (*verdict.no_longer_validation, *verdict.short_validation)
     return [
@@ -93,6 +95,7 @@ def notes(verdict: Verdict) -> list[str]:
         *by_effect,
         *left,
         *small,
+        *verdict.at_bounds,
         *stopped,
     ]
 
@@ -125,7 +128,7 @@ def _deviation(value: float | None) -> str | float:
 
 def _notes(effect: Effect) -> list[str]:
     head = spoken_at(effect.mechanism, effect.port)
-    lines = [f"{head}: {effect.equation}"] if effect.equation else []
+    lines = [f"{head}: {in_lines(effect.equation)}"] if effect.equation else []
     lines += [f"{head}: {effect.where}"] if effect.where else []
     lines += [f"{head}: {effect.bounded}"] if effect.bounded else []
     lines += [f"{head}: {effect.undetermined}"] if effect.undetermined else []

@@ -18,12 +18,18 @@ from greybox_torch.name_lists import listed
 
 @dataclass(frozen=True)
 class Profile:
-    """Where an effect's gain lies along one signal: bin edges (n + 1,) in the signal's unit, share of the explained energy per bin (n,)."""
+    """Where an effect's gain lies along one signal: bin edges (n + 1,) in the signal's unit, share of the explained energy per bin (n,).
+
+    ``seen``: the share of the samples per bin (n,), where known; ``levels``: the values of a signal that has only a few, as an input of
+    steps.
+    """
 
     signal: str
     unit: str
     edges: np.ndarray
     share: np.ndarray
+    seen: np.ndarray | None = None
+    levels: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -37,6 +37,7 @@ from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study, silent
 from greybox_torch.diagnosis.verdict import NotTried, Verdict
 from greybox_torch.errors import NumericalError, UserError
+from greybox_torch.estimate.comparison import mean_fit
 from greybox_torch.estimate.start_states import starts_of
 from greybox_torch.linear_algebra import on_one_thread
 from greybox_torch.mechanisms.stored import attachment_json
@@ -174,26 +175,21 @@ def _as_found(
     unexplained = left if is_missing(left, chosen_by, detected, tried, study.settings) else None
     unstable = judged.unstable if effects else frozenset[str]()
     looked = not study.beliefs.exclude_all(model)
+    answered = found.complete and (looked or unexplained is not None)
+    disturbed = left if unexplained is None else None
     verdict = Verdict(
         dataset=dataset.name,
         model=model.title,
         seed=seed,
         seconds=clock.seconds,
-        confidence=confidence(
-            study,
-            state,
-            effects,
-            found.complete and (looked or unexplained is not None),
-            unexplained,
-            judged.left(False)[1],
-        ),
+        confidence=confidence(study, state, effects, answered, unexplained, judged.left(False)[1]),
         effects=effects,
         scores={name: comparison.scores for name, comparison in judged.comparisons(bool(effects)).items()},
         evidence=(
             *sentences(found.dataset, study, state, effects, found.gains, detected, not found.complete),
             *(judged.augmented.sentences() if effects else ()),
             *no_free_run_follows(unstable, study.settings, judged.lost),
-            *((A_DISTURBANCE,) if left is not None and unexplained is None else ()),
+            *((A_DISTURBANCE,) if disturbed is not None else ()),
             *found.more,
         ),
         stages=clock.stages,
@@ -207,6 +203,7 @@ def _as_found(
         parameters=report_data.parameters(judged, bool(effects)),
         complete=found.complete,
         unexplained=unexplained,
+        disturbed=disturbed,
         refinements=refinements,
         left=None
         if effects and judged.by_windows_alone
@@ -217,6 +214,7 @@ def _as_found(
             study.settings.above_noise,
             shown=found.by_parameters is None,
             over_windows=times_noise(study.problem, state.current, study.settings),
+            fit=mean_fit(judged.judging(judged.with_effects, unstable).scores),
         ),
         unstable=unstable,
         settings=study.settings,

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from greybox_torch.diagnosis.at_bounds import own_at_bounds
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.of_no_use import of_no_use
@@ -77,7 +78,7 @@ class NotTried:
 class Estimate:
     """A free parameter of the model, in ``unit``: as the card has it, re-estimated, and with the effects (None where there are none).
 
-    Standard deviations are None where they are not known.
+    Standard deviations are None where they are not known. ``at_bound``: whether the two estimates are at a bound of the parameter.
     """
 
     name: str
@@ -85,6 +86,7 @@ class Estimate:
     start: float
     refit: tuple[float, float | None]
     augmented: tuple[float, float | None] | None
+    at_bound: tuple[bool, bool] = (False, False)
 
 
 @dataclass(frozen=True)
@@ -125,6 +127,8 @@ class Verdict:
     """A clause where the recordings to choose with are too short to tell anything from chance."""
     unsure: str = ""
     """A clause where something would explain much of what nothing explains, and is not sure."""
+    disturbed: float | None = None
+    """How many times the noise it is where nothing was found, and what is left may be a disturbance that nobody measured."""
     question: str | None = None
     """Whether channels are exchanged or turned, without its full stop, where that would explain much of the mismatch."""
     settings: DiagnosisSettings = DiagnosisSettings()
@@ -152,7 +156,7 @@ class Verdict:
         """The verdict in one sentence."""
         if not self.effects:
             known = (self.unexplained, mostly_in(self.counted("refit")), self.looked, self.complete, self.too_short)
-            tried = (self.beliefs.exclude_some, self.unsure)
+            tried = (self.beliefs.exclude_some, self.unsure, self.disturbed)
             return WithoutEffects(self.model, self.confidence, *known, *tried).sentence
         parts = [e.headline for e in self.shown_effects]
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
@@ -175,6 +179,11 @@ class Verdict:
     def asked(self) -> tuple[str, ...]:
         """The question as a sentence, where there is one."""
         return () if self.question is None else (f"{self.question}.",)
+
+    @property
+    def at_bounds(self) -> tuple[str, ...]:
+        """A sentence where free parameters of the model itself ended at one of their bounds."""
+        return own_at_bounds([(e.name, *e.at_bound) for e in self.parameters], bool(self.effects))
 
     def counted(self, model: str) -> tuple[Score, ...]:
         """The scores of a model ("start", "refit", "augmented") but for those on experiments that do not count (``unstable``)."""
@@ -221,6 +230,7 @@ class Verdict:
             **({"unstable": sorted(self.unstable)} if self.unstable else {}),
             **({"question": self.question} if self.question else {}),
             "evidence": list(self.evidence),
+            **({"at_bounds": list(self.at_bounds)} if self.at_bounds else {}),
             **({"short_validation": list(self.short_validation)} if self.short_validation else {}),
             "stages": dict(self.stages),
             "not_tried": self.not_tried.as_json(),

@@ -17,7 +17,8 @@ class WithoutEffects:
     ``unexplained``: how many times the noise the error is, None where that is not clearly more; ``output`` in which it is, where in one;
     ``looked`` and ``complete``: whether anything was looked for, and to the end; ``too_short``: a clause where the recordings to
     choose with are too short to tell anything from chance, else "". ``excluded``: whether beliefs kept some laws from being tried.
-    ``unsure``: a clause on a candidate that would explain much of it and is not sure, else "".
+    ``unsure``: a clause on a candidate that would explain much of it and is not sure, else "". ``disturbed``: how many times the noise the
+    error is where nothing says that more is missing than knowledge of a disturbance, else None.
     """
 
     model: str
@@ -29,6 +30,7 @@ class WithoutEffects:
     too_short: str = ""
     excluded: bool = False
     unsure: str = ""
+    disturbed: float | None = None
 
     @property
     def sentence(self) -> str:
@@ -41,9 +43,13 @@ class WithoutEffects:
             return f"Nothing was looked for in {self.model}: the beliefs exclude every hypothesis."
         if not self.complete:
             return f"Nothing was found to be missing from {self.model} before the search was stopped: no answer yet."
-        return (
-            f"Nothing is missing from {self.model} that these recordings can show (confidence {self.confidence:.2f})."
-        )
+        but = ""
+        if self.disturbed is not None:
+            but = (
+                f", but on the worst experiment its error is {digits(self.disturbed, 3)} times the noise {NOISE_SHOWN}: it follows neither "
+                "the inputs nor any law that was tried, and whether a disturbance leaves it or something that the model lacks is not known"
+            )
+        return f"Nothing is missing from {self.model} that these recordings can show (confidence {self.confidence:.2f}){but}."
 
     @property
     def _why(self) -> str:

@@ -183,6 +183,13 @@ class TorqueSaturation(ByDirection):
         further = [f for f in forms if f != own and f[0] >= own[0] and f[1] >= own[1]]
         return [(TorqueSaturation(*f), {**({"asymmetry": 0.0} if f[0] else {}), **values}) for f in further]
 
+    def acts_beyond(self, values: Mapping[str, float]) -> tuple[float | None, float | None] | None:
+        """Beyond its limits, if it is nearly a clamp whose limits are the same at all speeds."""
+        if self.limited_power or values["softness"] >= NEARLY_CLAMP:
+            return None
+        limit, differs = values["limit"], values.get("asymmetry", 0.0)
+        return -(1.0 - differs) * limit, (1.0 + differs) * limit
+
     def degenerate(
         self, around: Surroundings, values: Mapping[str, float], deviations: Mapping[str, float]
     ) -> str | None:

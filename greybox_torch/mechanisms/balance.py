@@ -109,6 +109,9 @@ class ThresholdFlow(Mechanism):
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return beyond("threshold", values["threshold"], around, "level") or self._bends_to_the_end(around, values)
 
+    def acts_beyond(self, values: Mapping[str, float]) -> tuple[float | None, float | None] | None:
+        return None, values["threshold"]
+
     def _bends_to_the_end(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         """The flow sets in over so much of the levels above the threshold that it is straight over less: a curve, and no threshold."""
         above = around.ranges["level"].high - values["threshold"]

@@ -125,6 +125,11 @@ class EndStop(Mechanism):
             ends = {"where": travel.high if values["side"] > 0 else travel.low}
         return [{"k": stiff * values["k"]}, {"k": hard * values["k"], **ends}]
 
+    def acts_beyond(self, values: Mapping[str, float]) -> tuple[float | None, float | None] | None:
+        if self.both:
+            return values["low"], values["high"]
+        return (None, values["where"]) if values["side"] > 0 else (values["where"], None)
+
     def signals(self) -> tuple[str, ...]:
         return ("position",)
 

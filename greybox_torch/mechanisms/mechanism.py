@@ -213,6 +213,10 @@ class Mechanism:
         """The law that it becomes at the end of a parameter's range, where that is another one's, and where to begin it."""
         return None
 
+    def acts_beyond(self, values: Mapping[str, float]) -> tuple[float | None, float | None] | None:
+        """Below and above which value of the first of its :meth:`signals` it acts alone (None: on no such side); None where anywhere."""
+        return None
+
     def available(self, around: Surroundings) -> bool:
         """Whether the recordings have the signals that it needs."""
         return set(self.needs) - {"delayed"} <= set(around.ranges)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from greybox_torch.model.unit_of_rate import unit_of_rate
+
 
 @dataclass(frozen=True)
 class Range:
@@ -44,6 +46,12 @@ class Surroundings:
     passed_once: frozenset[str] = frozenset()
 
     def per(self, signal: str, power: int = 1) -> str:
-        """The unit of force per signal to a power."""
+        """The unit of force per signal to a power; empty where that of the force is not known."""
         unit = self.units.get(signal, "")
-        return self.force_unit if not unit else f"{self.force_unit}/({unit})" + (f"^{power}" if power > 1 else "")
+        if not unit or not self.force_unit:
+            return self.force_unit
+        if power == 1 and self.force_unit == (rate := unit_of_rate(unit)):
+            return "1/s"
+        if power == 1 and self.force_unit == unit_of_rate(rate):
+            return "1/s^2"
+        return f"{self.force_unit}/({unit})" + (f"^{power}" if power > 1 else "")

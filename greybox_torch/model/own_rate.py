@@ -37,11 +37,20 @@ def without_laws(model: GreyBoxModel, port: Port) -> Callable[[Any, Any, Any], A
     return lambda x, u, p: own_rate(model, port, x, u, p, no_forces(model))
 
 
-def adds_to_rate(model: GreyBoxModel, port: Port) -> bool:
-    """Whether a force of one at a port raises that rate by one: then it has the rate's unit."""
-    if balanced_state(model, port) is None:
-        return False
-    return _is_one(_raised(model, port, {}))
+def added_to(model: GreyBoxModel, port: Port) -> str | None:
+    """The state whose rate a force of one at a port changes by one, whatever the parameters are: then it has the unit of that rate.
+
+    Up or down, where the port says by its signals of no state which it pushes, as a coupling does: it pushes one body and holds another.
+    """
+    own = balanced_state(model, port)
+    changes = [{}, *({q.name: _changed(q.value)} for q in model.declared_parameters)]
+    rates = [_raised_rates(model, port, changed) for changed in changes]
+    named = [own] if own is not None else [state.name for state in model.states]
+    for name in named:
+        raised = [torch.as_tensor(one[name]) for one in rates]
+        if all(_is_one(one if own is not None else one.abs()) for one in raised):
+            return name
+    return None
 
 
 def divided_by(model: GreyBoxModel, port: Port) -> Parameter | None:
@@ -72,8 +81,15 @@ def _is_one(values: torch.Tensor) -> bool:
 
 def _raised(model: GreyBoxModel, port: Port, changed: Mapping[str, float]) -> torch.Tensor:
     """By how much a force of one raises that rate, at random points, with some parameters ``changed``."""
+    state = balanced_state(model, port)
+    assert state is not None
+    return _raised_rates(model, port, changed)[state]
+
+
+def _raised_rates(model: GreyBoxModel, port: Port, changed: Mapping[str, float]) -> dict[str, torch.Tensor]:
+    """The same of every state's rate."""
     *points, p = random_points(model)
     x, u = model.named_signals(*points)
     none, p = no_forces(model), p.replaced(**{n: torch.as_tensor(v, dtype=torch.float64) for n, v in changed.items()})
-    without, there = (torch.as_tensor(own_rate(model, port, x, u, p, f)) for f in (none, with_one(none, port.name)))
-    return there - without
+    without, there = (model.derivative(x, u, p, f) for f in (none, with_one(none, port.name)))
+    return {name: torch.as_tensor(there[name]) - torch.as_tensor(without[name]) for name in there}

@@ -161,3 +161,18 @@ def test_some_of_several_hypotheses_are_one_effect() -> None:
     )
     section = Effects.of(verdict(effect))
     assert section is not None and section.cards[0].experiment_tells == "What would tell the others apart"
+
+
+def test_the_models_own_parameters_at_a_bound_are_told() -> None:
+    """Seen: b = 0 with a standard deviation of 0.18 in a table, and nowhere that zero is its bound."""
+    own = (
+        Estimate("b", "N s/m", 2.0, (4.9, 0.1), (0.0, 0.2), (False, True)),
+        Estimate("T", "s", 0.05, (0.005, 0.01), (0.008, 0.01), (True, False)),
+        Estimate("M", "kg", 6.0, (6.5, 0.1), (7.0, 0.1)),
+    )
+    found, without = (replace(verdict(*effects), parameters=own) for effects in ((BACKLASH,), ()))
+    told = f"{told_at_bound('b (with the effects) and T (without the effects)')}."
+    assert told in notes(found) and found.as_json()["at_bounds"] == [told]
+    assert f"{told_at_bound('T')}." in notes(without) and "at_bounds" not in verdict().as_json()
+    small = replace(BACKLASH, parameters={"sharpness": {"value": 9.0}}, at_bounds=("sharpness",))
+    assert any(told_at_bound("sharpness") in line for line in notes(replace(found, refinements=(small,))))

@@ -148,7 +148,7 @@ class Sledge(gt.GreyBoxModel):
     states = [gt.State("x", "m"), gt.State("v", "m/s")]
     inputs = [gt.Input("base", "m")]
     outputs = [gt.Output("x", "m")]
-    parameters = [gt.Parameter("k", 50.0, unit="N/m"), gt.Parameter("r", 2.0, unit="m")]
+    parameters = [gt.Parameter("k", 50.0, unit="N/m"), gt.Parameter("r", 2.0, unit="m"), gt.Parameter("m", 1.0, "kg")]
     ports = [
         gt.Coupling("spring", deflection=lambda x, u, p: u.base - x.x, rate=lambda x, u, p: -x.v),
         gt.Coupling("lever", deflection=lambda x, u, p: p.r * x.x, rate=lambda x, u, p: p.r * x.v),
@@ -156,7 +156,7 @@ class Sledge(gt.GreyBoxModel):
     ]
 
     def derivative(self, x, u, p, port):
-        return {"x": x.v, "v": p.k * (u.base - x.x) + port.spring - port.lever + port.screw}
+        return {"x": x.v, "v": (p.k * (u.base - x.x) + port.spring - port.lever + port.screw) / p.m}
 
     def output(self, x, u, p):
         return {"x": x.x}

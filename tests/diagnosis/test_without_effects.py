@@ -30,3 +30,13 @@ def test_a_candidate_that_is_not_sure_is_told_in_the_sentence() -> None:
     assert told.endswith(f"no curve of one signal surely explains it, with or without memory: {UNSURE}.")
     stopped = replace(MISSING, unsure=UNSURE, complete=False).sentence
     assert stopped.endswith(f"The search was stopped before it could say what: so far, {UNSURE}.")
+
+
+def test_an_error_above_the_noise_is_told_beside_nothing_missing() -> None:
+    """Seen: "Nothing is missing …" and, four lines below, "4.8 times the noise …: more than noise is left"."""
+    found = replace(verdict(), disturbed=4.76)
+    assert not found.mismatch and found.sentence == (
+        "Nothing is missing from Motor that these recordings can show (confidence 0.95), but on the worst experiment its error is 4.76 "
+        "times the noise that the recordings' highest frequencies show: it follows neither the inputs nor any law that was tried, and "
+        "whether a disturbance leaves it or something that the model lacks is not known."
+    )

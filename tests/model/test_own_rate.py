@@ -10,8 +10,8 @@ import pytest
 import greybox_torch as gt
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.surroundings import surroundings_along
-from greybox_torch.model import Balance, GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.model.own_rate import adds_to_rate, divided_by
+from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
+from greybox_torch.model.own_rate import added_to, divided_by
 
 
 class Room(GreyBoxModel):
@@ -38,7 +38,7 @@ class Room(GreyBoxModel):
 def test_a_force_at_a_balance_has_the_unit_of_the_rate_where_it_adds_to_it(port: str, adds: bool, unit: str) -> None:
     """Seen: heights of a curve of watts, told in K/s."""
     model = Room()
-    assert adds_to_rate(model, next(q for q in model.ports if q.name == port)) == adds
+    assert (added_to(model, next(q for q in model.ports if q.name == port)) is not None) == adds
     recording = gt.Recording.from_arrays("run", {"heat": np.ones(20), "air": np.ones(20)}, sample_time=1.0)
     problem = make_problem(gt.DataSet([recording]), model, (recording,))
     around = surroundings_along(model, problem, np.ones((problem.records.u.shape[1], 2)))
@@ -100,3 +100,43 @@ def test_a_parameter_of_minus_one_is_changed_as_well() -> None:
             return {"air": (u.heat + port.room) / (p.C * p.sign**2), "water": port.tank - 0.1 * x.water}
 
     assert divided_by(Turned(), Room.ports[0]) is None
+
+
+@pytest.mark.parametrize(
+    ("place", "inertia", "powers", "force", "per"),
+    [
+        ("rad", "", 0, "rad/s^2", ("1/s", "1/s^2")),
+        ("mm", "", 0, "mm/s^2", ("1/s", "1/s^2")),
+        ("rad", "kg m^2", 1, "N m", ("N m/(rad/s)", "N m/(rad)")),
+        ("m", "kg", 1, "N", ("N/(m/s)", "N/(m)")),
+        ("mm", "kg", 1, "mN", ("mN/(mm/s)", "mN/(mm)")),
+        ("rad", "m", 2, "N m", ("N m/(rad/s)", "N m/(rad)")),
+        ("deg", "kg m^2", 1, "", ("", "")),
+    ],
+)
+def test_a_force_on_a_body_has_the_unit_of_what_it_changes(
+    place: str, inertia: str, powers: int, force: str, per: tuple[str, str]
+) -> None:
+    """Seen: gravity of 72 "N m" in equations of rad/s^2, and the stiffness of a stop in "/(mm)". An inertia of one is one all the same."""
+
+    class Mass(GreyBoxModel):
+        states: ClassVar = [State("place", place), State("speed", f"{place}/s")]
+        inputs: ClassVar = [Input("push", "V")]
+        outputs: ClassVar = [Output("place", place)]
+        parameters: ClassVar = [Parameter("J", 1.0, unit=inertia)]
+        ports: ClassVar = [
+            Body("mass", speed="speed", position="place"),
+            Coupling("spring", deflection=lambda x, u, p: x.place, rate=lambda x, u, p: x.speed),
+        ]
+
+        def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+            return {"place": x.speed, "speed": (u.push + port.mass - port.spring) / p.J**powers}
+
+        def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
+            return {"place": x.place}
+
+    recording = gt.Recording.from_arrays("run", {"push": np.ones(20), "place": np.ones(20)}, sample_time=1.0)
+    problem = make_problem(gt.DataSet([recording]), Mass(), (recording,))
+    around = surroundings_along(Mass(), problem, np.ones((20, 2)))
+    assert (around["mass"].force_unit, around["mass"].per("speed"), around["mass"].per("position")) == (force, *per)
+    assert around["spring"].force_unit == ("" if place == "mm" and inertia else force)

@@ -73,14 +73,14 @@ def sentences(
         )
     if interrupted:
         lines.append(STOPPED)
-    return tuple(begun(line) for line in lines)
+    return tuple(dict.fromkeys(begun(line) for line in lines))  # a search that comes back to a step says the same again
 
 
 def _removed(lost: Sequence[Attachment], state: SearchState) -> list[str]:
     """What was taken and is not told: names in whose place a free curve stands, and those that nothing confirms."""
     curves = {a.port for a in state.effects if a.mechanism.free}
-    replaced = ", ".join(_name(a) for a in lost if a.port in curves and not a.mechanism.free)
-    others = ", ".join(_name(a) for a in lost if a.port not in curves or a.mechanism.free)
+    replaced = ", ".join(dict.fromkeys(_name(a) for a in lost if a.port in curves and not a.mechanism.free))
+    others = ", ".join(dict.fromkeys(_name(a) for a in lost if a.port not in curves or a.mechanism.free))
     told = [f"A free curve stands in the place of {replaced}."] if replaced else []
     return told + ([f"Removed again, as other experiments or effects do not confirm it: {others}."] if others else [])
 

@@ -24,6 +24,7 @@ def what_is_left(
     *,
     shown: bool = True,
     over_windows: float = np.inf,
+    fit: float = 0.0,
 ) -> Left:
     """What remains on the validation experiments, and whether it is repeatable.
 
@@ -31,6 +32,8 @@ def what_is_left(
         noise: the error, in units of the noise, up to which its kind is not told: it would read as if something were missing after all.
         shown: whether the recordings show the effects; where parameters made up for them, the re-estimated model leaves as much.
         over_windows: the error over windows of the estimation experiments, whose start states are estimated, in units of the noise.
+        fit: mean fit of the recommended model on the validation experiments that count, in %. Below zero the share that is left says
+            nothing: it may be little of what a model leaves that is lost.
     """
     share, times, worst = judged.left(effects)
     parts = over_windows <= noise < times and _parts(judged, effects, worst)
@@ -63,6 +66,9 @@ def what_is_left(
         part = "Less than 0.01" if share < 1e-4 else digits(100 * share)
         whole = f"{part} % of the mismatch remains" if shown else "As much remains as without it"
         whole += ", most of it noise" if shown and share >= TOLD_AS_NOISE and times < MOSTLY_NOISE else ""
+        if shown and fit < 0.0:
+            how_well = f"have a mean fit of {fit:.1f} %, worse than a constant" if np.isfinite(fit) else "overflow"
+            whole = f"With what was found, free runs of the validation experiments {how_well}"
     return Left(share, times, f"{whole}: {size}. {OF_ESTIMATION}, {how}.")
 
 

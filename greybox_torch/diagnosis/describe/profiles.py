@@ -48,9 +48,11 @@ def profile(name: str, unit: str, values: np.ndarray, energy: np.ndarray) -> Pro
     """The share of the explained energy over bins of one signal; bins where the effect costs a little count as none."""
     low, high = np.quantile(values, [0.001, 0.999])
     edges = np.linspace(low, max(high, low + 1e-12), BINS + 1)
-    total, _ = np.histogram(np.clip(values, edges[0], edges[-1]), edges, weights=energy)
-    total = np.maximum(total, 0.0)
-    return Profile(name, unit, edges, total / max(float(total.sum()), 1e-300))
+    inside, levels = np.clip(values, edges[0], edges[-1]), np.unique(values)
+    total = np.maximum(np.histogram(inside, edges, weights=energy)[0], 0.0)
+    seen = np.histogram(inside, edges)[0] / len(values)
+    few = tuple(map(float, levels)) if len(levels) <= BINS else ()
+    return Profile(name, unit, edges, total / max(float(total.sum()), 1e-300), seen, few)
 
 
 def most_of(found: Profile, share: float = 0.8) -> tuple[float, float, float]:

@@ -18,6 +18,7 @@ from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.traces import InputTrace, Trace
 from greybox_torch.diagnosis.verdict import Estimate
+from greybox_torch.estimate.notes import at_bounds
 from greybox_torch.estimate.short_validation import short_validation
 from greybox_torch.estimate.slowest_time_constant import slowest_time_constant
 from greybox_torch.mechanisms.actuator import InputDelay
@@ -100,13 +101,14 @@ def parameters(judged: Judgement, effects: bool) -> tuple[Estimate, ...]:
     problem, finals = judged.problem, (judged.plain, *((judged.augmented,) if effects else ()))
     units = {p.name: p.unit for p in problem.model.declared_parameters}
     values = dict(zip(problem.names, map(float, problem.values), strict=True))
-    estimates = [(f.values(), f.deviations()) for f in finals]
+    estimates, bounded = [(f.values(), f.deviations()) for f in finals], [set(at_bounds(f.problem)) for f in finals]
 
     def of(name: str) -> Estimate:
         both = [
             (found[name], std if np.isfinite(std := deviations.get(name, np.nan)) else None)
             for found, deviations in estimates
         ]
-        return Estimate(name, units[name], values[name], both[0], both[1] if effects else None)
+        at_bound = name in bounded[0], effects and name in bounded[-1]
+        return Estimate(name, units[name], values[name], both[0], both[1] if effects else None, at_bound)
 
     return tuple(of(name) for name in problem.free_names)

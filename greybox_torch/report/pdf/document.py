@@ -126,6 +126,8 @@ def _parameters(sheets: Sheets, told: Parameters | None) -> None:
     if told.undetermined:
         larger = "Where the standard deviation exceeds the value, these recordings do not determine the parameter in that model."
         sheets.text(larger, 8.0, colour=QUIET)
+    if told.bounded:
+        sheets.text(told.bounded, 8.0, colour=QUIET)
     rows = [[(plain(row.symbol), row.unit), *((value, "") for value in row.values)] for row in told.rows]
     share = 0.78 / len(told.columns)
     draw_table(sheets, [("Parameter", ""), *told.columns], rows, [0.22, *[share] * len(told.columns)], bold_last=True)

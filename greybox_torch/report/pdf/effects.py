@@ -85,7 +85,8 @@ def draw_facts(sheets: Sheets, facts: list[tuple[str, str]]) -> None:
     for name, said in facts:
         sheets.need(SPACING * 9.5)
         sheets.write(name, MARGIN, sheets.top, 9.5, colour=QUIET)
-        sheets.text(said, indent=80.0)
+        for line in said.split("\n"):
+            sheets.text(line.strip(), indent=90.0 if line.startswith(" ") else 80.0)
 
 
 def plain(symbol: object) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 from markupsafe import Markup
 
 from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
+from greybox_torch.diagnosis.equation_lines import in_lines
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report import text
 from greybox_torch.report.chart.marks import bars
@@ -111,7 +112,7 @@ def _card(effect: Effect, shown: Responses | None, alone: bool) -> Card:
         explanation=effect.explanation,
         where=effect.where,
         signals=effect.signals,
-        equation=effect.equation,
+        equation=in_lines(effect.equation),
         size=text.percent(effect.size) if math.isfinite(effect.size) else "",
         explained=text.percent(effect.explained) if alone else "",
         ceiling="" if effect.ceiling is None else text.percent(effect.ceiling),

@@ -21,11 +21,14 @@ class Row:
 
 @dataclass(frozen=True)
 class Parameters:
-    """``columns`` are the models: their names, and a few words on each; ``undetermined``: a standard deviation exceeds its value."""
+    """``columns`` are the models: their names, and a few words on each; ``undetermined``: a standard deviation exceeds its value;
+    ``bounded``: a sentence on those at a bound, "" for none.
+    """
 
     columns: tuple[tuple[str, str], ...]
     rows: tuple[Row, ...]
     undetermined: bool = False
+    bounded: str = ""
     template: str = "parameters.html.j2"
 
     @classmethod
@@ -35,7 +38,8 @@ class Parameters:
         columns = (("Start", "the card's values"), ("Refit", "re-estimated as it is"))
         if verdict.effects:
             columns = (*columns, ("Augmented", "with the effects"))
-        return cls(columns, tuple(map(_row, verdict.parameters)), any(map(_undetermined, verdict.parameters)))
+        rows, undetermined = tuple(map(_row, verdict.parameters)), any(map(_undetermined, verdict.parameters))
+        return cls(columns, rows, undetermined, " ".join(verdict.at_bounds))
 
 
 def _undetermined(found: Estimate) -> bool:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -18,6 +20,7 @@ from greybox_torch.diagnosis.describe.evidence import (
 from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest, Remains
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.select import remaining
+from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 WHITE = Remains(Largest(0.01, 0.03), Largest(0.02, 0.05))
@@ -165,3 +168,21 @@ def test_names_in_whose_place_a_curve_stands_are_not_said_to_be_refuted(stub, mo
         "Removed again, as other experiments or effects do not confirm it: lag at input.",
     ]
     assert _removed([], state) == []
+
+
+def test_what_was_removed_several_times_is_told_once(stub) -> None:
+    """Seen: "Removed again …: linear leak at block, actuator deadzone at actuator, linear leak at block, …", three times each."""
+    leak = stub(port="block", mechanism=stub(name="linear_leak", free=False))
+    (told,) = _removed([leak, leak, leak], stub(effects=()))
+    assert told == "Removed again, as other experiments or effects do not confirm it: linear leak at block."
+
+
+def test_steps_that_a_search_took_again_are_told_once(dead_zone_search, stub) -> None:
+    """Seen: the same four steps three times over."""
+    study, state = dead_zone_search.study, dead_zone_search.state
+    step = SelectionStep((), state.plain, (), None)
+    data = stub(held_out_by_default=False)
+    told = evidence.sentences(data, study, replace(state, steps=(step, step)), (), {}, (), False)
+    assert [line for line in told if "promised enough" in line] == [
+        "No further candidate promised enough in the screen to be refitted."
+    ]

@@ -102,3 +102,18 @@ def test_free_runs_that_nothing_could_follow_are_said_to_be_so(stub, over_window
     sentence = what_is_left(judged, found, True, 1.3, over_windows=over_windows).sentence
     assert ("no free run follows it" in sentence) is told
     assert ("not recorded, such as a load" in sentence) is not told
+
+
+@pytest.mark.parametrize(
+    ("fit", "told"),
+    [
+        (-73.0, "free runs of the validation experiments have a mean fit of -73.0 %, worse than a constant: in Run 2"),
+        (-np.inf, "free runs of the validation experiments overflow: in Run 2"),
+        (12.0, "1.7 % of the mismatch remains: in Run 2"),
+    ],
+)
+def test_little_of_a_mismatch_of_runs_that_are_lost_is_not_told_as_little(stub, fit: float, told: str) -> None:
+    """Seen: "1.7 % of the mismatch remains" beside a validation fit of -73 %, where the model as it stands had -1619 %."""
+    left = what_is_left(stub(left=lambda effects: (0.017, 150.0, "Run 2")), [], True, 1.3, fit=fit)
+    assert told in left.sentence and left.share == 0.017
+    assert ("of the mismatch remains" in left.sentence) is (fit >= 0.0)

@@ -7,8 +7,13 @@ import pytest
 
 from greybox_torch.diagnosis.confirm.held_out import timelines
 from greybox_torch.diagnosis.describe.effects import where
+from greybox_torch.diagnosis.describe.profiles import profile
 from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name
 from greybox_torch.diagnosis.effect import Curve, Profile, Timeline
+from greybox_torch.mechanisms.actuator import TorqueSaturation
+from greybox_torch.mechanisms.end_stop import EndStop
+from greybox_torch.mechanisms.library import LIBRARY
+from greybox_torch.mechanisms.mechanism import Mechanism
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.windows import cut
 from tests.machines.geared_drum import GearedDrum
@@ -102,3 +107,51 @@ def test_an_interval_of_nearly_the_whole_range_is_not_told() -> None:
     assert where((even,), ()) == "everywhere along the records"
     half = Profile("angle", "rad", np.linspace(-8.65, 5.9, 41), np.repeat([1 / 20, 0.0], 20))
     assert "lies within -8.65 < angle < -2.8" in where((half,), ())
+
+
+EDGES = np.linspace(-1.0, 87.0, 89)
+
+
+@pytest.mark.parametrize(
+    ("beyond", "told"),
+    [
+        ((9.651, 77.91), "it acts where ball < 9.651 or ball > 77.91 mm"),
+        ((None, 77.91), "it acts where ball > 77.91 mm"),
+        (None, "80 % of what it explains lies within 35 < ball < 86 mm"),
+    ],
+)
+def test_a_law_that_acts_beyond_limits_alone_is_told_with_them(beyond, told: str) -> None:
+    """Seen: "81 % of what it explains lies within 34.8 < ball < 86 mm" of stops at 9.7 and 77.9 mm: errors go on after the contact."""
+    share = np.where((EDGES[:-1] >= 35) & (EDGES[:-1] < 86), 0.801 / 51, 0.199 / 37)
+    assert where([Profile("ball", "mm", EDGES, share)], [], beyond) == told
+
+
+@pytest.mark.parametrize(("samples", "told"), [(0.77, False), (0.5, True)])
+def test_an_interval_in_which_the_samples_lie_anyway_is_not_told(samples: float, told: bool) -> None:
+    inside = (EDGES[:-1] >= 35) & (EDGES[:-1] < 86)
+    share, seen = (np.where(inside, part / 51, (1.0 - part) / 37) for part in (0.801, samples))
+    assert ("lies within 35 < ball < 86" in where([Profile("ball", "mm", EDGES, share, seen)], [])) is told
+
+
+def test_a_level_of_steps_is_told_as_one() -> None:
+    """Seen: "100 % of what it explains lies within 22.5 < Q1 < 23.1 %" of an input that is 22.5 % there."""
+    levels = np.repeat([22.5, 25.0, 15.0, 30.0], 50)
+    found = profile("Q1", "%", levels, np.where(levels == 22.5, 1.0, 0.0))
+    assert where([found], []) == "100 % of what it explains lies where Q1 = 22.5 %"
+    assert where([profile("Q1", "%", levels, np.ones(200))], []) == "everywhere along the records"
+
+
+@pytest.mark.parametrize(
+    ("law", "values", "beyond"),
+    [
+        (EndStop(both=True), {"low": 9.0, "high": 78.0}, (9.0, 78.0)),
+        (EndStop(), {"where": 78.0, "side": 1.0}, (None, 78.0)),
+        (EndStop(), {"where": 9.0, "side": -1.0}, (9.0, None)),
+        (LIBRARY["threshold_flow"](), {"threshold": 30.0, "width": 2.0}, (None, 30.0)),
+        (TorqueSaturation(True), {"limit": 2.0, "asymmetry": 0.5, "softness": 0.0}, (-1.0, 3.0)),
+        (TorqueSaturation(), {"limit": 2.0, "softness": 0.5}, None),
+        (LIBRARY["viscous_friction"](), {"c": 1.0}, None),
+    ],
+)
+def test_which_laws_act_beyond_limits_alone(law: Mechanism, values, beyond) -> None:
+    assert law.acts_beyond(values) == beyond

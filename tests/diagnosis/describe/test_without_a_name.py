@@ -59,6 +59,7 @@ def test_a_random_load_on_a_complete_model_is_no_missing_physics(motor_data, mot
     assert not verdict.mismatch and verdict.effects == ()
     assert verdict.confidence < 0.8 and verdict.left is not None and verdict.left.times_noise > 3.0
     assert any("disturbance that nobody measured" in line for line in verdict.evidence)
+    assert f"on the worst experiment its error is {verdict.disturbed:.3g} times the noise" in verdict.sentence
 
 
 @pytest.mark.parametrize("shown", [True, False])
