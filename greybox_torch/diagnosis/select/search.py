@@ -7,7 +7,7 @@ from functools import partial
 
 from greybox_torch.diagnosis.refit.behind_curve import laws_behind_curve
 from greybox_torch.diagnosis.refit.ranked import in_order, judged
-from greybox_torch.diagnosis.screen.shortlist import Candidate
+from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.choice import priced_score
 from greybox_torch.diagnosis.select.explore import explore, nothing_is_left
@@ -45,12 +45,18 @@ def search(study: Study, state: SearchState, before: SearchState | None = None) 
             break
         state = yield from take_effects(study, state)
         state = yield from drop_superfluous(study, state)
+        if _same_laws(before, state):
+            break  # what was chosen once more, and what joined it, was led back to what there was: so it would be again
     before = state
     state = yield from with_memory(study, before)
     if state.current is not before.current:
         state = yield from take_effects(study, state)
         state = yield from drop_superfluous(study, state)
     return (yield from without_idle_bumps(study, state))
+
+
+def _same_laws(one: SearchState, other: SearchState) -> bool:
+    return {identity_of(e) for e in one.effects} == {identity_of(e) for e in other.effects}
 
 
 def without_idle_bumps(study: Study, state: SearchState) -> Stage[SearchState]:
