@@ -59,8 +59,8 @@ def chosen_by_free_runs(standing: Standing, judged: Judgement) -> str:
     laws = listed([spoken_at(*e.named[::-1]) for e in state.effects])
     before, after = (100.0 * j.mismatch(True) / max(j.mismatch(False), 1e-300) for j in (judged, by_it))
     return (
-        f"{laws}: told for the free runs of the validation experiments, which so had a part in choosing. They leave {digits(after)} % of the "
-        f"mismatch so, and {digits(before)} % with what windows preferred."
+        f"{laws}: told for the free runs of the validation experiments, which so had a part in choosing. They leave {digits(after)} % of "
+        f"the mismatch so, and {digits(before)} % with what windows preferred."
     )
 
 
