@@ -29,9 +29,11 @@ def refitted_laws(study: Study, state: SearchState, others: HeldOut | None, judg
     """The laws of a step of the search with which free runs leave half of the mismatch of ``state`` or less, all of them borne out by
     held-out windows beyond chance; None where there are none, or where so little is left that it is not asked.
 
-    Of those that leave about as little, the fewest with the fewest parameters.
+    Of those that leave about as little, the fewest with the fewest parameters. With several validation experiments only in the place of a
+    free curve: for names, and for nothing, one of these is taken to choose with, and the others judge. Seen: an engine's pendulum, told as
+    Stribeck friction for its free runs, 9 % left; once one experiment more chose, Coulomb friction left 0.9 %.
     """
-    if others is None:
+    if others is None or (len(others.problem.records.first) > 1 and not state.has_curve):
         return None
     settings = study.settings
     share, times, _ = judged.left(bool(state.effects))

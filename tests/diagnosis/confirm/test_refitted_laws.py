@@ -54,9 +54,13 @@ def swing(stub, monkeypatch) -> Any:
         settings, budget = DiagnosisSettings(), SearchBudget()
         study = stub(settings=settings, budget=budget, working_on=lambda what: None)
         current = first[0].fitted if told == ("curve",) else fitted(*told)
-        return study, SearchState(plain, current, steps), stub(), standing
+        return study, SearchState(plain, current, steps), held_out(stub), standing
 
     return make
+
+
+def held_out(stub, experiments: int = 1) -> Any:
+    return stub(problem=stub(records=stub(first=np.zeros(experiments, int))))
 
 
 def judgement(stub, left: float, times: float = 50.0) -> Any:
@@ -116,6 +120,14 @@ def test_where_nothing_lasted_one_law_is_told_first(swing) -> None:
 )
 def test_what_stands_is_kept_unless_laws_are_surely_far_better(swing, left, told, times, sure) -> None:
     assert refitted_laws(*swing(left, told, times, sure)) is None
+
+
+def test_of_several_validation_experiments_one_chooses_unless_a_curve_stands(swing, stub) -> None:
+    """Seen: an engine's pendulum, stopped in time: Stribeck friction for the free runs of three experiments, which one of them denies."""
+    for told, asked in ((("curve",), True), (("coulomb",), False), ((), False)):
+        study, state, _, judged = swing(LEFT, told)
+        assert (refitted_laws(study, state, held_out(stub, 3), judged) is not None) is asked
+        assert refitted_laws(study, state, held_out(stub), judged) is not None
 
 
 def test_without_held_out_experiments_nothing_is_asked(swing) -> None:
