@@ -14,9 +14,12 @@ from typing import Any
 from greybox_torch.deadline import Deadline, until
 from greybox_torch.diagnosis.confirm.curve_beside_laws import sized_by_free_runs
 from greybox_torch.diagnosis.confirm.curve_instead import curve_instead
+from greybox_torch.diagnosis.confirm.far_better import Standing
+from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.holding import Judged, holding
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.memory_instead import memory_instead
+from greybox_torch.diagnosis.confirm.refitted_laws import chosen_by_free_runs, refitted_laws
 from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
 from greybox_torch.diagnosis.confirm.standing import findings
 from greybox_torch.diagnosis.confirm.too_little import without_too_little
@@ -94,27 +97,46 @@ def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
     """Effects taken back, the weakest first, until those left hold on the validation experiments, and whether there was time for that.
 
     Where there is none, what was found first is left if that holds by itself, else nothing. Where none holds, or little, a free curve may,
-    or else an unknown that remembers.
+    or else laws that were passed over, or an unknown that remembers.
     """
     study, state, others = selection.study, selection.state, selection.others
     study.working_on("judging on the validation experiments")
     judged = Judgement.of(selection.free_runs, plain)
     if state.effects:
         judged = judged.having(augmented, {} if others is None else others.places(state.current))
-    curve, whole = None, True
+    instead, whole, said = None, True, ()
     with until(selection.schedule.judging):
         found, _ = or_else(lambda: holding(study, state, others, selection.gains, judged), lambda: None)
         if found is not None and _curve_is_asked(state, found):
-            curve, whole = or_else(partial(curve_instead, study, found[0], others, found[2]), lambda: None)
-            if curve is None and whole and not found[0].effects:
-                curve, whole = or_else(partial(memory_instead, study, state, others, found[2]), lambda: None)
+            instead, said, whole = _instead(study, state, others, found)
     if found is None:
         return found_first(study, state, judged)  # free runs of its own, for which time was left beyond that
-    if curve is not None:
-        return (*curve, found[3], whole)
+    if instead is not None:
+        with until(selection.schedule.judging):
+            held, in_time = or_else(lambda: holding(study, instead[0], others, *instead[1:]), lambda: None)
+        if held is None:
+            return (*instead, (*found[3], *said), False)
+        return (*held[:3], (*found[3], *said, *held[3]), whole and held[4] and in_time)
     with until(selection.schedule.judging):
         sized, in_time = or_else(partial(sized_by_free_runs, study, found[0], others, *found[1:3]), lambda: found[1])
     return (found[0], sized, *found[2:4], found[4] and whole and in_time)
+
+
+def _instead(
+    study: Study, searched: SearchState, others: HeldOut | None, found: Judged
+) -> tuple[Standing | None, tuple[str, ...], bool]:
+    """What free runs bear out in the place of what was ``found``: a free curve, or in that of nothing laws, or an unknown that remembers;
+    what a reader has to know of it, and whether there was time to ask.
+    """
+    state, _, judged, *_ = found
+    instead, whole = or_else(partial(curve_instead, study, state, others, judged), lambda: None)
+    if instead is None and whole and not state.effects:
+        instead, whole = or_else(partial(refitted_laws, study, state, others, judged), lambda: None)
+        if instead is not None:
+            return instead, (chosen_by_free_runs(instead, judged),), whole
+    if instead is None and whole and not state.effects:
+        instead, whole = or_else(partial(memory_instead, study, searched, others, judged), lambda: None)
+    return instead, (), whole
 
 
 def _curve_is_asked(searched: SearchState, found: Judged) -> bool:

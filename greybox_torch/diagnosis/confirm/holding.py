@@ -11,6 +11,7 @@ from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
 from greybox_torch.diagnosis.confirm.joint_deviation import within_one_deviation
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.not_asked import without_what_free_runs_do_not_need
+from greybox_torch.diagnosis.confirm.refitted_laws import chosen_by_free_runs, refitted_laws
 from greybox_torch.diagnosis.confirm.same_everywhere import drifts
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified
 from greybox_torch.diagnosis.confirm.standing import sizes
@@ -60,6 +61,9 @@ def holding(
         empty = _empty(study, state, judged.augmented, gains) or undone or _drifting(study, state, judged)
         if empty is None and holds and not judged.unstable:
             better_so, whole = or_else(partial(far_better, study, state, others, gains, judged), lambda: None)
+            if better_so is None and whole:
+                better_so, whole = or_else(partial(refitted_laws, study, state, others, judged), lambda: None)
+                told += () if better_so is None else (chosen_by_free_runs(better_so, judged),)
             if better_so is None:
                 return state, gains, judged, told, whole
             state, gains, judged = better_so

@@ -29,7 +29,7 @@ def with_one_more(study: Study, state: SearchState, others: HeldOut | None, judg
     done, law = asked
     study.working_on(f"asking held-out experiments about {law.candidate.attachment.prefix}")
     more = replace(state.at(law.fitted), steps=(*state.steps, replace(done, taken=law)))
-    more = replace(more, without={p: _without(study, state, more, p) for p in more.prefixes})
+    more = replace(more, without={p: without_one(study, state, more, p) for p in more.prefixes})
     gains, by_it = judged_anew(study, more, others, judged)
     least = min(judged.mismatch(True), judged.mismatch(False))
     return (more, gains, by_it) if leaves_far_less(gains, by_it, least, study.settings) else None
@@ -52,7 +52,7 @@ def _not_sure(study: Study, state: SearchState) -> tuple[SelectionStep, RankedCa
     return None
 
 
-def _without(study: Study, state: SearchState, more: SearchState, prefix: str) -> Hypothesis:
+def without_one(study: Study, state: SearchState, more: SearchState, prefix: str) -> Hypothesis:
     """The hypothesis of ``more`` without one of its effects: that of ``state`` without the law that joined it."""
     if prefix not in state.prefixes:
         return state.current
