@@ -133,6 +133,9 @@ class Effect:
     at_bounds: tuple[str, ...] = ()
     """Which of its parameters ended at one of their bounds."""
 
+    limited: tuple[str, ...] = ()
+    """Why no more is claimed for it, where what was compared with it leaves it more; clauses."""
+
     def __repr__(self) -> str:
         return f"<effect: {self.mechanism} at {self.port}, probability {self.probability:.2f}>"
 
@@ -182,6 +185,11 @@ class Effect:
         """Which parameters of a law are at a bound, and what that means, as of any estimate; "" elsewhere."""
         names = [name for name in self.at_bounds if name in self.shown_parameters and self.mechanism != "unknown"]
         return told_at_bound(listed(names)) if names else ""
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a reader of the evidence has to know of its parameters and its probability; clauses."""
+        return tuple(filter(None, (self.bounded, *self.limited)))
 
     @property
     def headline(self) -> str:

@@ -101,6 +101,10 @@ class ThresholdFlow(Mechanism):
         setting_in = p.width * torch.log1p(torch.exp(-torch.abs(above) / (p.width + TINY)))
         return -p.c * (torch.clamp(above, min=0.0) + setting_in)
 
+    def limit(self, values: Mapping[str, float]) -> tuple[Mechanism, Mapping[str, float]]:
+        """A leak: the threshold is below all levels, and nothing shows where the flow sets in."""
+        return LinearLeak(), {"c": values["c"], "reference": values["threshold"]}
+
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         level = around.ranges["level"]
         places = (level.low + f * level.span for f in (0.3, 0.5, 0.7, 0.85, 0.95))

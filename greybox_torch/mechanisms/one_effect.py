@@ -16,7 +16,7 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.lag import Lag
 from greybox_torch.mechanisms.linear_law import LinearLaw
-from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.model import GreyBoxModel, Signals
 from greybox_torch.model.port_forces import no_forces
 
@@ -51,7 +51,7 @@ def one_effect(
     if len(mine) != 1 or len(theirs) != 1:
         return False
     first, second = mine[0], theirs[0]
-    if len(plain.inputs) == len(plain.outputs) == 1 and second.mechanism.name in first.mechanism.twins:
+    if second.mechanism.name in twins_in(plain, first.mechanism):
         return True
     if not all(isinstance(a.mechanism, LinearLaw) for a in (first, second)):
         return False
@@ -60,6 +60,11 @@ def one_effect(
     contributions = _contributions(plain, _without(shared, shifts), (first, second), known, held)
     # what a lag or a delay passes on later is the same where it does not change
     return contributions is not None and _in_proportion(*contributions, constant=bool(shifts))
+
+
+def twins_in(model: GreyBoxModel, law: Mechanism) -> tuple[str, ...]:
+    """The laws that no recording of a model's tells from ``law``: those of one input and one output alone."""
+    return law.twins if len(model.inputs) == len(model.outputs) == 1 else ()
 
 
 def _without(attachments: Sequence[Attachment], left_out: Sequence[Attachment]) -> list[Attachment]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from greybox_torch.diagnosis.confirm.beyond_chance import part_borne_out
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.equation import equation
 from greybox_torch.diagnosis.describe.indistinguishable import one_of
@@ -23,10 +24,12 @@ from greybox_torch.diagnosis.describe.profiles import (
     with_samples,
 )
 from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name
+from greybox_torch.diagnosis.describe.why_limited import why_limited
 from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.one_of import Alternative
-from greybox_torch.diagnosis.select.posterior import LeftInFreeRuns, by_comparison, for_all_that_is_left, shared
+from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, limited_by_what_is_left
+from greybox_torch.diagnosis.select.posterior import by_comparison, shared
 from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.study import Study
@@ -102,14 +105,18 @@ def _effect(
     left: LeftInFreeRuns,
 ) -> Effect:
     taken = state.step_beside_others(attachment.prefix)
-    probability, alternatives = _probability(study, state, attachment, taken, left)
+    borne_out = part_borne_out(gain, study.settings)
+    uncapped, alternatives = _probability(study, state, attachment, taken, borne_out)
+    remaining, free = remaining_share(state.plain, state.current, study.settings), attachment.mechanism.free
+    limit = limited_by_what_is_left(remaining, state.current, study.settings, left, free=free)
+    probability = uncapped if limit is None else min(uncapped, limit.highest)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     local = local_signals(model, attachment, state.current.fits[0], state.current.simulator)
     profiles = _profiles(study, state, model, attachment, site, local)
     timelines = () if gain is None else gain.timelines
     mechanism, around = attachment.mechanism, study.surroundings[attachment.port]
     curve = settled_curve(attachment, around, final) or over_data(study, state.current, attachment, final.problem)
-    told = (study.settings, study.beliefs, final.values())
+    told = (study.settings, study.beliefs, final.values(), borne_out)
     members = None if taken is None else one_of(model.base, taken, probability, *told)
     parameters, own = _parameters(model, attachment, final), f"{attachment.prefix}."
     if members is not None and (first := parameters.get(members.members[0].parameter)):
@@ -137,20 +144,21 @@ def _effect(
         equation=equation(attachment, site, around, named, list(parameters)),
         at_bounds=tuple(n.removeprefix(own) for n in at_bounds(final.problem) if n.startswith(own)),
         form=mechanism.nature if mechanism.free else "",
+        limited=why_limited(uncapped, limit, gain, study.settings),
     )
 
 
 def _probability(
-    study: Study, state: SearchState, attachment: Attachment, taken: SelectionStep | None, left: LeftInFreeRuns
+    study: Study, state: SearchState, attachment: Attachment, taken: SelectionStep | None, borne_out: float
 ) -> tuple[float, tuple[Alternative, ...]]:
-    """The probability of an effect and of its alternatives: less where much is left with all of them, over windows or in free runs."""
+    """The probability of an effect and of its alternatives, as far as held-out experiments have ``borne_out`` that anything is there."""
     if taken is None or taken.taken is None:
         without = state.without.get(attachment.prefix, state.plain)
         probability, alternatives = by_comparison(without, state.current, study.settings), ()
     else:
         probability, alternatives = shared(taken.taken, taken.ranked, study.settings, study.beliefs, taken.led)
-    share, free = remaining_share(state.plain, state.current, study.settings), attachment.mechanism.free
-    return for_all_that_is_left(probability, share, state.current, study.settings, left, free=free), alternatives
+    scaled = (replace(a, probability=round(borne_out * a.probability, 4)) for a in alternatives)
+    return round(borne_out * probability, 4), tuple(scaled)
 
 
 def ceiling_share(done: SelectionStep, memory: SelectionStep | None = None) -> float | None:

@@ -24,6 +24,7 @@ def one_of(
     settings: DiagnosisSettings,
     beliefs: Beliefs = NO_BELIEFS,
     values: Mapping[str, float] | None = None,
+    borne_out: float = 1.0,
 ) -> OneOf | None:
     """The finding of a step with its rivals whose fitted outputs differ from its own by less than could be seen, or between which these
     recordings are undecided; None where it stands alone.
@@ -36,6 +37,7 @@ def one_of(
         model: the plain one, whose inputs and outputs the ports belong to.
         probability: of the finding.
         values: parameters of the recommended model, with all effects and fitted to whole records; by default as the step left them.
+        borne_out: how likely it is that anything is there, by which the shares of the rivals are less.
     """
     taken = step.taken
     if taken is None or taken.unknown:
@@ -50,7 +52,7 @@ def one_of(
         says_the_same = contains and attachment.port == taken.candidate.attachment.port
         undecided = share >= settings.least_class_share
         if undecided or (not says_the_same and divergence(taken.fitted, rival.fitted) < settings.visible_divergence):
-            found.append((rival, told[attachment.named]))
+            found.append((rival, borne_out * told[attachment.named]))
     named = [
         (candidate, share) for candidate, share in found if candidate is taken or share >= settings.least_alternative
     ]

@@ -8,6 +8,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.one_effect import twins_in
 from greybox_torch.mechanisms.unknown import INPUT, Unknown
 from greybox_torch.model.ports import Actuator, driving_body
 
@@ -17,9 +18,17 @@ TINY = 1e-12
 
 def first_few(study: Study, best: Sequence[ScreenScore]) -> list[ScreenScore]:
     """Of the scores, best first, the named ones that are worth a trial, and then the free curves."""
-    named = _with_places(study, [b for b in best if not b.attachment.mechanism.free])
+    named = _with_twins(
+        study, _with_places(study, names := [b for b in best if not b.attachment.mechanism.free]), names
+    )
     curves = _plainest_first([b for b in best if b.attachment.mechanism.free], study.settings.curve_margin)
     return named + _with_parts(study, curves, _with_body(study, curves, study.budget.curves_per_length))
+
+
+def _with_twins(study: Study, chosen: Sequence[ScreenScore], ranked: Sequence[ScreenScore]) -> list[ScreenScore]:
+    """The ``chosen`` scores, with the twins of their laws: the screen sees either at a few delays, and no recording tells which it is."""
+    twins = {name for c in chosen for name in twins_in(study.problem.model, c.attachment.mechanism)}
+    return [*chosen, *(r for r in ranked if r.attachment.mechanism.name in twins and all(r is not c for c in chosen))]
 
 
 def _with_places(study: Study, ranked: Sequence[ScreenScore]) -> list[ScreenScore]:

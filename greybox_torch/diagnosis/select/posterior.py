@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.effect import Effect
-from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
+from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.mismatch import negligible
 from greybox_torch.diagnosis.hypothesis.significance import overall_significance, white_samples
@@ -33,63 +33,6 @@ def _at_most(highest: float, effect: Effect) -> Effect:
         members = (replace(m, probability=min(m.probability, highest)) for m in whole.members)
         whole = replace(whole, members=tuple(members))
     return replace(effect, probability=probability, one_of=whole)
-
-
-@dataclass(frozen=True)
-class LeftInFreeRuns:
-    """What all findings together leave in free runs of the validation experiments.
-
-    ``of_mismatch``: share of the squared error of the model as it stands, None where no free run tells.
-    ``of_measured``: mean squared error beyond the noise, in variances of what was measured.
-    """
-
-    of_mismatch: float | None = None
-    of_measured: float = 0.0
-
-
-def for_all_that_is_left(
-    probability: float,
-    share: float,
-    left: Hypothesis,
-    settings: DiagnosisSettings,
-    free_runs: LeftInFreeRuns = LeftInFreeRuns(),
-    *,
-    free: bool = False,
-) -> float:
-    """The probability of a finding, given what all findings together leave: much more than noise, and more than a finding is.
-
-    Where that is most of the mismatch, what is named may be a part of what takes the place of the machine's own law. Where free runs miss
-    much of what was measured, no law and no curve is known to be the machine's, however much better it is than none.
-
-    Args:
-        share: of the whole mismatch, that ``left`` leaves.
-        free: whether it is a free curve, which no law of the machine can be mistaken for.
-    """
-    if not far_above_noise(left, settings) or share <= settings.least_size:
-        return probability
-    if free_runs.of_measured > settings.most_of_measured:
-        return min(probability, settings.highest_probability_where_most_is_left)
-    if free:
-        return probability
-    most_is_left = _most_is_left(share, free_runs.of_mismatch, settings)
-    highest = (
-        settings.highest_probability_where_most_is_left
-        if most_is_left
-        else settings.highest_probability_far_above_noise
-    )
-    return min(probability, highest)
-
-
-def _most_is_left(over_windows: float, in_free_runs: float | None, settings: DiagnosisSettings) -> bool:
-    """Whether most of the mismatch is left: over windows of some length, unless little of it is left in free runs, or in these.
-
-    Over short windows, where start states take up what is missing, what no model of a real machine has (a sensor's steps, a sampling that
-    jitters) is most of the error. Seen: the damping of a pendulum's arm, 0.50, whose law leaves a hundred-thousandth in free runs.
-    """
-    if in_free_runs is None:
-        return over_windows > settings.most_of_mismatch
-    over_windows = over_windows if in_free_runs > settings.little_in_free_runs else 0.0
-    return max(over_windows, in_free_runs) > settings.most_of_mismatch
 
 
 def shared(
@@ -147,13 +90,29 @@ def shares(
     weights: dict[tuple[str, str], tuple[float, RankedCandidate]] = {}
     for rival in ranked:
         if (key := rival.candidate.attachment.named) != chosen.candidate.attachment.named:
-            weight = _believed_weight(best, rival, settings, beliefs, exponent)
+            weight = _recorded_weight(best, rival, settings, exponent)
             if key not in weights or weight > weights[key][0]:
                 weights[key] = (weight, rival)
-    total = _believed_weight(best, chosen, settings, beliefs, exponent) + sum(weight for weight, _ in weights.values())
-    highest = settings.highest_probability
-    found = [(rival, highest * weight / total) for weight, rival in weights.values()]
+    own = _recorded_weight(best, chosen, settings, exponent)
+    recorded = _as_likely_as_twins([(own, chosen), *weights.values()], exponent)
+    found = [(weight * beliefs.weight(r.candidate.attachment), r) for weight, r in recorded]
+    total, highest = sum(weight for weight, _ in found), settings.highest_probability
+    found = [(rival, highest * weight / total) for weight, rival in found if rival is not chosen]
     return sorted(found, key=lambda pair: (pair[1], pair[0].candidate.attachment.named), reverse=True)
+
+
+def _as_likely_as_twins(
+    weighed: Sequence[tuple[float, RankedCandidate]], exponent: float
+) -> list[tuple[float, RankedCandidate]]:
+    """The hypotheses with their weights, none behind that of its twin by more than by the share of its gain that it reaches.
+
+    Seen: 20 ms that pass in a servo, told as a delay of its output among others, and none of its input.
+    """
+    found = []
+    for weight, rival in weighed:
+        twins = (w * _share_of(r, rival) ** exponent for w, r in weighed if r is not rival and are_twins(r, rival))
+        found.append((max([weight, *twins]), rival))
+    return found
 
 
 def told_of(
@@ -179,10 +138,16 @@ def believed(
 
 
 def _believed_weight(
-    best: RankedCandidate, rival: RankedCandidate, settings: DiagnosisSettings, beliefs: Beliefs, exponent: float = 1.0
+    best: RankedCandidate, rival: RankedCandidate, settings: DiagnosisSettings, beliefs: Beliefs
 ) -> float:
-    weight = 1.0 if rival is best else _weight(best, rival, settings) ** exponent
-    return weight * beliefs.weight(rival.candidate.attachment)
+    return _recorded_weight(best, rival, settings) * beliefs.weight(rival.candidate.attachment)
+
+
+def _recorded_weight(
+    best: RankedCandidate, rival: RankedCandidate, settings: DiagnosisSettings, exponent: float = 1.0
+) -> float:
+    """The weight of a hypothesis beside the best one, by the recordings alone."""
+    return 1.0 if rival is best else _weight(best, rival, settings) ** exponent
 
 
 def by_comparison(without: Hypothesis, current: Hypothesis, settings: DiagnosisSettings) -> float:
@@ -196,9 +161,9 @@ def by_comparison(without: Hypothesis, current: Hypothesis, settings: DiagnosisS
 
 
 def _weight(chosen: RankedCandidate, rival: RankedCandidate, settings: DiagnosisSettings) -> float:
-    if rival.gain <= 0:
+    share = _share_of(chosen, rival)
+    if share <= 0:
         return 0.0
-    share = min(1.0, rival.gain / max(chosen.gain, 1e-12))
     simpler = float(np.exp(-max(0, rival.size - chosen.size)))
     if are_twins(chosen, rival):
         return share * simpler
@@ -210,11 +175,17 @@ def _weight(chosen: RankedCandidate, rival: RankedCandidate, settings: Diagnosis
     return share * simpler * float(np.exp(-0.5 * (behind / settings.windows_temperature) ** 2))
 
 
+def _share_of(chosen: RankedCandidate, rival: RankedCandidate) -> float:
+    """The share of the gain of a hypothesis that a rival reaches."""
+    return float(np.clip(rival.gain / max(chosen.gain, 1e-12), 0.0, 1.0))
+
+
 def are_twins(chosen: RankedCandidate, rival: RankedCandidate) -> bool:
     """Whether two laws do the same to one input and one output; then what sets their fits apart is how each is computed."""
+    if rival.candidate.attachment.mechanism.name not in chosen.candidate.attachment.mechanism.twins:
+        return False
     records = chosen.fitted.problem.records
-    alone = len(records.u) == 1 and len(records.y) == 1
-    return alone and rival.candidate.attachment.mechanism.name in chosen.candidate.attachment.mechanism.twins
+    return len(records.u) == 1 and len(records.y) == 1
 
 
 def confidence(

@@ -16,7 +16,8 @@ class ConfirmationSettings:
     least_held_out: float = number(1.0, "By how much an effect must lower the held-out error to be kept.", unit=SIGMA)
     held_out_beyond_chance: float = number(
         3.0,
-        "By how much a free curve must beat names there, or a law one that it contains, to be preferred.",
+        "By how much a free curve must beat names there, or a law one that it contains, to be preferred, and any effect must lower the "
+        "error to be as likely as its rivals leave it.",
         unit=SIGMA,
         chosen_by="convention",
     )

@@ -7,16 +7,18 @@ import pytest
 
 from greybox_torch.diagnosis.confirm import simpler_laws
 from greybox_torch.diagnosis.confirm.held_out import Gain, pooled
-from greybox_torch.diagnosis.confirm.simpler_laws import _contained
+from greybox_torch.diagnosis.confirm.simpler_laws import _contained, _with_rival
 from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select import finer_steps
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.balance import LinearLeak, ThresholdFlow
 from greybox_torch.mechanisms.end_stop import EndStop
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
+from greybox_torch.model import Balance, GreyBoxModel, Input, Output, Parameter, State
 
 WIDTH = 0.006
 """In rad/s: within it friction of 0.05 N m changes its sign, faster than one step a sample can follow."""
@@ -60,9 +62,56 @@ def test_bristles_too_short_to_be_seen_are_dry_friction_that_sticks(motor_data, 
     fitted = search.refitted((effect,), search.plain, [start])
     found = judged(Candidate(effect, (), 0.9), search.plain, fitted, search.study.settings)
     state = search.at(fitted, steps=(SelectionStep((), search.plain, (found,), found),)).state
-    ((_, ended),) = _contained(search.study, state, state.effects[0])
-    assert (ended.score < fitted.score + 0.05) is sticks
-    assert ended.values()["rotor.coulomb_friction.F_c"] == pytest.approx(0.05, rel=0.1) or not sticks
+    ended = [h for _, h in _contained(search.study, state, state.effects[0])]
+    assert bool(ended) is sticks, "bristles that windows show are no dry friction"
+    assert all(h.values()["rotor.coulomb_friction.F_c"] == pytest.approx(0.05, rel=0.1) for h in ended)
+
+
+class Vessel(GreyBoxModel):
+    """A dh/dt = q: nothing flows off."""
+
+    states = [State("level", "m", initial="measured")]
+    inputs = [Input("inflow", "m^3/s")]
+    outputs = [Output("level", "m")]
+    parameters = [Parameter("A", 0.5, unit="m^2", lower=0.0)]
+    ports = [Balance("vessel", level="level")]
+
+    def derivative(self, x, u, p, port):
+        return {"level": (u.inflow + port.vessel) / p.A}
+
+    def output(self, x, u, p):
+        return {"level": x.level}
+
+
+@pytest.mark.parametrize(
+    ("threshold", "least", "leaks"), [(1.05, 0.2, True), (2.5, -0.8, False)], ids=["below nearly all", "within"]
+)
+def test_a_flow_above_a_threshold_below_nearly_all_levels_is_a_leak(data_set, begun, threshold, least, leaks) -> None:
+    """Seen: a block's loss of heat to the air, told as a flow above 29.8 degC (0.85), as the leak that was found before was dropped."""
+    rng = np.random.default_rng(4)
+    inflow, level, h = np.repeat(rng.uniform(least, 1.2, 40), 50), [], 1.0
+    for q in inflow:
+        level.append(h)
+        for _ in range(4):
+            h += 0.0125 * (q - 0.4 * max(h - threshold, 0.0)) / 0.5
+    noisy = np.array(level) + rng.normal(0.0, 0.005, len(level))
+    data = data_set({"inflow": "m^3/s", "level": "m"}, [{"inflow": inflow, "level": noisy}], sample_time=0.05)
+    search = begun(data, Vessel())
+    hypotheses = []
+    for law, values in ((LinearLeak(), {"reference": threshold}), (ThresholdFlow(), {"threshold": threshold})):
+        effect = attach(search.problem.model, "vessel", law)
+        start = search.plain.values() | {f"{effect.prefix}.{n}": v for n, v in ({"c": 0.4} | values).items()}
+        fitted = search.refitted((effect,), search.plain, [start])
+        hypotheses.append(judged(Candidate(effect, (), 0.9), search.plain, fitted, search.study.settings))
+    leak, flow = hypotheses
+    steps = (SelectionStep((), search.plain, (leak,), leak), SelectionStep((), leak.fitted, (flow,), flow))
+    state = search.at(flow.fitted, steps=steps).state
+    ended = _contained(search.study, state, state.effects[0])
+    assert bool(ended) is leaks
+    for rival, fitted in ended:
+        assert fitted.values()["vessel.linear_leak.c"] == pytest.approx(0.4, rel=0.05)
+        told = _with_rival(state, rival, fitted, state.effects[0])
+        assert told.step_of("vessel.linear_leak") is steps[0], "its rivals are those of the step that found it"
 
 
 def test_stops_at_both_ends_contain_one_at_one_end(motor_data, motor, begun) -> None:

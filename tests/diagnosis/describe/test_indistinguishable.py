@@ -29,7 +29,7 @@ def told(stub, monkeypatch):
         parameters = () if size is None else (stub(name=name, unit="N m"),)
         return stub(away=away, values=lambda: {name: size}, model=stub(declared_parameters=parameters))
 
-    def make(*hypotheses, probability=0.6, sizes=(), values=None, one_effect=False):
+    def make(*hypotheses, probability=0.6, sizes=(), values=None, one_effect=False, borne_out=1.0):
         ranked = [
             stub(
                 candidate=stub(attachment=Attachment(port, law)),
@@ -46,7 +46,7 @@ def told(stub, monkeypatch):
         monkeypatch.setattr(indistinguishable, "one_effect", lambda *given: one_effect)
         ports = [stub(name=name, kind="body") for name in ("motor", "arm")]
         step = SelectionStep((), stub(), tuple(ranked), ranked[0])
-        return one_of(stub(all_ports=ports), step, probability, SETTINGS, values=values)
+        return one_of(stub(all_ports=ports), step, probability, SETTINGS, values=values, borne_out=borne_out)
 
     return make
 
@@ -70,6 +70,12 @@ def test_who_is_next_to_nothing_counts_in_the_whole_and_is_not_named(told) -> No
     assert found is not None and found.statement == "dry friction at motor or arm"
     assert len(found.members) == 2 and found.probability == pytest.approx(0.904)
     assert told(("motor", CoulombFriction(), 0.9, 0.0), ("arm", CoulombFriction(), 0.004, 0.0)) is None
+
+
+def test_rivals_are_less_likely_where_nothing_may_be_there(told) -> None:
+    both = (("motor", CoulombFriction(), 0.3, 0.0), ("arm", CoulombFriction(), 0.4, 1.0))
+    found = told(*both, probability=0.3, borne_out=0.5)
+    assert found is not None and [m.probability for m in found.members] == [0.3, 0.2] and found.probability == 0.5
 
 
 def test_outputs_that_differ_and_evidence_that_is_undecided(told) -> None:

@@ -32,3 +32,15 @@ def test_the_first_law_at_another_kind_of_place_is_passed_on_where_it_explains_a
     assert kept[: len(bodies)] == bodies, "ties go first"
     assert (offset in kept) is passed_on
     assert gain not in kept, "one of each kind"
+
+
+def test_a_delay_of_the_output_is_passed_on_with_one_of_the_input(motor, stub) -> None:
+    """Seen: a servo's command that is late, which the screen saw less of than of its sensor's lag, its friction and offsets."""
+
+    def score(port: str, name: str, explained: float) -> ScreenScore:
+        return ScreenScore(attach(motor, port, LIBRARY[name]()), Probe(("T",)), 31, explained, np.ones(1))
+
+    first = [score("sensor", "output_delay", 0.4), *(score("rotor", "constant_bias", 0.3) for _ in range(8))]
+    late, lag = score("actuator", "input_delay", 0.02), score("actuator", "input_lag", 0.02)
+    kept = first_few(stub(settings=SETTINGS, budget=BUDGET, problem=stub(model=motor)), [*first, late, lag])
+    assert late in kept and lag not in kept

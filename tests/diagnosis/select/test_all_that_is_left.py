@@ -7,10 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.select.posterior import LeftInFreeRuns, for_all_that_is_left
+from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, limited_by_what_is_left
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 SETTINGS, SAMPLES = DiagnosisSettings(), 20_000
+
+
+def claimed_of(probability: float, *left: Any, **how: Any) -> float:
+    limit = limited_by_what_is_left(*left, **how)
+    return probability if limit is None else min(probability, limit.highest)
 
 
 @pytest.fixture
@@ -25,15 +30,15 @@ def left_much(stub) -> Any:
 def test_a_name_is_less_sure_the_more_is_left_with_it(left_much) -> None:
     """Seen: dry friction at the wrong port, 0.85, which left 82 times the noise and four fifths of the mismatch."""
     much, little = left_much(1.0), left_much(0.011)
-    assert [for_all_that_is_left(0.97, share, much, SETTINGS) for share in (0.01, 0.3, 0.8)] == [0.97, 0.85, 0.5]
-    assert for_all_that_is_left(0.3, 0.8, much, SETTINGS) == 0.3
-    assert for_all_that_is_left(0.97, 0.8, little, SETTINGS) == 0.97, "near the noise"
+    assert [claimed_of(0.97, share, much, SETTINGS) for share in (0.01, 0.3, 0.8)] == [0.97, 0.85, 0.5]
+    assert claimed_of(0.3, 0.8, much, SETTINGS) == 0.3
+    assert claimed_of(0.97, 0.8, little, SETTINGS) == 0.97, "near the noise"
     worse, far_worse = LeftInFreeRuns(of_mismatch=0.5), LeftInFreeRuns(of_mismatch=0.9)
-    free_runs = [for_all_that_is_left(0.97, 0.01, much, SETTINGS, left) for left in (worse, far_worse)]
+    free_runs = [claimed_of(0.97, 0.01, much, SETTINGS, left) for left in (worse, far_worse)]
     assert free_runs == [0.97, 0.97], "over windows next to nothing is left"
-    assert for_all_that_is_left(0.97, 0.3, much, SETTINGS, far_worse) == 0.5
-    assert for_all_that_is_left(0.97, 0.3, much, SETTINGS, far_worse, free=True) == 0.97, "a curve may be a part"
-    assert for_all_that_is_left(0.97, 0.3, little, SETTINGS, far_worse) == 0.97
+    assert claimed_of(0.97, 0.3, much, SETTINGS, far_worse) == 0.5
+    assert claimed_of(0.97, 0.3, much, SETTINGS, far_worse, free=True) == 0.97, "a curve may be a part"
+    assert claimed_of(0.97, 0.3, little, SETTINGS, far_worse) == 0.97
 
 
 @pytest.mark.parametrize(("in_free_runs", "claimed"), [(None, 0.5), (0.01, 0.85), (0.3, 0.85), (0.4, 0.5)])
@@ -42,7 +47,7 @@ def test_where_free_runs_leave_little_windows_alone_do_not_say_that_most_is_left
 ) -> None:
     """Seen: the damping of a pendulum's arm on real recordings, 0.50, whose law leaves a hundred-thousandth in free runs."""
     left = LeftInFreeRuns(of_mismatch=in_free_runs)
-    assert for_all_that_is_left(0.97, 0.9, left_much(1.0), SETTINGS, left) == claimed
+    assert claimed_of(0.97, 0.9, left_much(1.0), SETTINGS, left) == claimed
 
 
 @pytest.mark.parametrize("free", [False, True])
@@ -50,6 +55,8 @@ def test_no_finding_is_sure_where_free_runs_follow_little_of_what_was_measured(l
     """Seen: a cogging motor under control, told with a lag and a mode (0.85) and a curve (0.97), none of them known of; a fit of 53 %."""
     much, little = left_much(1.0), left_much(0.011)
     followed, missed = LeftInFreeRuns(of_measured=0.1), LeftInFreeRuns(of_measured=0.2)
-    assert for_all_that_is_left(0.97, 0.3, much, SETTINGS, followed, free=free) == (0.97 if free else 0.85)
-    assert for_all_that_is_left(0.97, 0.3, much, SETTINGS, missed, free=free) == 0.5
-    assert for_all_that_is_left(0.97, 0.3, little, SETTINGS, missed, free=free) == 0.97, "what they miss is noise"
+    assert claimed_of(0.97, 0.3, much, SETTINGS, followed, free=free) == (0.97 if free else 0.85)
+    assert claimed_of(0.97, 0.3, much, SETTINGS, missed, free=free) == 0.5
+    assert claimed_of(0.97, 0.3, little, SETTINGS, missed, free=free) == 0.97, "what they miss is noise"
+    limit = limited_by_what_is_left(0.3, much, SETTINGS, missed, free=free)
+    assert limit is not None and "miss 20 % of the variance of what was measured" in limit.why

@@ -1,0 +1,78 @@
+"""The most that is claimed for a finding, by what all findings together leave."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+
+
+@dataclass(frozen=True)
+class LeftInFreeRuns:
+    """What all findings together leave in free runs of the validation experiments.
+
+    ``of_mismatch``: share of the squared error of the model as it stands, None where no free run tells.
+    ``of_measured``: mean squared error beyond the noise, in variances of what was measured.
+    """
+
+    of_mismatch: float | None = None
+    of_measured: float = 0.0
+
+
+@dataclass(frozen=True)
+class Limit:
+    """The highest probability that is claimed, and why, in words."""
+
+    highest: float
+    why: str
+
+
+def limited_by_what_is_left(
+    share: float,
+    left: Hypothesis,
+    settings: DiagnosisSettings,
+    free_runs: LeftInFreeRuns = LeftInFreeRuns(),
+    *,
+    free: bool = False,
+) -> Limit | None:
+    """What limits a finding where all findings together leave much more than noise, and more than a finding is; None elsewhere.
+
+    Where that is most of the mismatch, what is named may be a part of what takes the place of the machine's own law. Where free runs miss
+    much of what was measured, no law and no curve is known to be the machine's, however much better it is than none.
+
+    Args:
+        share: of the whole mismatch, that ``left`` leaves.
+        free: whether it is a free curve, which no law of the machine can be mistaken for.
+    """
+    if not far_above_noise(left, settings) or share <= settings.least_size:
+        return None
+    if free_runs.of_measured > settings.most_of_measured:
+        return Limit(
+            settings.highest_probability_where_most_is_left,
+            f"free runs of the validation experiments miss {100 * free_runs.of_measured:.2g} % of the variance of what was measured, where "
+            f"a surer name needs at most {100 * settings.most_of_measured:.2g} %",
+        )
+    if free:
+        return None
+    if _most_is_left(share, free_runs.of_mismatch, settings):
+        return Limit(
+            settings.highest_probability_where_most_is_left, "most of the mismatch is left with all that was found"
+        )
+    return Limit(
+        settings.highest_probability_far_above_noise,
+        f"what is left with all that was found is {times_noise(left.problem, left, settings):.2g} times the noise",
+    )
+
+
+def _most_is_left(over_windows: float, in_free_runs: float | None, settings: DiagnosisSettings) -> bool:
+    """Whether most of the mismatch is left: over windows of some length, unless little of it is left in free runs, or in these.
+
+    Over short windows, where start states take up what is missing, what no model of a real machine has (a sensor's steps, a sampling that
+    jitters) is most of the error. Seen: the damping of a pendulum's arm, 0.50, whose law leaves a hundred-thousandth in free runs.
+    """
+    if in_free_runs is None:
+        return over_windows > settings.most_of_mismatch
+    over_windows = over_windows if in_free_runs > settings.little_in_free_runs else 0.0
+    return max(over_windows, in_free_runs) > settings.most_of_mismatch
