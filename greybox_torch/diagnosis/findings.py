@@ -16,10 +16,10 @@ from greybox_torch.diagnosis.confirm.curve_beside_laws import sized_by_free_runs
 from greybox_torch.diagnosis.confirm.curve_instead import curve_instead
 from greybox_torch.diagnosis.confirm.far_better import Standing
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
-from greybox_torch.diagnosis.confirm.holding import Judged, holding
+from greybox_torch.diagnosis.confirm.holding import Judged, holding, passed_over
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.memory_instead import memory_instead
-from greybox_torch.diagnosis.confirm.refitted_laws import chosen_by_free_runs, refitted_laws
+from greybox_torch.diagnosis.confirm.refitted_laws import chosen_by_free_runs
 from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
 from greybox_torch.diagnosis.confirm.standing import findings
 from greybox_torch.diagnosis.confirm.too_little import without_too_little
@@ -112,11 +112,7 @@ def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
     if found is None:
         return found_first(study, state, judged)  # free runs of its own, for which time was left beyond that
     if instead is not None:
-        with until(selection.schedule.judging):
-            held, in_time = or_else(lambda: holding(study, instead[0], others, *instead[1:]), lambda: None)
-        if held is None:
-            return (*instead, (*found[3], *said), False)
-        return (*held[:3], (*found[3], *said, *held[3]), whole and held[4] and in_time)
+        return (*instead, (*found[3], *said), whole)
     with until(selection.schedule.judging):
         sized, in_time = or_else(partial(sized_by_free_runs, study, found[0], others, *found[1:3]), lambda: found[1])
     return (found[0], sized, *found[2:4], found[4] and whole and in_time)
@@ -131,9 +127,9 @@ def _instead(
     state, _, judged, *_ = found
     instead, whole = or_else(partial(curve_instead, study, state, others, judged), lambda: None)
     if instead is None and whole and not state.effects:
-        instead, whole = or_else(partial(refitted_laws, study, state, others, judged), lambda: None)
+        instead, whole = or_else(partial(passed_over, study, state, others, judged), lambda: None)
         if instead is not None:
-            return instead, (chosen_by_free_runs(instead, judged),), whole
+            return instead, (chosen_by_free_runs(instead, state, judged),), whole
     if instead is None and whole and not state.effects:
         instead, whole = or_else(partial(memory_instead, study, searched, others, judged), lambda: None)
     return instead, (), whole

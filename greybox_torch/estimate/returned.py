@@ -31,7 +31,7 @@ def returned(run: FreeRun, point: np.ndarray) -> np.ndarray:
     here = run.quadratic(point)
     if here is None:
         return point
-    most = here.cost * (1.0 + SEEN / max(run.problem.samples, 1))
+    most = here.cost * (1.0 + 2.0 * SEEN / max(run.problem.samples, 1))
     expected = run.problem.expected[run.problem.free]
     for _ in range(ROUNDS):
         before = point

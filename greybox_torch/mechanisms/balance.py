@@ -114,7 +114,7 @@ class ThresholdFlow(Mechanism):
         return beyond("threshold", values["threshold"], around, "level") or self._bends_to_the_end(around, values)
 
     def acts_beyond(self, values: Mapping[str, float]) -> tuple[float | None, float | None] | None:
-        return None, values["threshold"]
+        return None, values["threshold"] - HALF_OF_ONSET * values.get("width", 0.0)
 
     def _bends_to_the_end(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         """The flow sets in over so much of the levels above the threshold that it is straight over less: a curve, and no threshold."""

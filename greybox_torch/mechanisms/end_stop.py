@@ -130,6 +130,11 @@ class EndStop(Mechanism):
             return values["low"], values["high"]
         return (None, values["where"]) if values["side"] > 0 else (values["where"], None)
 
+    def contained_as(self, values: Mapping[str, float]) -> Sequence[Mapping[str, float]]:
+        alike = {"k": values["k"], "c": values["c"]}
+        ends = [("low", -1.0), ("high", 1.0)] if self.both else []
+        return [{**alike, "where": values[end], "side": side} for end, side in ends]
+
     def signals(self) -> tuple[str, ...]:
         return ("position",)
 

@@ -209,6 +209,10 @@ class Mechanism:
         """Where the law begins as one that it contains, which was found at ``values``; empty where nothing is known."""
         return {}
 
+    def contained_as(self, values: Mapping[str, float]) -> Sequence[Mapping[str, float]]:
+        """Where a law that it contains may begin, each a start, as it was found at ``values`` itself; names that law lacks do not count."""
+        return (values,)
+
     def limit(self, values: Mapping[str, float]) -> tuple[Mechanism, Mapping[str, float]] | None:
         """The law that it becomes at the end of a parameter's range, where that is another one's, and where to begin it."""
         return None

@@ -48,7 +48,8 @@ def added_to(model: GreyBoxModel, port: Port) -> str | None:
     named = [own] if own is not None else [state.name for state in model.states]
     for name in named:
         raised = [torch.as_tensor(one[name]) for one in rates]
-        if all(_is_one(one if own is not None else one.abs()) for one in raised):
+        raised = [one for one in raised if torch.isfinite(one).all()]  # a changed parameter may be out of its bounds
+        if raised and all(_is_one(one if own is not None else one.abs()) for one in raised):
             return name
     return None
 

@@ -111,10 +111,10 @@ def _found(stub, state: SearchState, judged: Any) -> findings.Findings:
 @pytest.mark.parametrize(
     ("effects", "answers", "told"),
     [
-        ((), {"curve_instead": None, "refitted_laws": "laws", "memory_instead": "memory"}, ("laws", ("why laws",))),
-        ((), {"curve_instead": None, "refitted_laws": None, "memory_instead": "memory"}, ("memory", ())),
-        ((), {"curve_instead": "curve", "refitted_laws": "laws", "memory_instead": "memory"}, ("curve", ())),
-        (("bias",), {"curve_instead": None, "refitted_laws": "laws", "memory_instead": "memory"}, (None, ())),
+        ((), {"curve_instead": None, "passed_over": "laws", "memory_instead": "memory"}, ("laws", ("why laws",))),
+        ((), {"curve_instead": None, "passed_over": None, "memory_instead": "memory"}, ("memory", ())),
+        ((), {"curve_instead": "curve", "passed_over": "laws", "memory_instead": "memory"}, ("curve", ())),
+        (("bias",), {"curve_instead": None, "passed_over": "laws", "memory_instead": "memory"}, (None, ())),
     ],
     ids=["laws", "what remembers", "a curve, which laws may replace", "names that lasted"],
 )
@@ -122,6 +122,6 @@ def test_where_nothing_lasted_laws_that_were_passed_over_are_asked(monkeypatch, 
     """Seen: a free pendulum's drag, passed over by windows (validation 88 %; with it 97 %): Stribeck friction was told (0.97)."""
     for name, answer in answers.items():
         monkeypatch.setattr(findings, name, lambda *_, answer=answer: answer)
-    monkeypatch.setattr(findings, "chosen_by_free_runs", lambda standing, judged: f"why {standing}")
+    monkeypatch.setattr(findings, "chosen_by_free_runs", lambda standing, before, judged: f"why {standing}")
     found = (stub(effects=effects), {}, stub(), (), True)
     assert findings._instead(stub(), stub(), stub(), found) == (*told, True)

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from functools import partial
 
 from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
-from greybox_torch.diagnosis.confirm.far_better import far_better, judged_anew
+from greybox_torch.diagnosis.confirm.far_better import Standing, far_better, judged_anew
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
 from greybox_torch.diagnosis.confirm.joint_deviation import within_one_deviation
 from greybox_torch.diagnosis.confirm.judgement import Judgement
@@ -62,8 +62,9 @@ def holding(
         if empty is None and holds and not judged.unstable:
             better_so, whole = or_else(partial(far_better, study, state, others, gains, judged), lambda: None)
             if better_so is None and whole:
-                better_so, whole = or_else(partial(refitted_laws, study, state, others, judged), lambda: None)
-                told += () if better_so is None else (chosen_by_free_runs(better_so, judged),)
+                passed, whole = or_else(partial(passed_over, study, state, others, judged), lambda: None)
+                if passed is not None:
+                    return (*passed, (*told, chosen_by_free_runs(passed, state, judged)), True)
             if better_so is None:
                 return state, gains, judged, told, whole
             state, gains, judged = better_so
@@ -93,6 +94,17 @@ def holding(
             return state, {}, judged.without_effects(), told, True
         gains, judged = judged_anew(study, state, others, judged)
     return state, gains, judged, told, True
+
+
+def passed_over(study: Study, state: SearchState, others: HeldOut | None, judged: Judgement) -> Standing | None:
+    """The laws that free runs prefer of those that were passed over (:func:`refitted_laws`); None where something speaks against one."""
+    found = refitted_laws(study, state, others, judged)
+    if found is None:
+        return None
+    laws, gains, by_it = found
+    against = _empty(study, laws, by_it.augmented, gains) or _undone(study, laws, gains, frozenset())
+    stand = against is None and _drifting(study, laws, by_it) is None and by_it.holds and not by_it.unstable
+    return found if stand and _shown(laws, others, by_it) else None
 
 
 def _shown(state: SearchState, others: HeldOut | None, judged: Judgement) -> bool:

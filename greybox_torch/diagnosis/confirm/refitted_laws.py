@@ -55,14 +55,17 @@ def refitted_laws(study: Study, state: SearchState, others: HeldOut | None, judg
     return min(near, key=_simplest_first, default=None)
 
 
-def chosen_by_free_runs(standing: Standing, judged: Judgement) -> str:
-    """What the reader of a verdict has to know of laws that took the place of what ``judged`` has."""
+def chosen_by_free_runs(standing: Standing, before: SearchState, judged: Judgement) -> str:
+    """What the reader of a verdict has to know of laws that took the place of those of ``before``, which ``judged`` has."""
     state, _, by_it = standing
     laws = listed([spoken_at(*e.named[::-1]) for e in state.effects])
-    before, after = (100.0 * j.mismatch(True) / max(j.mismatch(False), 1e-300) for j in (judged, by_it))
+    was, now = (digits(100.0 * j.mismatch(True) / max(j.mismatch(False), 1e-300)) for j in (judged, by_it))
+    preferred = (
+        f"and {was} % with what windows preferred" if before.effects else "and nothing that windows preferred lasted"
+    )
     return (
-        f"{laws}: told for the free runs of the validation experiments, which so had a part in choosing. They leave {digits(after)} % of "
-        f"the mismatch so, and {digits(before)} % with what windows preferred."
+        f"{laws}: told for the free runs of the validation experiments, which so had a part in choosing. They leave {now} % of the "
+        f"mismatch so, {preferred}."
     )
 
 

@@ -62,15 +62,15 @@ def simplified(study: Study, state: SearchState, effect: Attachment) -> SearchSt
     done = state.step_of(effect.prefix)
     if done is None or done.taken is None:
         return None
-    found = []
+    found, beside = [], {e.prefix for e in state.effects if e is not effect}
+    others = values_without(state.current, effect)
     for name in (n for n in effect.mechanism.generalises if n in LIBRARY):
         law = attach(study.problem.model, effect.port, LIBRARY[name](), effect.shifted_state)
-        start = {n.replace(f"{effect.prefix}.", f"{law.prefix}."): v for n, v in state.current.values().items()}
-        fitted = (
-            None
-            if law.prefix in state.prefixes
-            else refitted(study, state.with_law(effect, law), state.current, [start])
-        )
+        if law.prefix in beside or study.beliefs.exclude(law):
+            continue
+        begun = effect.mechanism.contained_as(effect.own(state.current.values()))
+        starts = [others | {f"{law.prefix}.{n}": v for n, v in own.items()} for own in begun]
+        fitted = refitted(study, state.with_law(effect, law), state.current, starts)
         if fitted is not None:
             candidate = replace(done.taken.candidate, attachment=law)
             found.append(judged_beside(candidate, done.parent, state.plain, fitted, study.settings))
@@ -109,7 +109,7 @@ def _limit(
     if ended is None or done.taken is None:
         return None
     law = replace(effect, mechanism=ended[0])
-    if law.prefix in state.prefixes:
+    if law.prefix in state.prefixes or study.beliefs.exclude(law):
         return None
     study.working_on(f"refitting {law.prefix} in the place of {effect.prefix}")
     begun = {f"{law.prefix}.{n}": v for n, v in ended[1].items()}
@@ -137,7 +137,8 @@ def _with_rival(state: SearchState, rival: RankedCandidate, fitted: Hypothesis, 
     What was found in a step of its own stands beside the rivals of that: those of the other step were judged with it there.
     """
     law = rival.candidate.attachment.prefix
-    if state.step_of(law) is not None:
+    own = None if law == effect.prefix else state.step_of(law)
+    if own is not None and all(e.prefix != effect.prefix for e in own.parent.effects):
         return state.at(fitted)
     done = state.step_of(effect.prefix)
     steps = tuple(replace(s, taken=rival) if s is done else s for s in state.steps)

@@ -28,7 +28,7 @@ from greybox_torch.diagnosis.describe.why_limited import why_limited
 from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.one_of import Alternative
-from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, limited_by_what_is_left
+from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, limited_by_a_curve, limited_by_what_is_left
 from greybox_torch.diagnosis.select.posterior import by_comparison, shared
 from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
@@ -108,7 +108,12 @@ def _effect(
     borne_out = part_borne_out(gain, study.settings)
     uncapped, alternatives = _probability(study, state, attachment, taken, borne_out)
     remaining, free = remaining_share(state.plain, state.current, study.settings), attachment.mechanism.free
-    limit = limited_by_what_is_left(remaining, state.current, study.settings, left, free=free)
+    ceiling = None if taken is None else ceiling_share(taken, state.memory_step)
+    limits = (
+        limited_by_what_is_left(remaining, state.current, study.settings, left, free=free),
+        limited_by_a_curve(ceiling, study.settings, left),
+    )
+    limit = min((one for one in limits if one is not None), key=lambda one: one.highest, default=None)
     probability = uncapped if limit is None else min(uncapped, limit.highest)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     local = local_signals(model, attachment, state.current.fits[0], state.current.simulator)
@@ -137,7 +142,7 @@ def _effect(
         explanation=mechanism.explanation,
         source=mechanism.source,
         separating_experiment=mechanism.experiment,
-        ceiling=None if taken is None else ceiling_share(taken, state.memory_step),
+        ceiling=ceiling,
         timelines=timelines,
         one_of=members,
         law=mechanism.name,
@@ -158,7 +163,8 @@ def _probability(
     else:
         probability, alternatives = shared(taken.taken, taken.ranked, study.settings, study.beliefs, taken.led)
     scaled = (replace(a, probability=round(borne_out * a.probability, 4)) for a in alternatives)
-    return round(borne_out * probability, 4), tuple(scaled)
+    likely = (a for a in scaled if borne_out == 1.0 or a.probability >= study.settings.least_alternative)
+    return round(borne_out * probability, 4), tuple(likely)
 
 
 def ceiling_share(done: SelectionStep, memory: SelectionStep | None = None) -> float | None:
@@ -228,7 +234,8 @@ def where(
         first.seen is not None and share < first.seen[within].sum() + LEAST_MORE
     ):
         return where((), timelines)
-    levels = [v for v in first.levels if low <= v < high or v == high == first.edges[-1]]
+    inside = np.clip(first.levels, first.edges[0], first.edges[-1])
+    levels = [v for v, i in zip(first.levels, inside, strict=True) if low <= i < high or i == high == first.edges[-1]]
     lies = (
         f"where {first.signal} = {levels[0]:.4g}"
         if len(levels) == 1

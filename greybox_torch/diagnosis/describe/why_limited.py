@@ -22,10 +22,13 @@ def why_limited(
     told = []
     if within_chance(gain, settings):
         assert gain is not None
+        away = (
+            f"put it {gain.errors_away:.1f} standard errors from none" if gain.errors_away > 0 else "show nothing of it"
+        )
         told.append(
-            f"its probability allows for chance, as held-out experiments put it {gain.errors_away:.1f} standard errors from none, where "
-            f"{settings.held_out_beyond_chance:.3g} are beyond chance"
+            f"its probability allows for chance, as held-out experiments {away}, where "
+            f"{settings.held_out_beyond_chance:.3g} standard errors are beyond chance"
         )
     if limit is not None and limit.highest < probability:
-        told.append(f"no more than {limit.highest:.2f} is claimed, as {limit.why}")
+        told.append(f"no more than {limit.highest:.2f} is claimed for this name alone, as {limit.why}")
     return tuple(told)

@@ -66,6 +66,28 @@ def limited_by_what_is_left(
     )
 
 
+def limited_by_a_curve(
+    ceiling: float | None, settings: DiagnosisSettings, free_runs: LeftInFreeRuns = LeftInFreeRuns()
+) -> Limit | None:
+    """What limits a name where a free curve in its place goes clearly farther, and free runs leave more than such a law may lack.
+
+    Another law may then be meant, which the curve follows and the library may lack. Of the first of two effects the curve takes up the
+    second as well; what both together leave is little then. Seen: an eddy-current brake's drag, told as an asymmetry (0.97), and a fan's
+    thrust, told as gravity (0.85).
+
+    Args:
+        ceiling: share of the gain of the best free curve that the name reaches; None where no curve was fitted beside it.
+    """
+    left = free_runs.of_mismatch
+    if ceiling is None or left is None or ceiling >= settings.as_far_as_a_curve or left <= settings.left_beside_a_curve:
+        return None
+    return Limit(
+        settings.highest_probability_beside_a_curve,
+        f"it reaches {100 * ceiling:.2g} % of what a free curve does in its place, and free runs leave {100 * left:.2g} % of the mismatch: "
+        "another law may be meant",
+    )
+
+
 def _most_is_left(over_windows: float, in_free_runs: float | None, settings: DiagnosisSettings) -> bool:
     """Whether most of the mismatch is left: over windows of some length, unless little of it is left in free runs, or in these.
 

@@ -9,7 +9,7 @@ from functools import partial
 from greybox_torch.diagnosis.hypothesis.noise import at_floor
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
-from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
+from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of, shortlist
 from greybox_torch.diagnosis.select.choice import priced_score
 from greybox_torch.diagnosis.select.forward import take_effects
 from greybox_torch.diagnosis.select.forward_step import forward_step
@@ -58,6 +58,7 @@ def passed_over(study: Study, before: SearchState, done: SelectionStep) -> Candi
         for k in found
         if k.attachment.port == best.attachment.port
         and k.attachment.mechanism.name in best.attachment.mechanism.generalises
+        and identity_of(k.attachment) != identity_of(best.attachment)
     ]
     best = next(
         (

@@ -56,7 +56,8 @@ def search(study: Study, state: SearchState, before: SearchState | None = None) 
 
 
 def _same_laws(one: SearchState, other: SearchState) -> bool:
-    return {identity_of(e) for e in one.effects} == {identity_of(e) for e in other.effects}
+    """Whether two states have the same effects in the same order, by which the newest is not chosen once more."""
+    return [identity_of(e) for e in one.effects] == [identity_of(e) for e in other.effects]
 
 
 def without_idle_bumps(study: Study, state: SearchState) -> Stage[SearchState]:

@@ -54,6 +54,23 @@ class ProbabilitySettings:
         unit="variances of what was measured",
         chosen_by="a fit of 60 %: of 1060 names that were right as often as claimed, 1059 stood at fits of 70 % and more",
     )
+    highest_probability_beside_a_curve: float = share(
+        0.5,
+        "The most that is claimed for a name where a free curve in its place goes clearly farther and free runs leave much.",
+        unit="probability",
+    )
+    as_far_as_a_curve: float = share(
+        0.9,
+        "Share of the gain of the best free curve in its place that a name has to reach not to count as clearly behind it.",
+        unit="share of the gain, in logarithms of the error",
+        chosen_by="a brake's drag told as an asymmetry: 0.85; right names that free runs bear out to a hundredth: 0.64 to 1",
+    )
+    left_beside_a_curve: float = share(
+        0.05,
+        "Share of the mismatch that free runs of the validation experiments have to leave beside that.",
+        unit="share of the squared error of the model as it stands",
+        chosen_by="the same brake: 0.065; right names behind a curve: 0.003 at most",
+    )
     highest_probability_of_stopped_curve: float = share(
         0.5,
         "The most that is claimed for a free curve where the search was stopped before names were tried.",

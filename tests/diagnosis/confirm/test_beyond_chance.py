@@ -59,4 +59,6 @@ def test_a_finding_and_its_statement_are_no_surer_than_held_out_experiments_are(
     )
     assert not sure.remarks
     (remark,) = unsure.remarks
-    assert "held-out experiments put it 1.3 standard errors from none, where 3 are beyond chance" in remark
+    assert (
+        "held-out experiments put it 1.3 standard errors from none, where 3 standard errors are beyond chance" in remark
+    )

@@ -7,10 +7,11 @@ import pytest
 
 from greybox_torch.diagnosis.confirm import simpler_laws
 from greybox_torch.diagnosis.confirm.held_out import Gain, pooled
-from greybox_torch.diagnosis.confirm.simpler_laws import _contained, _with_rival
+from greybox_torch.diagnosis.confirm.simpler_laws import _contained, _with_rival, simplified
 from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select import finer_steps
+from greybox_torch.diagnosis.select.choice import simplest
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import attach
@@ -136,6 +137,12 @@ def test_stops_at_both_ends_contain_one_at_one_end(motor_data, motor, begun) -> 
     assert fitted.values()["rotor.end_stop.where"] == pytest.approx(1.6, abs=0.05), (
         "the motor begins at 0.4 rad, the model at zero"
     )
+    told = _with_rival(state, rival, fitted, state.effects[0])
+    assert told.step_of("rotor.end_stop").taken is one, "the step is that of the law that is told"
+    fewer = simplified(search.study, state, state.effects[0])
+    assert fewer.current.score < both.fitted.score + 0.05, "begun at either end"
+    assert not fewer.effects[0].mechanism.both
+    assert simplest([both, one], search.plain, search.study.settings) is one
     state = search.at(one.fitted, steps=(SelectionStep((), search.plain, (both, one), one),)).state
     assert _contained(search.study, state, state.effects[0]) == [], "one end contains no other"
 

@@ -147,7 +147,7 @@ def test_a_level_of_steps_is_told_as_one() -> None:
         (EndStop(both=True), {"low": 9.0, "high": 78.0}, (9.0, 78.0)),
         (EndStop(), {"where": 78.0, "side": 1.0}, (None, 78.0)),
         (EndStop(), {"where": 9.0, "side": -1.0}, (9.0, None)),
-        (LIBRARY["threshold_flow"](), {"threshold": 30.0, "width": 2.0}, (None, 30.0)),
+        (LIBRARY["threshold_flow"](), {"threshold": 30.0, "width": 2.0}, (None, 26.0)),
         (TorqueSaturation(True), {"limit": 2.0, "asymmetry": 0.5, "softness": 0.0}, (-1.0, 3.0)),
         (TorqueSaturation(), {"limit": 2.0, "softness": 0.5}, None),
         (LIBRARY["viscous_friction"](), {"c": 1.0}, None),

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, limited_by_what_is_left
+from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, limited_by_a_curve, limited_by_what_is_left
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 SETTINGS, SAMPLES = DiagnosisSettings(), 20_000
@@ -60,3 +60,15 @@ def test_no_finding_is_sure_where_free_runs_follow_little_of_what_was_measured(l
     assert claimed_of(0.97, 0.3, little, SETTINGS, missed, free=free) == 0.97, "what they miss is noise"
     limit = limited_by_what_is_left(0.3, much, SETTINGS, missed, free=free)
     assert limit is not None and "miss 20 % of the variance of what was measured" in limit.why
+
+
+@pytest.mark.parametrize(
+    ("ceiling", "left", "highest"),
+    [(0.8521, 0.065, 0.5), (0.6356, 0.001, None), (1.0, 0.081, None), (0.8, None, None), (None, 0.2, None)],
+    ids=["an eddy-current brake", "the first of two effects", "no curve goes farther", "no free run tells", "no curve"],
+)
+def test_a_name_that_a_curve_outdoes_where_free_runs_leave_much_is_unsure(ceiling, left, highest) -> None:
+    limit = limited_by_a_curve(ceiling, SETTINGS, LeftInFreeRuns(left))
+    assert (None if limit is None else limit.highest) == highest
+    if limit is not None:
+        assert "85 % of what a free curve does in its place, and free runs leave 6.5 %" in limit.why
