@@ -36,7 +36,7 @@ def returned(run: FreeRun, point: np.ndarray) -> np.ndarray:
     for _ in range(ROUNDS):
         before = point
         for i in _far(point[: run.n_parameters], expected):
-            point = _nearer(run, point, i, expected[i], most)
+            point = _nearer(run, point, int(i), float(expected[i]), most)
         if np.array_equal(point, before):
             break
     return point
