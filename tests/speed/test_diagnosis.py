@@ -32,7 +32,7 @@ def called_from(*places: tuple[str, str]) -> str:
 def test_the_innermost_purpose_counts_and_carrying_is_told_apart() -> None:
     assert called_from(("pipeline.py", "diagnose")) == "other"
     assert called_from(("explore.py", "_from_given"), ("rank.py", "in_full")) == "finalists"
-    assert called_from(("rank.py", "tried"), ("window_fit.py", "carried_starts")) == "trials, carrying states"
+    assert called_from(("rank.py", "tried"), ("carried_starts.py", "carried_starts")) == "trials, carrying states"
 
 
 @pytest.mark.parametrize(("file", "function"), sorted({*PURPOSES, *CARRYING} - {("carried.py", "carried_starts")}))

@@ -51,7 +51,7 @@ class Passes:
                 self.by_purpose[purpose][name] += amount
 
 
-CARRYING = {("window_fit.py", "carried_starts"), ("carried.py", "carried_starts")}
+CARRYING = {("carried_starts.py", "carried_starts"), ("carried.py", "carried_starts")}
 
 
 def purpose_of(frame: FrameType | None) -> str:

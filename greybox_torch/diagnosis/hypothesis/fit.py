@@ -208,8 +208,7 @@ def _as_far_as_counts(
     base: Problem, limits: Settings, settings: DiagnosisSettings, budget: SearchBudget, rough: bool, fit: WindowFit
 ) -> Settings:
     """``limits`` with the tolerance that decisions can still see: at the noise all samples count, where more is left they do not."""
-    unknown = fit.problem.model is base.model and not floor_known(base, settings)
-    if unknown or reaches_noise(base, fit, settings, settings.above_noise):
+    if reaches_noise(base, fit, settings, settings.above_noise) or not floor_known(base, settings):
         return limits
     tolerance = budget.rough_mismatch_tolerance if rough else budget.mismatch_tolerance
     return replace(limits, tolerance=max(limits.tolerance, tolerance))
