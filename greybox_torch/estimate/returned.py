@@ -28,11 +28,13 @@ def returned(run: FreeRun, point: np.ndarray) -> np.ndarray:
     Args:
         point: the unknowns at an optimum of ``run``.
     """
+    expected = run.problem.expected[run.problem.free]
+    if not len(_far(point[: run.n_parameters], expected)):
+        return point  # as nearly always: no pass over whole records is needed to say so
     here = run.quadratic(point)
     if here is None:
         return point
     most = here.cost * (1.0 + 2.0 * SEEN / max(run.problem.samples, 1))
-    expected = run.problem.expected[run.problem.free]
     for _ in range(ROUNDS):
         before = point
         for i in _far(point[: run.n_parameters], expected):

@@ -11,7 +11,7 @@ from greybox_torch.diagnosis.hypothesis.significance import likelihood_significa
 from greybox_torch.diagnosis.refit.curve import values_without
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged_beside
 from greybox_torch.diagnosis.refit.refitted import refitted
-from greybox_torch.diagnosis.screen.shortlist import identity_of
+from greybox_torch.diagnosis.screen.shortlist import contains
 from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.finer_steps import finely_enough
@@ -85,11 +85,10 @@ def _contained(study: Study, state: SearchState, effect: Attachment) -> list[tup
     lower stop of a dancer roll, told as stops at both ends, whose upper one stopped the roll in the held-out experiments.
     """
     done, found = state.step_of(effect.prefix), []
-    beside, own = {e.prefix for e in state.effects if e is not effect}, identity_of(effect)
+    beside = {e.prefix for e in state.effects if e is not effect}
     for rival in done.ranked if done is not None else ():
         other = rival.candidate.attachment
-        inside = other.port == effect.port and other.mechanism.name in effect.mechanism.generalises
-        if inside and other.prefix not in beside and identity_of(other) != own:
+        if contains(effect, other) and other.prefix not in beside:
             study.working_on(f"refitting {other.prefix} in the place of {effect.prefix}")
             fitted = refitted(study, state.with_law(effect, other), state.current, [rival.fitted.values()])
             found += [] if fitted is None else [(rival, finely_enough(study, fitted, other))]

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.screen.shortlist import Candidate
+from greybox_torch.diagnosis.screen.shortlist import Candidate, contains
 from greybox_torch.mechanisms.attachment import Attachment
 
 Tried = tuple[Candidate, Hypothesis | None]
@@ -48,7 +48,7 @@ def from_contained(
     """
     law, better = candidate.attachment, []
     for other, fitted in tried:
-        inside = other.attachment.port == law.port and other.attachment.mechanism.name in law.mechanism.generalises
+        inside = contains(law, other.attachment)
         if inside and fitted is not None and (reached is None or fitted.score < reached.score - tie):
             start = _as_contained(law, other.attachment, fitted)
             better += [(fitted.score, start)] if start else []

@@ -147,6 +147,12 @@ def with_card(found: Sequence[Candidate], at_card: Sequence[Candidate]) -> list[
     return [*both, *there.values()]
 
 
+def contains(law: Attachment, other: Attachment) -> bool:
+    """Whether a law contains another one at its port (``generalises``): not itself, as stops at both ends contain those at one."""
+    inside = law.port == other.port and other.mechanism.name in law.mechanism.generalises
+    return inside and identity_of(law) != identity_of(other)
+
+
 def identity_of(attachment: Attachment) -> tuple:
     """What makes two attachments the same hypothesis."""
     mechanism = attachment.mechanism

@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.hypothesis.significance import overall_significance
 from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.refit.likelihood import cost_of
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate
-from greybox_torch.diagnosis.screen.shortlist import identity_of
+from greybox_torch.diagnosis.screen.shortlist import contains
 from greybox_torch.diagnosis.select.remaining import completes
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
@@ -103,14 +103,7 @@ def simplest(
     best = next(iter(ranked), None)
     if best is None:
         return None
-    contained = best.candidate.attachment.mechanism.generalises
-    simpler = (
-        r
-        for r in ranked
-        if r.candidate.attachment.mechanism.name in contained
-        and r.candidate.attachment.port == best.candidate.attachment.port
-        and identity_of(r.candidate.attachment) != identity_of(best.candidate.attachment)
-    )
+    simpler = (r for r in ranked if contains(best.candidate.attachment, r.candidate.attachment))
     alone = completes(best.fitted, settings)
 
     def as_good(r: RankedCandidate) -> bool:

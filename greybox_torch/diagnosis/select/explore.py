@@ -9,7 +9,7 @@ from functools import partial
 from greybox_torch.diagnosis.hypothesis.noise import at_floor
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
-from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of, shortlist
+from greybox_torch.diagnosis.screen.shortlist import Candidate, contains, shortlist
 from greybox_torch.diagnosis.select.choice import priced_score
 from greybox_torch.diagnosis.select.forward import take_effects
 from greybox_torch.diagnosis.select.forward_step import forward_step
@@ -53,13 +53,7 @@ def passed_over(study: Study, before: SearchState, done: SelectionStep) -> Candi
     best = max(found, key=lambda k: shares[k.attachment.prefix], default=None)
     if best is None or shares[best.attachment.prefix] < settings.passed_over_share:
         return None
-    contained = [
-        k
-        for k in found
-        if k.attachment.port == best.attachment.port
-        and k.attachment.mechanism.name in best.attachment.mechanism.generalises
-        and identity_of(k.attachment) != identity_of(best.attachment)
-    ]
+    contained = [k for k in found if contains(best.attachment, k.attachment)]
     best = next(
         (
             k

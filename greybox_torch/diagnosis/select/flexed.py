@@ -13,6 +13,7 @@ from dataclasses import replace
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, sound
 from greybox_torch.diagnosis.refit.refitted import fit
+from greybox_torch.diagnosis.screen.shortlist import contains
 from greybox_torch.diagnosis.select.choice import priced_score
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.study import Study
@@ -41,14 +42,10 @@ def wider_laws(study: Study, state: SearchState) -> Iterator[tuple[Attachment, S
         if done is None or done.taken is None:
             continue
         others = (r for r in done.ranked if r.candidate.attachment.prefix not in state.prefixes)
-        contain = (r for r in others if _contains(r.candidate.attachment, effect) and sound(study, r))
+        contain = (r for r in others if contains(r.candidate.attachment, effect) and sound(study, r))
         wider = next(contain, None)
         if wider is not None and wider.fitted.score < done.taken.fitted.score:
             yield effect, done, wider
-
-
-def _contains(law: Attachment, effect: Attachment) -> bool:
-    return law.port == effect.port and effect.mechanism.name in law.mechanism.generalises
 
 
 def in_its_place(
