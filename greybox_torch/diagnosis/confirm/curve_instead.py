@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-from greybox_torch.diagnosis.confirm.far_better import Standing, judged_anew, leaves_far_less
+from greybox_torch.diagnosis.confirm.far_better import Standing, leaving_far_less
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
@@ -40,9 +40,10 @@ def curve_instead(study: Study, state: SearchState, others: HeldOut | None, judg
         steps=(*state.steps, SelectionStep(step.screened, step.parent, tuple(drawn), best)),
         without={best.candidate.attachment.prefix: state.plain},
     )
-    gains, by_it = judged_anew(study, curve, others, judged)
-    left = judged.mismatch(True) if state.effects else by_it.mismatch(False)
-    return (curve, gains, by_it) if leaves_far_less(gains, by_it, left, settings) else None
+    than = judged if state.effects else None
+    return leaving_far_less(
+        study, curve, others, judged, lambda by_it: by_it.mismatch(False) if than is None else than.mismatch(True)
+    )
 
 
 def curves_of(study: Study, step: SelectionStep) -> list[RankedCandidate]:

@@ -6,7 +6,7 @@ curve that goes farther over windows may go astray where a record leaves the ran
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from greybox_torch.diagnosis.confirm.curves_for_names import curves_for_names
@@ -65,32 +65,64 @@ def _standing(
     if not other.effects:
         return None
     settings = study.settings
-    gains, by_it = judged_anew(study, other, others, judged)
-    far = leaves_far_less(gains, by_it, judged.mismatch(True), settings)
+    by_it = free_runs_of(study, other, others, judged)
+    far = _leave_far_less(by_it, judged.mismatch(True), settings)
     if not far and removes_too_little(state, judged, settings):
-        far = _borne_out(gains, by_it, settings) and not removes_too_little(other, by_it, settings)
-    return (other, gains, by_it) if far else None
+        far = _stand(by_it) and not removes_too_little(other, by_it, settings)
+    return _where_borne_out(other, others, by_it, settings) if far else None
 
 
-def leaves_far_less(gains: Mapping[str, Gain], by_it: Judgement, than: float, settings: DiagnosisSettings) -> bool:
-    """Whether free runs hold and leave far less than the mismatch ``than``, and windows bear all effects out beyond chance."""
-    return _borne_out(gains, by_it, settings) and by_it.mismatch(True) <= settings.left_if_far_better * than
+def leaving_far_less(
+    study: Study,
+    state: SearchState,
+    others: HeldOut,
+    judged: Judgement,
+    than: Callable[[Judgement], float],
+    compared: Callable[[SearchState], SearchState] = lambda state: state,
+) -> Standing | None:
+    """``state``, what its effects gain and its free runs, where those hold and leave far less than a mismatch, and held-out windows bear
+    all effects out beyond chance; None elsewhere. Windows, which take longest, are asked last.
+
+    Args:
+        than: that mismatch, of the free runs.
+        compared: completes the state with what windows compare it with, once they are asked.
+    """
+    by_it = free_runs_of(study, state, others, judged)
+    if not _leave_far_less(by_it, than(by_it), study.settings):
+        return None
+    return _where_borne_out(compared(state), others, by_it, study.settings)
 
 
-def _borne_out(gains: Mapping[str, Gain], by_it: Judgement, settings: DiagnosisSettings) -> bool:
-    """Whether free runs hold, and windows bear all effects out beyond chance."""
+def _where_borne_out(
+    state: SearchState, others: HeldOut, by_it: Judgement, settings: DiagnosisSettings
+) -> Standing | None:
+    """A state with its gains and free runs, where held-out windows bear all of its effects out beyond chance; else None."""
+    gains = held_out_gains(state, others)
     sure = all(g.errors_away > settings.held_out_beyond_chance for g in gains.values())
-    return sure and by_it.holds and not by_it.unstable
+    return (state, gains, by_it) if sure else None
+
+
+def _leave_far_less(by_it: Judgement, than: float, settings: DiagnosisSettings) -> bool:
+    """Whether free runs hold and leave far less than the mismatch ``than``."""
+    return _stand(by_it) and by_it.mismatch(True) <= settings.left_if_far_better * than
+
+
+def _stand(by_it: Judgement) -> bool:
+    return bool(by_it.holds and not by_it.unstable)
+
+
+def free_runs_of(study: Study, state: SearchState, others: HeldOut | None, judged: Judgement) -> Judgement:
+    """The free runs of a state, its hypothesis fitted to whole records, beside the plain refit of ``judged``."""
+    final = finish(state.current, study.settings, study.budget, study.recorded)
+    return judged.having(final) if others is None else judged.having(final, others.places(state.current))
 
 
 def judged_anew(
     study: Study, state: SearchState, others: HeldOut | None, judged: Judgement
 ) -> tuple[Mapping[str, Gain], Judgement]:
-    """What the effects of a state gain on held-out experiments, and its free runs, beside the plain refit of ``judged``.
+    """What the effects of a state gain on held-out experiments, and its free runs (:func:`free_runs_of`).
 
     What one of several effects accounts for, others may take over once it is gone.
     """
-    final = finish(state.current, study.settings, study.budget, study.recorded)
-    if others is None:
-        return {}, judged.having(final)
-    return held_out_gains(state, others), judged.having(final, others.places(state.current))
+    by_it = free_runs_of(study, state, others, judged)
+    return ({} if others is None else held_out_gains(state, others)), by_it

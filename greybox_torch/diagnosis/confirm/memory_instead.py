@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from greybox_torch.diagnosis.confirm.far_better import Standing, judged_anew, leaves_far_less
+from greybox_torch.diagnosis.confirm.far_better import Standing, leaving_far_less
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.select.memory import linear_residual
@@ -33,5 +33,4 @@ def memory_instead(study: Study, searched: SearchState, others: HeldOut | None, 
     if not alone.took_one:
         return None
     alone = replace(alone, memory=alone, named=None, without={e.prefix: alone.plain for e in alone.effects})
-    gains, by_it = judged_anew(study, alone, others, judged)
-    return (alone, gains, by_it) if leaves_far_less(gains, by_it, by_it.mismatch(False), settings) else None
+    return leaving_far_less(study, alone, others, judged, lambda by_it: by_it.mismatch(False))

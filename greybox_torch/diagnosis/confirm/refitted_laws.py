@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
-from greybox_torch.diagnosis.confirm.far_better import Standing, judged_anew, leaves_far_less
+from greybox_torch.diagnosis.confirm.far_better import Standing, leaving_far_less
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
-from greybox_torch.diagnosis.confirm.with_one_more import without_one
+from greybox_torch.diagnosis.confirm.with_one_more import with_each_left_out
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.hypothesis.significance import over_the_same_windows
 from greybox_torch.diagnosis.one_of import spoken_at
@@ -23,6 +24,7 @@ from greybox_torch.diagnosis.select.choice import least_gain
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.name_lists import listed
+from greybox_torch.simulation.side_by_side import side_by_side
 
 
 def refitted_laws(study: Study, state: SearchState, others: HeldOut | None, judged: Judgement) -> Standing | None:
@@ -41,15 +43,16 @@ def refitted_laws(study: Study, state: SearchState, others: HeldOut | None, judg
     above = settings.far_above_noise if state.effects else settings.far_above_disturbances
     if not (share > least and times > above):
         return None
-    found = []
-    for step, law in _asked(study, state):
+
+    def asked(step: SelectionStep, law: RankedCandidate) -> Standing | None:
         study.working_on(f"asking free runs about {' and '.join(e.prefix for e in law.fitted.effects)}")
         base = state.at(step.parent)
         other = replace(base.at(law.fitted), steps=(*state.steps, replace(step, taken=law, led=None)), named=None)
-        other = replace(other, without={p: without_one(study, base, other, p) for p in other.prefixes})
-        gains, by_it = judged_anew(study, other, others, judged)
-        if leaves_far_less(gains, by_it, judged.mismatch(True), settings):
-            found.append((other, gains, by_it))
+        compared = partial(with_each_left_out, study, base)
+        return leaving_far_less(study, other, others, judged, lambda by_it: judged.mismatch(True), compared)
+
+    answers = side_by_side(partial(asked, *one) for one in _asked(study, state))
+    found = [standing for standing in answers if standing is not None]
     about = min((by_it.mismatch(True) for _, _, by_it in found), default=0.0) / settings.left_if_far_better
     near = [one for one in found if one[2].mismatch(True) <= about]
     return min(near, key=_simplest_first, default=None)

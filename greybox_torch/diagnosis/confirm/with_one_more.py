@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
-from greybox_torch.diagnosis.confirm.far_better import Standing, judged_anew, leaves_far_less
+from greybox_torch.diagnosis.confirm.far_better import Standing, leaving_far_less
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
@@ -29,10 +30,8 @@ def with_one_more(study: Study, state: SearchState, others: HeldOut | None, judg
     done, law = asked
     study.working_on(f"asking held-out experiments about {law.candidate.attachment.prefix}")
     more = replace(state.at(law.fitted), steps=(*state.steps, replace(done, taken=law)))
-    more = replace(more, without={p: without_one(study, state, more, p) for p in more.prefixes})
-    gains, by_it = judged_anew(study, more, others, judged)
     least = min(judged.mismatch(True), judged.mismatch(False))
-    return (more, gains, by_it) if leaves_far_less(gains, by_it, least, study.settings) else None
+    return leaving_far_less(study, more, others, judged, lambda by_it: least, partial(with_each_left_out, study, state))
 
 
 def _not_sure(study: Study, state: SearchState) -> tuple[SelectionStep, RankedCandidate] | None:
@@ -52,7 +51,12 @@ def _not_sure(study: Study, state: SearchState) -> tuple[SelectionStep, RankedCa
     return None
 
 
-def without_one(study: Study, state: SearchState, more: SearchState, prefix: str) -> Hypothesis:
+def with_each_left_out(study: Study, state: SearchState, more: SearchState) -> SearchState:
+    """``more``, which is ``state`` and a law that joined it, with what it is without each of its effects."""
+    return replace(more, without={p: _without_one(study, state, more, p) for p in more.prefixes})
+
+
+def _without_one(study: Study, state: SearchState, more: SearchState, prefix: str) -> Hypothesis:
     """The hypothesis of ``more`` without one of its effects: that of ``state`` without the law that joined it."""
     if prefix not in state.prefixes:
         return state.current

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.confirm import curve_instead as module
+from greybox_torch.diagnosis.confirm import far_better
 from greybox_torch.diagnosis.confirm.curve_instead import curve_instead
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.select.state import SearchState
@@ -45,7 +46,8 @@ def test_the_best_curve_of_the_first_step_stands_if_held_out_experiments_say_so(
     monkeypatch.setattr(module, "sound", lambda study, ranked: True)
     monkeypatch.setattr(module, "in_order", lambda ranked, settings: sorted(ranked, key=lambda r: -r.gain))
     monkeypatch.setattr(module, "times_noise", lambda *args: noise)
-    monkeypatch.setattr(module, "judged_anew", lambda study, state, *rest: ({"cart.unknown": held_out}, by_it))
+    monkeypatch.setattr(far_better, "free_runs_of", lambda *asked: by_it)
+    monkeypatch.setattr(far_better, "held_out_gains", lambda state, others: {"cart.unknown": held_out})
     study = stub(settings=DiagnosisSettings(), problem=None, working_on=lambda text: None)
     found = curve_instead(study, SearchState(plain, plain, steps), stub(), stub())
     assert (found is not None) is stands
@@ -67,7 +69,8 @@ def test_the_curve_in_whose_place_names_stood_is_asked(monkeypatch, stub, kept) 
     monkeypatch.setattr(module, "times_noise", lambda *args: 50.0)
     monkeypatch.setattr(module, "in_order", lambda ranked, settings: ranked)
     by_it = stub(mismatch=lambda effects: 0.1 if effects else 1.0, holds=True, unstable=())
-    monkeypatch.setattr(module, "judged_anew", lambda study, state, *rest: ({"actuator.unknown": SURE}, by_it))
+    monkeypatch.setattr(far_better, "free_runs_of", lambda *asked: by_it)
+    monkeypatch.setattr(far_better, "held_out_gains", lambda state, others: {"actuator.unknown": SURE})
     study = stub(settings=DiagnosisSettings(), problem=None, working_on=lambda text: None)
     state = SearchState(plain, plain, (by_name,), in_place_of=by_curve if kept else None)
     found = curve_instead(study, state, stub(), stub())
@@ -86,7 +89,8 @@ def test_beside_a_law_that_lasted_a_curve_has_to_leave_half_of_what_that_leaves(
     monkeypatch.setattr(module, "times_noise", lambda *args: 50.0)
     monkeypatch.setattr(module, "in_order", lambda ranked, settings: ranked)
     by_it = stub(mismatch=lambda effects: left if effects else 1.0, holds=True, unstable=())
-    monkeypatch.setattr(module, "judged_anew", lambda study, state, *rest: ({"bath.unknown": SURE}, by_it))
+    monkeypatch.setattr(far_better, "free_runs_of", lambda *asked: by_it)
+    monkeypatch.setattr(far_better, "held_out_gains", lambda state, others: {"bath.unknown": SURE})
     study = stub(settings=DiagnosisSettings(), problem=None, working_on=lambda text: None)
     by_bias = stub(mismatch=lambda effects: 0.1 if effects else 1.0)
     found = curve_instead(study, SearchState(plain, bias, (step,)), stub(), by_bias)

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from greybox_torch.diagnosis.confirm import far_better
 from greybox_torch.diagnosis.confirm import memory_instead as module
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.memory_instead import memory_instead
@@ -31,7 +32,10 @@ def world(monkeypatch, stub):
             return replace(state.at(with_memory if took else plain), steps=(step,))
 
         monkeypatch.setattr(module, "linear_residual", residual)
-        monkeypatch.setattr(module, "judged_anew", lambda *_: ({"moisture.unknown_with_memory": held_out}, by_it))
+        monkeypatch.setattr(far_better, "free_runs_of", lambda *asked: by_it)
+        monkeypatch.setattr(
+            far_better, "held_out_gains", lambda state, others: {"moisture.unknown_with_memory": held_out}
+        )
         study = stub(settings=DiagnosisSettings(), working_on=lambda text: None)
         state = SearchState(plain, curve) if searched is None else searched(plain, curve)
         return memory_instead(study, state, stub() if held else None, stub(left=lambda effects: (1.0, times, "e2")))

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.confirm import holding
+from greybox_torch.diagnosis.confirm import far_better, holding, with_one_more
 from greybox_torch.diagnosis.confirm import refitted_laws as module
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.refitted_laws import refitted_laws
@@ -41,13 +41,19 @@ def swing(stub, monkeypatch) -> Any:
     def make(left: dict[tuple[str, ...], float], told: tuple[str, ...] = ("curve",), times: float = 50.0, sure=()):
         standing = judgement(stub, left[told] if told else 1.0, times)
 
-        def judged_anew(study, state, others, judged):
-            laws = tuple(e.prefix for e in state.effects)
-            gains = dict.fromkeys(state.prefixes, CHANCE if laws in sure else SURE)
-            return gains, judgement(stub, left.get(laws, 1.0), times)
+        def laws_of(state) -> tuple[str, ...]:
+            return tuple(e.prefix for e in state.effects)
 
-        monkeypatch.setattr(module, "judged_anew", judged_anew)
-        monkeypatch.setattr(module, "without_one", lambda study, base, more, prefix: base.current)
+        def gains(state, others):
+            assert state.compared_without, "windows are asked about a state that is compared with each effect left out"
+            return dict.fromkeys(state.prefixes, CHANCE if laws_of(state) in sure else SURE)
+
+        def free_runs_of(study, state, others, judged):
+            return judgement(stub, left.get(laws_of(state), 1.0), times)
+
+        monkeypatch.setattr(far_better, "free_runs_of", free_runs_of)
+        monkeypatch.setattr(far_better, "held_out_gains", gains)
+        monkeypatch.setattr(with_one_more, "_without_one", lambda study, base, more, prefix: base.current)
         monkeypatch.setattr(module, "sound", lambda study, one: True)
         monkeypatch.setattr(module, "least_gain", lambda fitted, settings: 0.05)
         monkeypatch.setattr(module, "over_the_same_windows", lambda before, after: True)
