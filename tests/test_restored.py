@@ -21,7 +21,7 @@ from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.demo import DATASET
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import Problem, make_problem
-from greybox_torch.mechanisms.actuator import ActuatorDeadzone
+from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.stored import attachment_json

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import torch
 
-from greybox_torch.estimate.excitation import excited_up_to
+from greybox_torch.estimate.excitation import any_input_moves, excited_up_to
 from greybox_torch.estimate.force_unit import force_unit
 from greybox_torch.estimate.free_run import visited_states
 from greybox_torch.estimate.measured_range import as_measured, farther, no_farther
@@ -55,9 +55,9 @@ def surroundings_along(model: GreyBoxModel, problem: Problem, states: np.ndarray
     x, u = model.named_signals(torch.as_tensor(states.T), torch.as_tensor(problem.records.u))
     p = problem.parameter_tensors
     times = np.concatenate([problem.records.time(e) for e in range(len(problem.records.first))])
-    excited = excited_up_to(problem.records)
+    excited, timed = excited_up_to(problem.records), len(model.outputs) > 1 or any_input_moves(problem.records)
     around = {port.name: _around(model, port, x, u, p, times, problem) for port in model.all_ports}
-    return {name: replace(one, excited=excited) for name, one in around.items()}
+    return {name: replace(one, excited=excited, timed=timed) for name, one in around.items()}
 
 
 def _around(

@@ -1,4 +1,4 @@
-"""The way from the recorded input to the input that acts: delay, lag, bias, gain, saturation, dead zone."""
+"""The way from the recorded input to the input that acts: delay, lag, bias, gain, saturation."""
 
 from __future__ import annotations
 
@@ -12,11 +12,8 @@ from greybox_torch.mechanisms.degenerate import too_long
 from greybox_torch.mechanisms.lag import Lag
 from greybox_torch.mechanisms.linear_law import LinearLaw, Of, Per
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
-from greybox_torch.mechanisms.transmission import dead_zone
+from greybox_torch.mechanisms.soft_limit import log_of_limited
 from greybox_torch.model import Parameter, Signals
-
-TINY = 1e-12
-"""Keeps a logarithm and a quotient finite at zero."""
 
 
 class InputLag(Lag):
@@ -155,13 +152,10 @@ class TorqueSaturation(ByDirection):
         ]
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        # ln(1 + x^n) / n as a maximum and a rest: no power overflows, and without softness it is the clamp itself.
         limit = p.limit * (1 + p.asymmetry * torch.sign(s.input)) if self.by_direction else p.limit
         if self.limited_power:
             limit = limit / torch.clamp(torch.abs(s.speed) / p.base_speed, min=1.0)
-        ln_x = 0.5 * torch.log((s.input / limit) ** 2 + TINY)
-        rest = torch.log1p(torch.exp(-torch.abs(ln_x) / (p.softness + TINY)))
-        return s.input * torch.expm1(-torch.clamp(ln_x, min=0.0) - p.softness * rest)
+        return s.input * torch.expm1(log_of_limited(s.input / limit, p.softness))
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         spread = around.ranges["input"]
@@ -205,36 +199,3 @@ def _base_speed(around: Surroundings) -> Parameter:
     return Parameter(
         "base_speed", 0.5 * reach, around.units.get("speed", ""), lower=0.02 * reach, upper=reach, description=told
     )
-
-
-class ActuatorDeadzone(ByDirection):
-    """The input acts only beyond ±``half_width``; ``by_direction``, with an ``asymmetry`` a, beyond (1 + a) and −(1 − a) times that."""
-
-    name = "actuator_deadzone"
-    kinds = ("actuator",)
-    needs = ("input",)
-    nature = "an input that acts in part only"
-    explanation = "Small inputs do nothing (valve overlap, amplifier dead band)."
-    source = "G. Tao, P. V. Kokotović, Adaptive Control of Systems with Actuator and Sensor Nonlinearities, 1996"
-    experiment = "small inputs around zero"
-
-    def described_here(self) -> str:
-        ends = "above (1 + asymmetry) half_width and below −(1 − asymmetry) half_width"
-        return f"The input acts only {ends if self.by_direction else 'beyond ±half_width'}"
-
-    def parameters(self, around: Surroundings) -> list[Parameter]:
-        reach = around.ranges["input"].reach
-        return [
-            Parameter(
-                "half_width", 0.0, around.force_unit, lower=0.0, upper=0.9 * reach, description="half the dead band"
-            ),
-            *self.asymmetry("the dead band's ends"),
-        ]
-
-    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        more = p.asymmetry if self.by_direction else 0.0
-        return dead_zone(s.input, p.half_width * (1 - more), p.half_width * (1 + more)) - s.input
-
-    def probes(self, around: Surroundings) -> Sequence[Probe]:
-        rms = around.ranges["input"].rms
-        return [Probe(("half_width",)), *(Probe((SHARE,), {"half_width": f * rms}) for f in (0.2, 0.6))]

@@ -3,14 +3,8 @@
 from __future__ import annotations
 
 from greybox_torch.errors import UserError
-from greybox_torch.mechanisms.actuator import (
-    ActuatorDeadzone,
-    InputBias,
-    InputDelay,
-    InputGain,
-    InputLag,
-    TorqueSaturation,
-)
+from greybox_torch.mechanisms.actuator import InputBias, InputDelay, InputGain, InputLag, TorqueSaturation
+from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.balance import LinearLeak, ThresholdFlow
 from greybox_torch.mechanisms.check import check_mechanism
 from greybox_torch.mechanisms.end_stop import EndStop

@@ -86,6 +86,10 @@ class OutputDelay(Mechanism):
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return too_long("T", values["T"], around)
 
+    def available(self, around: Surroundings) -> bool:
+        """Not where no input moves and nothing else is recorded: a motion that is left to itself is late beside nothing."""
+        return super().available(around) and around.timed
+
 
 class SensorBias(LinearLaw):
     """The recorded output is off by a constant."""

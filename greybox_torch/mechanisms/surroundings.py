@@ -34,7 +34,8 @@ class Surroundings:
     ``ranges`` and ``units`` by signal name (``speed``, ``position``, ``load``, ``time``, ``deflection``, ``rate``, ``level``, ``input``,
     ``output``); ``force_unit`` of the port; ``sample_time`` in s. ``unmeasured``: signals whose range is that of a model which lacks what
     is looked for, as no sensor shows them. ``excited``: the angular frequency in rad/s up to which the inputs have most of their power.
-    ``passed_once``: signals that are nowhere twice within an experiment.
+    ``passed_once``: signals that are nowhere twice within an experiment. ``timed``: whether anything says when an output should have moved,
+    an input that moves within an experiment or a second output.
     """
 
     ranges: Mapping[str, Range]
@@ -44,6 +45,7 @@ class Surroundings:
     unmeasured: frozenset[str] = frozenset()
     excited: float = float("inf")
     passed_once: frozenset[str] = frozenset()
+    timed: bool = True
 
     def per(self, signal: str, power: int = 1) -> str:
         """The unit of force per signal to a power; empty where that of the force is not known."""

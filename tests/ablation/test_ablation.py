@@ -17,7 +17,7 @@ from greybox_torch.checkpoint import Checkpoint, save_checkpoint
 from greybox_torch.data import load_dataset
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.surroundings import survey
-from greybox_torch.mechanisms.actuator import ActuatorDeadzone
+from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.stored import attachment_json

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greybox_torch.estimate.excitation import excited_band, excited_up_to
+from greybox_torch.estimate.excitation import any_input_moves, excited_band, excited_up_to
 from greybox_torch.simulation.records import Records
 
 STEP, SAMPLES = 0.01, 3000
@@ -37,6 +37,11 @@ def test_the_input_and_the_experiment_that_reach_highest_count() -> None:
     assert excited_up_to(recorded(sine(2.0))) == pytest.approx(2 * np.pi * 2.0)
     assert excited_up_to(recorded(in_one)) == pytest.approx(2 * np.pi * 12.0)
     assert excited_up_to(recorded(sine(2.0), sine(20.0))) == pytest.approx(2 * np.pi * 20.0)
+
+
+def test_an_input_moves_within_an_experiment_or_not_at_all() -> None:
+    assert any_input_moves(recorded(sine(2.0))) and any_input_moves(recorded(np.full(SAMPLES, 3.0), sine(2.0)))
+    assert not any_input_moves(recorded(np.full(SAMPLES, 3.0), np.full(SAMPLES, -1.0)))
 
 
 def test_where_no_input_moves_nothing_is_known() -> None:

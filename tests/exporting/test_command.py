@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from greybox_torch.checkpoint import Checkpoint, save_checkpoint
 from greybox_torch.cli import app
-from greybox_torch.mechanisms.actuator import ActuatorDeadzone
+from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.stored import attachment_json

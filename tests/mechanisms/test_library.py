@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import torch
 
-from greybox_torch.mechanisms.actuator import ActuatorDeadzone, TorqueSaturation
+from greybox_torch.mechanisms.actuator import TorqueSaturation
+from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Range, Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
@@ -40,6 +41,7 @@ FORMS = [
     pytest.param(TorqueSaturation(by_direction=True), id="torque_saturation by direction"),
     pytest.param(TorqueSaturation(limited_power=True), id="torque_saturation of limited power"),
     pytest.param(ActuatorDeadzone(by_direction=True), id="actuator_deadzone by direction"),
+    pytest.param(ActuatorDeadzone(soft=True), id="actuator_deadzone with round corners"),
 ]
 ALL = [*MECHANISMS, *FORMS]
 every = pytest.mark.parametrize("mechanism", ALL)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import torch
 
-from greybox_torch.mechanisms.actuator import ActuatorDeadzone, InputDelay, InputGain, InputLag, TorqueSaturation
+from greybox_torch.mechanisms.actuator import InputDelay, InputGain, InputLag, TorqueSaturation
+from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
 from greybox_torch.mechanisms.sensor import SensorBias, SensorGain, SensorLag

@@ -6,14 +6,8 @@ import numpy as np
 import pytest
 import torch
 
-from greybox_torch.mechanisms.actuator import (
-    ActuatorDeadzone,
-    InputBias,
-    InputDelay,
-    InputGain,
-    InputLag,
-    TorqueSaturation,
-)
+from greybox_torch.mechanisms.actuator import InputBias, InputDelay, InputGain, InputLag, TorqueSaturation
+from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorGain, SensorLag
 
 INPUT = np.linspace(-5.0, 5.0, 101)
@@ -74,12 +68,39 @@ def test_the_form_by_direction_is_asked_where_a_curve_is_not_odd_or_more_than_no
         assert plain.nearest(around, signals, drawn, weight).options()["by_direction"] == (asymmetry > 0.0)
     (form, begun), *others = plain.richer({amplitude: 1.0})
     assert form.options()["by_direction"] and begun == {amplitude: 1.0, "asymmetry": 0.0}
-    assert bool(others) == bool(form.richer(begun)) == isinstance(plain, TorqueSaturation)
+    assert len(others) == 2 and len(form.richer(begun)) == 1, "with limited power or round corners, alone and besides"
 
 
 def test_dead_zone_of_the_actuator(law) -> None:
     acting = INPUT + law(ActuatorDeadzone(), {"half_width": 1.0}, input=INPUT)
     np.testing.assert_allclose(acting, np.sign(INPUT) * np.maximum(np.abs(INPUT) - 1.0, 0.0), atol=1e-14)
+
+
+def test_round_corners_of_a_dead_zone(law) -> None:
+    soft = {"half_width": 0.8, "softness": 0.5}
+    acting = INPUT + law(ActuatorDeadzone(soft=True), soft, input=INPUT)
+    np.testing.assert_allclose(acting, INPUT - INPUT / np.hypot(1.0, INPUT / 0.8), atol=1e-12)
+    sharp = INPUT + law(ActuatorDeadzone(True, True), {**soft, "softness": 0.0, "asymmetry": 0.25}, input=INPUT)
+    np.testing.assert_allclose(sharp, INPUT - np.clip(INPUT, -0.6, 1.0), atol=1e-11)
+
+
+def test_a_dead_zone_has_every_richer_form_once_and_goes_back_by_steps() -> None:
+    forms = [(tuple(form.options().values()), begun) for form, begun in ActuatorDeadzone().richer({"half_width": 1.0})]
+    asymmetry, softness = {"asymmetry": 0.0}, {"softness": 0.3}
+    width = {"half_width": 1.0}
+    assert forms == [
+        ((True, False), asymmetry | width),
+        ((False, True), softness | width),
+        ((True, True), asymmetry | softness | width),
+    ]
+    assert not ActuatorDeadzone(True, True).richer(width)
+    law, values = ActuatorDeadzone(True, True), asymmetry | softness | width
+    for options, left in (((False, True), softness | width), ((False, False), width)):
+        plainer = law.plainer(values)
+        assert plainer is not None
+        law, values = plainer
+        assert tuple(law.options().values()) == options and values == left
+    assert law.plainer(values) is None
 
 
 @pytest.mark.parametrize(("bias", "signal"), [(InputBias(), "input"), (SensorBias(), "output")])

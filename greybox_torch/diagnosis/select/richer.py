@@ -18,7 +18,7 @@ from greybox_torch.diagnosis.refit.possible_form import possible_form
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, judged, sound
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.as_two_laws import two_in_its_place
-from greybox_torch.diagnosis.select.choice import least_gain, priced_score
+from greybox_torch.diagnosis.select.choice import alone_at_noise, least_gain, priced_score
 from greybox_torch.diagnosis.select.flexed import widened
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.select.rivals_of_form import with_rivals_of_form
@@ -30,7 +30,7 @@ from greybox_torch.mechanisms.attachment import Attachment
 
 
 def with_richer_form(study: Study, state: SearchState, done: SelectionStep | None = None) -> Stage[SearchState]:
-    """The state with the law of a step in the richer form that goes farthest, where that takes up most of what is left.
+    """The state with the law of a step in the richer form that goes farthest for its parameters, where that takes up most of what is left.
 
     Args:
         done: that step, by default the last one.
@@ -43,7 +43,7 @@ def with_richer_form(study: Study, state: SearchState, done: SelectionStep | Non
     forms = ((law, start) for law, start in _forms(effect, state) if not law.mechanism.stands_for)
     tried = (_in_form(study, state, taken, law, start) for law, start in forms)
     paying = [r for r in tried if r is not None and _preferred(study, state, effect, r)]
-    best = min(paying, key=lambda r: r.fitted.score, default=None)
+    best = min(paying, key=lambda r: priced_score(r.fitted, study.settings), default=None)
     if best is None:
         return state
     newest = done is state.steps[-1]
@@ -195,7 +195,7 @@ def _preferred(study: Study, state: SearchState, effect: Attachment, ranked: Ran
     """
     before, settings = state.current, study.settings
     if ranked.candidate.attachment.named == effect.named:
-        return _pays(study, before, ranked)
+        return _pays(study, state, ranked)
     if remaining_share(state.plain, before, settings) < settings.least_size and not completes(ranked.fitted, settings):
         return False
     half = settings.most_of_the_mismatch
@@ -204,11 +204,16 @@ def _preferred(study: Study, state: SearchState, effect: Attachment, ranked: Ran
     return far and _improves(study, ranked)
 
 
-def _pays(study: Study, before: Hypothesis, ranked: RankedCandidate) -> bool:
-    """Whether a form takes up most of what the plain one leaves, beyond chance: less may be another effect's."""
-    settings = study.settings
+def _pays(study: Study, state: SearchState, ranked: RankedCandidate) -> bool:
+    """Whether a form takes up most of what the plain one leaves, beyond chance: less may be another effect's.
+
+    Or leaves white noise alone where the plain one does not, as a free curve has to that stands before a name. Seen: a drive's dead band
+    with round corners, told as a curve over its input; with sharp ones hardly more than noise was left, of which forms take up no part.
+    """
+    before, settings = state.current, study.settings
     most = _takes_up(study, before, ranked, settings.least_of_richer_form)
-    return most and ranked.significance > settings.least_significance and sound(study, ranked)
+    enough = most or alone_at_noise(ranked.fitted, before, state.plain, settings)
+    return enough and ranked.significance > settings.least_significance and sound(study, ranked)
 
 
 def _takes_up(study: Study, before: Hypothesis, ranked: RankedCandidate, share: float) -> bool:

@@ -8,7 +8,8 @@ import pytest
 from greybox_torch.diagnosis.describe.law_over_data import over_data
 from greybox_torch.diagnosis.describe.profiles import with_samples
 from greybox_torch.diagnosis.effect import Curve
-from greybox_torch.mechanisms.actuator import ActuatorDeadzone, InputGain, InputLag
+from greybox_torch.mechanisms.actuator import InputGain, InputLag
+from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.transmission import Backlash

@@ -9,7 +9,8 @@ from greybox_torch.diagnosis.refit.order import in_both_orders, joined
 from greybox_torch.diagnosis.refit.rank import rank
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.state import SearchState
-from greybox_torch.mechanisms.actuator import ActuatorDeadzone, InputDelay, InputGain, InputLag
+from greybox_torch.mechanisms.actuator import InputDelay, InputGain, InputLag
+from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.unknown import Unknown

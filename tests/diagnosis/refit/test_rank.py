@@ -18,7 +18,7 @@ from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
 from greybox_torch.diagnosis.select.offered import screen_scores
-from greybox_torch.mechanisms.actuator import ActuatorDeadzone
+from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.unknown import Unknown

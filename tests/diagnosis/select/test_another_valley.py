@@ -14,7 +14,7 @@ from greybox_torch.diagnosis.select.compare import Comparison, compare
 from greybox_torch.diagnosis.select.forward_step import forward_step
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import result_of
-from greybox_torch.mechanisms.actuator import ActuatorDeadzone
+from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.unknown import Unknown
 

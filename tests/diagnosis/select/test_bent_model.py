@@ -12,7 +12,7 @@ from greybox_torch.diagnosis.refit.rank import rank
 from greybox_torch.diagnosis.screen.shortlist import Candidate, with_card
 from greybox_torch.diagnosis.select.bent_model import from_the_card, moved_far, narrowed, unbent_first
 from greybox_torch.diagnosis.select.offered import from_card
-from greybox_torch.mechanisms.actuator import ActuatorDeadzone
+from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.surroundings import Range, Surroundings

@@ -13,7 +13,8 @@ from greybox_torch.diagnosis.select.backward import drop_superfluous
 from greybox_torch.diagnosis.select.plainer import with_plainer_forms
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
-from greybox_torch.mechanisms.actuator import ActuatorDeadzone, InputBias, TorqueSaturation
+from greybox_torch.mechanisms.actuator import InputBias, TorqueSaturation
+from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.torque_ripple import TorqueRipple

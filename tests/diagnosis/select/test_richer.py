@@ -83,7 +83,8 @@ def test_what_it_takes_up_is_asked_where_the_law_leaves_most(motor_data, motor, 
     """Seen: cogging of two orders along a rail; over all but the longest windows one order left little more than an encoder's steps."""
     search = begun(motor_data(torque=lambda q, v: 0.06 * np.sin(2.5 * q)), motor)
     ripple = attach(motor, "rotor", TorqueRipple(2.5))
-    fitted, settings = found(search, ripple, {f"{ripple.prefix}.b": 0.06}).current, search.study.settings
+    state, settings = found(search, ripple, {f"{ripple.prefix}.b": 0.06}), search.study.settings
+    fitted = state.current
     floors = [noise_floor(f.problem, settings) for f in fitted.fits]
 
     def leaving(*times: float) -> Any:
@@ -93,7 +94,7 @@ def test_what_it_takes_up_is_asked_where_the_law_leaves_most(motor_data, motor, 
     before, after = leaving(1.0, 1.1, plain), leaving(1.0, 1.05, left)
     ranked = replace(judged(Candidate(ripple, (), 0.5), before, after, settings), significance=5.0)
     assert ranked.gain < -np.log1p(-settings.least_of_richer_form)
-    assert _pays(search.study, before, ranked) is taken
+    assert _pays(search.study, state.at(before), ranked) is taken
 
 
 @pytest.mark.parametrize(("beyond", "instead"), [(-0.5, True), (0.01, True), (0.5, False)])

@@ -12,7 +12,7 @@ from greybox_torch.diagnosis.select.same_effects import with_same_effects
 from greybox_torch.diagnosis.select.search import search
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.stopping import result_of
-from greybox_torch.mechanisms.actuator import ActuatorDeadzone
+from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.unknown import Unknown
 
