@@ -143,9 +143,7 @@ def _form(score: ScreenScore) -> tuple[str, int]:
 
 
 def _share_to_remove(study: Study, state: SearchState, standing: SearchState) -> float:
-    """The share of a state's squared error that has to go: all that what stands removes of it or, beside that, all but the noise."""
-    if state.effects != standing.effects:
-        return 1.0 - remaining_share(standing.plain, standing.current, study.settings)
-    if not state.effects:
-        return 0.0
-    return left_to_complete(state.current, study.settings)
+    """The share of a state's squared error that has to go: beside laws all but the noise, alone all that what stands removes of it."""
+    if state.effects:
+        return left_to_complete(state.current, study.settings)
+    return 1.0 - remaining_share(standing.plain, standing.current, study.settings) if standing.effects else 0.0
