@@ -10,6 +10,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.above_noise import noise_over_windows
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.steps_of_whole_records import in_steps_for_whole_records
 from greybox_torch.diagnosis.hypothesis.weights_of_outputs import weighed_by_what_is_left
 from greybox_torch.diagnosis.hypothesis.whole_records import coloured, from_windows, whole_runs
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
@@ -65,11 +66,13 @@ def finish(
     are weighed by their spectrum. (The model as it stands is always fitted to simulation error: the best that it can do.) Elsewhere each of
     several outputs is weighed by what is left of it, see :func:`weighed_by_what_is_left`.
 
-    Where no whole record can be simulated, the values of the longest windows stand.
+    Where no whole record can be simulated, the values of the longest windows stand. Steps are those that free runs need, see
+    :func:`in_steps_for_whole_records`.
 
     Args:
         records: of the same experiments, the first sample of each the same; by default those that the hypothesis was found on.
     """
+    hypothesis = in_steps_for_whole_records(hypothesis, settings)
     problems = [from_windows(fit) for fit in reversed(hypothesis.fits)]
     runs = whole_runs(hypothesis, [*problems, _from_the_card(hypothesis)])
     begun = side_by_side(partial(descended, run, run.start, budget.record_first_iterations) for run in runs)

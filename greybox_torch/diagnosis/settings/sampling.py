@@ -71,3 +71,9 @@ class SamplingSettings:
         unit="share of the level that is found",
         chosen_by="a complete mixer's rollers: as much as is found",
     )
+    part_of_steps: float = share(
+        0.3,
+        "Part of the error of free runs that finer steps have to move for the final fits to take them.",
+        unit="share of the root mean square error",
+        chosen_by="a tenth of the squared error, as much as a small finding; a winch's friction in steps that were too long: 0.9",
+    )
