@@ -174,6 +174,15 @@ def per_minute(unit: str) -> bool:
     return bool(_TURNS.fullmatch(unit.strip("[]() ")))
 
 
+def in_base_units(unit: str) -> float | None:
+    """What a difference of one in a unit is in base units of the SI; None where it is not known."""
+    try:
+        zero, one = (_registry().Quantity(value, _written(unit)).to_base_units() for value in (0.0, 1.0))
+    except Exception:  # pint's parser raises what its tokenizer does
+        return None
+    return float(one.magnitude - zero.magnitude)
+
+
 def _as_meant(unit: str, other: str) -> str:
     """Gravity where "g" is meant as that, beside an acceleration; turns per minute where "1/min" is, beside an angle or turns."""
     plain = bare(unit.strip("[]() "))

@@ -11,6 +11,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.confirm.beyond_chance import part_borne_out
 from greybox_torch.diagnosis.confirm.held_out import Gain
+from greybox_torch.diagnosis.describe.conversion_as_gain import conversion_as_gain
 from greybox_torch.diagnosis.describe.equation import equation
 from greybox_torch.diagnosis.describe.indistinguishable import one_of
 from greybox_torch.diagnosis.describe.law_over_data import over_data
@@ -149,6 +150,7 @@ def _effect(
         equation=equation(attachment, site, around, named, list(parameters)),
         at_bounds=tuple(n.removeprefix(own) for n in at_bounds(final.problem) if n.startswith(own)),
         form=mechanism.nature if mechanism.free else "",
+        conversion=conversion_as_gain(attachment, around, parameters),
         limited=why_limited(uncapped, limit, gain, study.settings),
     )
 
