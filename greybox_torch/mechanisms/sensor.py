@@ -17,7 +17,18 @@ FOLLOWED = 1.6
 """Samples of the shortest dead time whose approximation one step of the integrator per sample follows: its poles lie at 3.5 / T."""
 
 
-class SensorLag(Lag):
+class _LateBesideOthers(Mechanism):
+    """What is late beside something: not where no input moves and nothing else is recorded.
+
+    A motion that is left to itself is late beside nothing, and how a sensor follows it is how the machine may move. Seen: a car that
+    coasts down, its viscous friction told as a lag of its speed sensor, 9.7 s (0.97).
+    """
+
+    def available(self, around: Surroundings) -> bool:
+        return super().available(around) and around.timed
+
+
+class SensorLag(_LateBesideOthers, Lag):
     """w is recorded in the place of the output y: T dw/dt = y − w; with ``second_order`` (T/2ζ)² d²w/dt² + T dw/dt = y − w.
 
     See :class:`Lag`; ζ is the damping ratio, and T in both forms the mean delay.
@@ -36,7 +47,7 @@ class SensorLag(Lag):
         return around.units.get("output", "")
 
 
-class OutputDelay(Mechanism):
+class OutputDelay(_LateBesideOthers):
     """The output is recorded later by a dead time T, as its second-order Padé approximation (1 − sT/2 + s²T²/12)/(1 + sT/2 + s²T²/12).
 
     What it shows first is what was before the record, which nobody knows: windows do not count that, for two dead times.
@@ -85,10 +96,6 @@ class OutputDelay(Mechanism):
 
     def misplaced(self, around: Surroundings, values: Mapping[str, float]) -> str | None:
         return too_long("T", values["T"], around)
-
-    def available(self, around: Surroundings) -> bool:
-        """Not where no input moves and nothing else is recorded: a motion that is left to itself is late beside nothing."""
-        return super().available(around) and around.timed
 
 
 class SensorBias(LinearLaw):
