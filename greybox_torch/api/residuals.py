@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.estimate.residuals import Correlation, Residuals
 from greybox_torch.evaluation import Evaluation
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.name_lists import listed
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
 
@@ -26,8 +28,16 @@ FIGURE = "residuals.png"
 
 _EXPLANATION = (
     "Autocorrelation: the largest at lags 1 to 25, near 0 where errors are as random as noise; correlation with an input: the largest at "
-    "lags 0 to 25. The bounds are those of one lag; white: no autocorrelation is beyond what chance gives over all lags together.",
-    "Above the bound, something repeatable is left in the residual. What correlates with the input a better model can remove.",
+    "lags 0 to 25. The bounds are those of one lag; white: no autocorrelation is beyond what chance gives over all lags together."
+)
+
+_SLOW = (
+    "whether past inputs explain part of them cannot be judged: errors and inputs change so slowly beside the length of the recordings "
+    "that chance alone gives any correlation"
+)
+_NOT_LINEAR = (
+    "what is left repeats from sample to sample, and past inputs do not explain it linearly: look at it over time for what is not "
+    "recorded, such as a load, or for an effect that follows the motion, such as friction (`greybox diagnose` looks for the latter)"
 )
 
 
@@ -72,8 +82,8 @@ class ResidualResult(Result):
     def show(self, console: Console) -> None:
         console.print(Text(self._title, style="bold"))
         print_table(console, *self._table(), prose=["experiment"])
-        for line in _EXPLANATION:
-            console.print(line, soft_wrap=True)
+        for line in self._notes:
+            console.print(Text(line), soft_wrap=True)
 
     def files(self, folder: Path) -> dict[Path, str | bytes]:
         return {folder / FIGURE: notebook.png(self.plot())}
@@ -93,9 +103,13 @@ class ResidualResult(Result):
         return plot_residuals(own, f"{self._title}, {experiment}")
 
     def _repr_html_(self) -> str:
-        notes = (notebook.sentence(line) for line in _EXPLANATION)
+        notes = (notebook.sentence(line) for line in self._notes)
         shown = notebook.picture(self.plot(), "errors over time, their autocorrelation and correlation with the inputs")
         return notebook.page(self._title, notebook.table(*self._table()), *notes, shown)
+
+    @property
+    def _notes(self) -> tuple[str, ...]:
+        return _EXPLANATION, read(self.tests)
 
     @property
     def _title(self) -> str:
@@ -128,6 +142,31 @@ def residuals(
     """
     simulated = simulate(model, data, name=name, device=device, precision=precision)
     return ResidualResult(simulated.run, simulated.name)
+
+
+def read(tests: Sequence[Residuals]) -> str:
+    """What the tests of all rows show together, and what that means."""
+    coloured = sum(not test.whiteness.within_chance for test in tests)
+    driven = [[n for n, found in test.inputs.items() if not found.within_chance] for test in tests]
+    names = listed(list(dict.fromkeys(name for row in driven for name in row)))
+    rows = (
+        f"{coloured} of {len(tests)} rows {'is' if coloured == 1 else 'are'} not white"
+        if coloured
+        else "All rows are white"
+    )
+    if names:
+        count = sum(map(bool, driven))
+        more = f"{count} {'correlates' if count == 1 else 'correlate'} with {names} by more than chance gives over all lags"
+        return f"{rows}, and {more}: that part a better model can remove."
+    bounds = [found.bound for test in tests for found in test.inputs.values()]
+    if bounds and min(bounds) >= 1.0:
+        return f"{rows}; {_SLOW}."
+    inputs = ", and none correlates with an input by more than chance gives over all lags" if bounds else ""
+    if not coloured:
+        return f"{rows}{inputs}: nothing is left that these tests show."
+    if not bounds:
+        return f"{rows}: what is left repeats from sample to sample, so that a better model can remove part of it."
+    return f"{rows}{inputs}: {_NOT_LINEAR}."
 
 
 def _row_json(test: Residuals, rmse: float) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.diagnosis.digits import digits
+from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken_at
 from greybox_torch.estimate.notes import told_at_bound
@@ -75,15 +76,18 @@ class Curve:
     spread: np.ndarray | None = None
     free: FreeCurve | None = None
     seen: np.ndarray | None = None
+    factor: Factor | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Its entry `curve` of an effect that has no name."""
+        by = self.factor
         return {
             "signal": self.signal,
             "unit": self.unit,
             "values": [float(v) for v in self.values],
             "force": [float(v) for v in self.force],
             "force_unit": self.force_unit,
+            **({} if by is None else {"factor": by.signal, "factor_value": by.value, "factor_unit": by.unit}),
         }
 
 

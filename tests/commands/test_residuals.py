@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from greybox_torch.api.residuals import read
+from greybox_torch.estimate.residuals import Correlation
 from tests.commands.free_running import PNG, Edit, Make, greybox, of, saved
 
 
@@ -59,3 +63,36 @@ def test_residuals_of_a_model_without_inputs(motor_folder: Make, edit: Edit) -> 
     edit(folder / "my_motor.py", "p.k * u.voltage - p.b", "-p.b")
     edit(folder / "dataset.toml", 'voltage = { column = "v", unit = "V" }\n', "")
     assert [row["input_correlation"] for row in of("residuals", folder)["residuals"]] == [None] * 3
+
+
+@pytest.mark.parametrize(
+    ("colour", "with_input", "bound", "told"),
+    [
+        (
+            0.999,
+            0.05,
+            0.3,
+            "2 of 2 rows are not white, and none correlates with an input by more than chance gives over all lags: what is left",
+        ),
+        (
+            0.999,
+            0.9,
+            0.3,
+            "2 of 2 rows are not white, and 2 correlate with u by more than chance gives over all lags: that part a better",
+        ),
+        (0.999, 0.9, 1.4, "2 of 2 rows are not white; whether past inputs explain part of them cannot be judged"),
+        (
+            0.01,
+            0.05,
+            0.3,
+            "All rows are white, and none correlates with an input by more than chance gives over all lags: nothing is left",
+        ),
+        (0.999, None, 0.3, "2 of 2 rows are not white: what is left repeats from sample to sample"),
+    ],
+)
+def test_what_the_table_shows_is_said(colour: float, with_input: float | None, bound: float, told: str) -> None:
+    """Seen: "above the bound, something repeatable is left", below a table with all correlations below theirs."""
+    lags = np.arange(1, 26)
+    inputs = {} if with_input is None else {"u": Correlation(lags, np.full(25, with_input), bound)}
+    row: Any = SimpleNamespace(whiteness=Correlation(lags, np.full(25, colour), 0.06), inputs=inputs)
+    assert read([row, row]).startswith(told)

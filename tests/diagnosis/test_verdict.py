@@ -10,6 +10,7 @@ import pytest
 
 from greybox_torch.api.verdict_summary import effect_table
 from greybox_torch.diagnosis.effect import Curve, Effect
+from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
 from greybox_torch.diagnosis.verdict import Left, Verdict
 from greybox_torch.estimate.comparison import Score
@@ -141,6 +142,9 @@ def test_only_unknown_carries_its_curve() -> None:
         "force": [0.0, 0.5],
         "force_unit": "N m",
     }
+    multiplied = replace(unknown, curve=replace(CURVE, factor=Factor("chamber - lining", "degC", 94.7)))
+    more = {"factor": "chamber - lining", "factor_value": 94.7, "factor_unit": "degC"}
+    assert multiplied.as_json()["curve"] == found[1]["curve"] | more
 
 
 @pytest.mark.parametrize(

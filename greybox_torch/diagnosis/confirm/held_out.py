@@ -50,8 +50,8 @@ class Gain:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """95 % interval of the share."""
-        return self.share - 1.96 * self.error, self.share + 1.96 * self.error
+        """95 % interval of the share, which is one at most."""
+        return self.share - 1.96 * self.error, min(self.share + 1.96 * self.error, 1.0)
 
 
 class HeldOut:

@@ -202,7 +202,7 @@ def _past_inputs(first: Detection, detected: Sequence[Detection], effects: bool)
         return (
             f"Whether the free run's errors are correlated with past inputs{within} cannot be judged from these recordings: beside "
             "their length input and errors change so slowly that chance alone gives any correlation "
-            f"(the largest is {first.plain.past.value:.2g})."
+            f"(the largest is {first.plain.past.told})."
         )
     return (
         f"The free run's errors, model as it stands, are {'' if first.plain.past.beyond else 'not '}correlated with past inputs{within}"
@@ -216,12 +216,12 @@ def _place(where: Detection, detected: Sequence[Detection]) -> str:
 
 def _changed(before: Largest, after: Largest, what: str, effects: bool, place: str) -> str:
     bound = f"bound {after.bound:.2g}" if after.judged else "which cannot be judged"
-    with_effects = f"; with the effects {after.value:.2g} ({bound})" if effects else ""
+    with_effects = f"; with the effects {after.told} ({bound})" if effects else ""
     return f" ({_size(before, what)}{place}){with_effects}."
 
 
 def _size(largest: Largest, what: str) -> str:
-    return f"largest {what} {largest.value:.2g}, 99 % bound {largest.bound:.2g}"
+    return f"largest {what} {largest.told}, 99 % bound {largest.bound:.2g}"
 
 
 def _noise(study: Study, state: SearchState) -> str:

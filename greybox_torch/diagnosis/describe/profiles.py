@@ -9,6 +9,7 @@ import numpy as np
 import torch
 
 from greybox_torch.diagnosis.effect import Curve, Profile
+from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.window_errors import window_errors
 from greybox_torch.estimate.problem import Problem
@@ -70,7 +71,7 @@ def law_curve(model: AugmentedModel, attachment: Attachment, around: Surrounding
     """The effect's own law over its first signal, or the one that it is drawn over, the others held at their root mean square; None for
     laws with memory.
 
-    Of a curve that multiplies a rate what it takes of that rate: speeds are zero.
+    Of a curve that multiplies a rate what it takes of that rate: speeds are zero. Its ``factor`` goes by its name at the port.
     """
     signals = attachment.mechanism.signals()
     if attachment.mechanism.states(around) or not signals or signals[0] not in around.ranges:
@@ -84,7 +85,15 @@ def law_curve(model: AugmentedModel, attachment: Attachment, around: Surrounding
     force = model.curve(attachment, {**held, name: grid}, problem.parameter_tensors)
     unit = around.units.get("deflection", "") if attachment.mechanism.kinematic else around.force_unit
     values = np.broadcast_to(np.asarray(force, dtype=float), grid.shape)
-    return Curve(name, unit_at(around, name), grid.numpy(), values, unit)
+    factor = _factor(attachment.mechanism, around, held)
+    return Curve(name, unit_at(around, name), grid.numpy(), values, unit, factor=factor)
+
+
+def _factor(mechanism: Mechanism, around: Surroundings, held: Mapping[str, torch.Tensor]) -> Factor | None:
+    """What multiplies a curve, and where it is ``held`` in the drawing; None where there is no such signal."""
+    if not isinstance(mechanism, Unknown) or mechanism.factor not in held:
+        return None
+    return Factor(mechanism.factor, unit_at(around, mechanism.factor), float(held[mechanism.factor][0]))
 
 
 def _over(mechanism: Mechanism, around: Surroundings) -> str:

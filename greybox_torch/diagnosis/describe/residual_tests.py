@@ -31,6 +31,11 @@ class Largest:
     bound: float
 
     @property
+    def told(self) -> str:
+        """Its size in words: none that is below one is rounded to one."""
+        return "above 0.99" if self.value >= 0.995 else f"{self.value:.2g}"
+
+    @property
     def beyond(self) -> bool:
         """Whether it is more than chance."""
         return self.value > self.bound

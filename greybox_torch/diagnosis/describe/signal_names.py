@@ -17,7 +17,8 @@ from greybox_torch.model.within_turn import TURN, TURN_OF
 
 
 def as_named(curve: Curve | None, model: GreyBoxModel, site: Port, own: tuple[str, ...] = ()) -> Curve | None:
-    """A curve over a turn or a signal of another port by the model's own name of it; own signals keep their names at a port.
+    """A curve over a turn or a signal of another port by the model's own name of it; own signals keep their names at a port. What
+    multiplies it goes by the model's name.
 
     Args:
         own: the signal that the effect's first name stands for, which "load" and "deflection" may be beside.
@@ -25,6 +26,9 @@ def as_named(curve: Curve | None, model: GreyBoxModel, site: Port, own: tuple[st
     if curve is None:
         return None
     another = curve.signal in ("load", "deflection") and curve.signal not in own
+    if curve.factor is not None:
+        factor = replace(curve.factor, signal=signal_name(model, site, curve.factor.signal))
+        curve = replace(curve, factor=factor)
     named = curve.signal == TURN or "@" in curve.signal or another
     return replace(curve, signal=signal_name(model, site, curve.signal)) if named else curve
 

@@ -199,6 +199,8 @@ def _ranking(sheets: Sheets, told: Ranking | None) -> None:
         for row in told.rows
     ]
     draw_table(sheets, heads, rows, [0.5, 0.25, 0.25])
+    if told.passed_over:
+        sheets.text(told.passed_over, 8.0, colour=QUIET)
 
 
 def _making(sheets: Sheets, told: Making) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from greybox_torch.diagnosis.effect import Curve, Effect
+from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.report import text
 from greybox_torch.report.chart.marks import Mark, band, line, points, rug
 from greybox_torch.report.chart.panel import Chart, Key, Panel, side_by_side
@@ -16,6 +17,9 @@ NAMED = "named"
 
 HARDLY = 0.05
 """Share of the samples that a bin would have if they were spread evenly, below which it has hardly any."""
+
+HIDDEN = 0.01
+"""Share of the figure's height up to which a band is hardly wider than the line within it."""
 
 A_GAP = 5
 """A gap is at least so many bins side by side with hardly any sample: a free curve is a guess there; a shorter stretch its ends hold."""
@@ -31,14 +35,14 @@ def law_chart(effect: Effect, curve: Curve) -> Chart:
     panel = Panel(
         x,
         y,
-        text.axis(_over(effect, curve), curve.unit),
+        text.axis(_over(effect, curve), curve.unit) + _where_held(curve),
         text.axis("effect", curve.force_unit),
         tuple(_marks(effect, curve, x, y)),
         _alt(effect, curve),
         "tall",
         zero=True,
     )
-    return side_by_side([panel], _caption(effect, curve), _legend(effect, curve))
+    return side_by_side([panel], _caption(effect, curve), _legend(effect, curve, y))
 
 
 def _marks(effect: Effect, curve: Curve, x: Scale, y: Scale) -> list[Mark]:
@@ -108,19 +112,22 @@ def _height(curve: Curve) -> Scale:
     return linear(*pieces)
 
 
-def _legend(effect: Effect, curve: Curve) -> tuple[Key, ...]:
+def _legend(effect: Effect, curve: Curve, y: Scale) -> tuple[Key, ...]:
     if curve.free is None:
         return ()
     dots = Key(DATA, f"estimates from single windows of {curve.free.samples} samples")
+    known = curve.free.spread[np.isfinite(curve.free.spread)]
+    hidden = len(known) > 0 and 4.0 * float(np.quantile(known, 0.9)) < HIDDEN * (y.high - y.low)
+    narrow = " (hardly wider than the line)" if hidden else ""
     if effect.mechanism == "unknown":
-        return Key("law", "the curve, with two standard deviations on either side"), dots
-    return Key(NAMED, "the law"), Key(BAND, "a free curve in its place, ± two standard deviations"), dots
+        return Key("law", f"the curve, with two standard deviations on either side{narrow}"), dots
+    return Key(NAMED, "the law"), Key(BAND, f"a free curve in its place, ± two standard deviations{narrow}"), dots
 
 
 def _caption(effect: Effect, curve: Curve) -> str:
     settled = "" if effect.memory is None else ", once all has settled"
     settled += ", as that goes up and down once" if bool((np.diff(curve.values) < 0.0).any()) else ""
-    over = f"what it adds at {effect.port} over {text.words(_over(effect, curve))}{settled}"
+    over = f"what it adds at {effect.port} over {text.words(_over(effect, curve))}{settled}{_times(curve)}"
     if curve.free is None:
         spread = "" if curve.spread is None else ", with two standard deviations on either side"
         return f"The effect's own curve{spread}: {over}.{_where_seen(effect, curve)}"
@@ -149,9 +156,24 @@ def _over(effect: Effect, curve: Curve) -> str:
     return effect.signals[0] if effect.signals and curve.signal in _AT_PORT else curve.signal
 
 
+def _times(curve: Curve) -> str:
+    """What multiplies the curve, as a clause; "" where nothing does."""
+    if curve.factor is None:
+        return ""
+    return f", in proportion to {text.words(curve.factor.signal)}: drawn where that is {_value(curve.factor)}, its root mean square"
+
+
+def _where_held(curve: Curve) -> str:
+    """Where what multiplies the curve is held in the figure, as a clause."""
+    return "" if curve.factor is None else f", where {text.words(curve.factor.signal)} = {_value(curve.factor)}"
+
+
+def _value(factor: Factor) -> str:
+    return text.with_unit(text.number(factor.value), factor.unit)
+
+
 def _alt(effect: Effect, curve: Curve) -> str:
     low, high = float(np.nanmin(curve.force)), float(np.nanmax(curve.force))
-    return (
-        f"Curve of the effect over {text.words(_over(effect, curve))}: between {text.with_unit(text.number(low), curve.force_unit)} and "
-        f"{text.with_unit(text.number(high), curve.force_unit)}{'' if curve.free is None else ', with what the data say'}."
-    )
+    with_data = "" if curve.free is None else ", with what the data say"
+    ends = [text.with_unit(text.number(end), curve.force_unit) for end in (low, high)]
+    return f"Curve of the effect over {text.words(_over(effect, curve))}{_where_held(curve)}: between {' and '.join(ends)}{with_data}."

@@ -186,3 +186,17 @@ def test_steps_that_a_search_took_again_are_told_once(dead_zone_search, stub) ->
     assert [line for line in told if "promised enough" in line] == [
         "No further candidate promised enough in the screen to be refitted."
     ]
+
+
+def test_no_correlation_below_one_is_told_as_one() -> None:
+    """Seen: "largest autocorrelation 1", of 0.9986."""
+    slow = Remains(Largest(0.9986, 0.03), Largest(0.31, 0.05))
+    _, colour = detection_sentences([Detection("Steps", "speed", slow, slow, CALM, 40.0)], True)
+    assert colour == (
+        "They are not white (largest autocorrelation above 0.99, 99 % bound 0.03); with the effects above 0.99 (bound 0.03)."
+    )
+
+
+def test_an_interval_of_a_share_ends_at_all_of_it() -> None:
+    """Seen: "removes 97.4 % ... (95 % interval 94.6 to 100.3 %)"."""
+    assert _held_out(Gain(0.974, 0.0148)) == ("97.4 %", " (95 % interval 94.5 to 100.0 %)")

@@ -10,6 +10,7 @@ import torch
 
 from greybox_torch.diagnosis.describe.profiles import POINTS, law_curve
 from greybox_torch.diagnosis.effect import Curve
+from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
@@ -19,12 +20,12 @@ from greybox_torch.model.signals import parameter_signals
 AROUND = Surroundings({"speed": Range(-6.0, 6.0, 3.0)}, {}, "N m", 0.01)
 
 
-def drawn(motor, law: Unknown, highest: int) -> Curve:
+def drawn(motor, law: Unknown, highest: int, around: Surroundings = AROUND) -> Curve:
     """A curve whose bump of that number alone is one high."""
     effect = attach(motor, "rotor", law)
-    model = AugmentedModel(motor, [effect], {"rotor": AROUND})
+    model = AugmentedModel(motor, [effect], {"rotor": around})
     values = {q.name: q.value for q in model.declared_parameters} | {f"{effect.prefix}.w_{highest}": 1.0}
-    curve = law_curve(model, effect, AROUND, SimpleNamespace(parameter_tensors=parameter_signals(values)))
+    curve = law_curve(model, effect, around, SimpleNamespace(parameter_tensors=parameter_signals(values)))
     assert curve is not None
     return curve
 
@@ -42,3 +43,12 @@ def test_a_curve_over_the_range_is_drawn_evenly_and_none_beyond_the_range(motor)
     np.testing.assert_array_equal(drawn(motor, Unknown("speed"), 3).values, even)
     beyond = drawn(motor, Unknown("speed", 8, part=(5.5, 6.5)), 3).values
     assert (beyond.min(), beyond.max()) == (-6.0, 6.0) and set(even) <= set(beyond)
+
+
+def test_what_multiplies_a_curve_is_given_with_it(motor) -> None:
+    """The force is the one at the factor's root mean square: a height of one, times that."""
+    both = Surroundings({**AROUND.ranges, "position": Range(-1.0, 4.0, 2.5)}, {"position": "rad"}, "N m", 0.01)
+    curve = drawn(motor, Unknown("speed", factor="position"), 5, both)
+    assert curve.factor == Factor("position", "rad", 2.5)
+    assert curve.force.max() == pytest.approx(2.5, rel=0.02) and curve.force_unit == "N m"
+    assert drawn(motor, Unknown("speed"), 5, both).factor is None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from greybox_torch.diagnosis.describe.effects import where
 from greybox_torch.diagnosis.describe.profiles import profile
 from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name
 from greybox_torch.diagnosis.effect import Curve, Profile, Timeline
+from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.mechanisms.actuator import TorqueSaturation
 from greybox_torch.mechanisms.end_stop import EndStop
 from greybox_torch.mechanisms.library import LIBRARY
@@ -99,6 +102,8 @@ def test_a_curve_over_a_signal_of_another_port_goes_by_its_own_name() -> None:
     named = as_named(other, drum, site)
     assert named is not None and named.signal == "motor" and named.values is other.values
     assert as_named(own, drum, site) is own and as_named(None, drum, site) is None
+    multiplied = as_named(replace(own, factor=Factor("speed@motor_shaft", "rad/s", 2.0)), drum, site)
+    assert multiplied is not None and multiplied.factor == Factor("w_m", "rad/s", 2.0) and multiplied.signal == "speed"
 
 
 def test_an_interval_of_nearly_the_whole_range_is_not_told() -> None:

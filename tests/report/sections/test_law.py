@@ -3,8 +3,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from greybox_torch.diagnosis.effect import Effect, FreeCurve
+from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.report.chart.panel import Chart
 from greybox_torch.report.sections.law import law_chart
 from tests.report.conftest import BACKLASH, UNKNOWN
@@ -111,3 +113,25 @@ def test_a_free_band_does_not_hide_a_gap() -> None:
     chart = drawn(replace(effect, curve=replace(effect.curve, seen=seen)))
     solid, dashed = chart.columns[0][0].marks[2:4]
     assert (solid.path.count("M"), dashed.path.count("M")) == (2, 3)
+
+
+def test_a_curve_that_is_multiplied_says_by_what_and_where_it_is_drawn() -> None:
+    """Seen: "curve over lining, times chamber - lining", drawn over lining in kW, and that factor nowhere."""
+    assert UNKNOWN.curve is not None and UNKNOWN.curve.factor is None
+    by = Factor("chamber - lining", "degC", 94.72)
+    chart = drawn(replace(UNKNOWN, curve=replace(UNKNOWN.curve, factor=by)))
+    assert chart.columns[0][0].x_label == "gear twist [rad], where chamber - lining = 94.7 degC"
+    assert "in proportion to chamber - lining: drawn where that is 94.7 degC, its root mean square." in chart.caption
+    plain = drawn(UNKNOWN)
+    assert plain.columns[0][0].x_label == "gear twist [rad]" and "proportion" not in plain.caption
+
+
+@pytest.mark.parametrize("effect", [BACKLASH, UNKNOWN])
+def test_a_band_behind_its_line_is_told(effect: Effect) -> None:
+    """Seen: "± two standard deviations" in the legend, and none in the figure."""
+    wide = over_data(effect)
+    assert wide.curve is not None and wide.curve.free is not None
+    free = replace(wide.curve.free, spread=0.005 * wide.curve.free.spread)
+    narrow = replace(wide, curve=replace(wide.curve, free=free))
+    told = [next(k.label for k in drawn(one).legend if "deviations" in k.label) for one in (wide, narrow)]
+    assert ["hardly wider than the line" in label for label in told] == [False, True]
