@@ -80,14 +80,13 @@ class Curve:
 
     def as_json(self) -> dict[str, Any]:
         """Its entry `curve` of an effect that has no name."""
-        by = self.factor
         return {
             "signal": self.signal,
             "unit": self.unit,
             "values": [float(v) for v in self.values],
             "force": [float(v) for v in self.force],
             "force_unit": self.force_unit,
-            **({} if by is None else {"factor": by.signal, "factor_value": by.value, "factor_unit": by.unit}),
+            **({} if self.factor is None else self.factor.as_json()),
         }
 
 

@@ -12,3 +12,7 @@ class Factor:
     signal: str
     unit: str
     value: float
+
+    def as_json(self) -> dict[str, str | float]:
+        """Its part of the entry `curve` of an effect."""
+        return {"factor": self.signal, "factor_value": self.value, "factor_unit": self.unit}
