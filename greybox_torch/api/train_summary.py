@@ -41,7 +41,7 @@ def print_training(
     print_table(console, columns, rows, prose=["description"])
     _print_choices(console, found)
     if explained is not None:
-        print_explanation(console, explained, scores, judged=not mostly_lost(found))
+        print_explanation(console, explained, scores, adds=found.hybrid.adds, judged=not mostly_lost(found))
     print_substeps(console, found.result.substeps)
     console.print()
     print_scores(console, data, scores)
