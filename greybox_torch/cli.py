@@ -185,10 +185,7 @@ def train(
         ),
     ] = None,
     port: Annotated[
-        str | None,
-        typer.Option(
-            metavar="PORT", help="Where the network acts.", show_default="the first body, else the first port"
-        ),
+        str | None, typer.Option(metavar="PORT", help="Where it acts.", show_default="first body, else first port")
     ] = None,
     signals: Annotated[
         str | None,

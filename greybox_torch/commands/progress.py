@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.text import Text
 
 from greybox_torch.commands.time_left import TimeLeft, told_left
 
@@ -75,6 +76,7 @@ def _findings(console: Console, first: str) -> Callable[[Standing], None]:
     return tell
 
 
+_ITERATION = re.compile(r", iteration \d+:")
 _LAST_NUMBER = re.compile(r"\d+(\.\d+(e[+-]?\d+)?|e[+-]?\d+)$")
 
 LINE_SECONDS = 5.0
@@ -89,7 +91,7 @@ def news(write: Callable[[str], None]) -> Callable[[str], None]:
 
     def tell(line: str) -> None:
         nonlocal before, due
-        said, now = _LAST_NUMBER.sub(_in_short, re.sub(r", iteration \d+:", "", line)), time.perf_counter()
+        said, now = _LAST_NUMBER.sub(_in_short, _ITERATION.sub("", line)), time.perf_counter()
         if said == before and now < due:
             return
         before, due = said, now + LINE_SECONDS
@@ -100,6 +102,23 @@ def news(write: Callable[[str], None]) -> Callable[[str], None]:
 
 def _in_short(number: re.Match[str]) -> str:
     return f"{float(number[0]):.3g}"
+
+
+@contextmanager
+def estimating() -> Iterator[Callable[[str], None]]:
+    """A function that is told the course of an estimation.
+
+    On a terminal its iterations are one line that changes and vanishes at the end; whatever else is said stays. Elsewhere see :func:`news`.
+    """
+    console = Console(stderr=True, highlight=False)
+    write: Callable[[str], None] = lambda line: console.print(Text(line), soft_wrap=True)  # noqa: E731
+    if not console.is_terminal:
+        yield news(write)
+        return
+    columns = SpinnerColumn(), TimeElapsedColumn(), TextColumn("{task.description}")
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("estimating")
+        yield lambda line: bar.update(task, description=escape(line)) if _ITERATION.search(line) else write(line)
 
 
 @contextmanager

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from greybox_torch.commands import progress
-from greybox_torch.commands.progress import news, training
+from greybox_torch.commands.progress import estimating, news, training
 
 
 def test_lines_with_the_time_left(capsys: pytest.CaptureFixture[str]) -> None:
@@ -35,6 +35,21 @@ def test_no_time_is_told_before_it_can_be(capsys: pytest.CaptureFixture[str], mo
     lines = capsys.readouterr().err.splitlines()
     assert "epoch 1" in lines[1] and "left" not in lines[1]
     assert lines[-1].endswith("windows of 40 samples  epoch 1  about 2 s left for the epochs")
+
+
+def test_on_a_terminal_iterations_are_one_line(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Seen: more than thirty lines of descents that pushed away what had been said before them."""
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm")
+    with estimating() as tell:
+        tell("J and k: only their ratio is determined")
+        for iteration in range(1, 41):
+            tell(f"whole records, descent 5, iteration {iteration}: mean squared error {0.9**iteration:.3g}")
+    told = capsys.readouterr().err
+    assert "J and k: only their ratio is determined" in told
+    assert told.count("mean squared error") < 20
 
 
 def test_a_line_that_says_nothing_new_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
