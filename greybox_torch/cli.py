@@ -177,14 +177,15 @@ def diagnose(
 def train(
     dataset: DataSetFile,
     net: Annotated[
-        str,
+        str | None,
         typer.Option(
             metavar="friction|residual|memory",
-            help="A body's friction, any extra force at a port, or a force with memory.",
+            help="A body's friction, any extra force or flow at a port, or one with memory.",
+            show_default="friction at a body, else residual",
         ),
-    ] = "friction",
+    ] = None,
     port: Annotated[
-        str | None, typer.Option(metavar="PORT", help="Where the network acts.", show_default="the first body")
+        str | None, typer.Option(metavar="PORT", help="Where it acts.", show_default="first body, else first port")
     ] = None,
     signals: Annotated[
         str | None,
@@ -220,12 +221,12 @@ def train(
     """Train a small network at a port of the model, for physics that has no name yet."""
     from greybox_torch.commands import train
 
-    own = {"friction": {"odd": odd, "dissipative": dissipative}, "memory": {"memories": memories}}.get(net, {})
     choices = train.Choices(
         net=net,
         port=port,
         signals=tuple(s.strip() for s in signals.split(",")) if signals else (),
-        network={"units": units, **own},
+        network={"units": units},
+        by_net={"friction": {"odd": odd, "dissipative": dissipative}, "memory": {"memories": memories}},
         training={"epochs": epochs, "gradient": gradient, "freeze_physics": freeze_physics},
         resume=resume,
         tensorboard=tensorboard,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -48,10 +48,11 @@ def csv_text(time: np.ndarray, columns: Mapping[str, np.ndarray], units: Mapping
     return "\n".join(lines) + "\n"
 
 
-def card_text(data: DataSet, time: np.ndarray, reference: str, folder: Path) -> str:
+def card_text(data: DataSet, time: np.ndarray, reference: str, folder: Path, remarks: Iterable[str] = ()) -> str:
     """A card in ``folder`` for the recording that is asked for, of a model by its ``reference``.
 
     Columns, their units and the time stamps are as on the card of the old recordings, so that the experiment can be copied there.
+    ``remarks`` are sentences for its head.
     """
     card = read_card(data.path) if data.path is not None and data.path.is_file() else None
     step, old = float(time[1] - time[0]), "that of the old ones" if data.path is None else _seen_from(data.path, folder)
@@ -64,6 +65,7 @@ def card_text(data: DataSet, time: np.ndarray, reference: str, folder: Path) -> 
     return (
         f"# A card for the recording that {INPUT} asks for. Save what you record as {RECORDED}, with these columns in these units.\n"
         f"# To diagnose old and new recordings together, copy the [[experiment]] below to the card {old}, and {RECORDED} beside it.\n"
+        f"{''.join(f'# {remark}' + chr(10) for remark in remarks)}"
         f"name = {toml_text(f'{data.name}: designed recording')}\n{told}\n\n"
         f'[[experiment]]\nname = "Designed"\nfile = "{RECORDED}"\nrole = "estimation"\n\n'
         f"[model]\nname = {toml_text(_model(reference, folder))}\n"

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from greybox_torch.api.design_files import CARD, INPUT, RECORDED
 from greybox_torch.api.design_groups import AGAINST_GROUPS
 from greybox_torch.diagnosis.digits import digits
-from greybox_torch.experiment_design.limits import EVERY_INPUT
+from greybox_torch.experiment_design.limits import EVERY_INPUT, WIDENED
+from greybox_torch.in_unit import in_unit
 from greybox_torch.name_lists import listed
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 def design_notes(found: DesignResult) -> list[str]:
     """Sentences for below the table, one a line."""
-    lines = [*found.left_out, *_told_apart(found), *_deviations(found)]
+    lines = [*found.left_out, *_told_apart(found), *_deviations(found), *recorded_as_limits(found)]
     if found.limits.seconds > 1.001 * found.seconds:
         lines.append(
             f"Designed for the first {digits(found.seconds, 4)} of {digits(found.limits.seconds, 4)} s; "
@@ -40,9 +41,28 @@ def design_notes(found: DesignResult) -> list[str]:
     return lines
 
 
+def recorded_as_limits(found: DesignResult) -> Iterator[str]:
+    """Which limits are not given, and what was taken in their place."""
+    limits, names = found.limits, found.limits.recorded
+    ranges = {**limits.outputs, **limits.inputs}
+    told = {n: in_unit(f"{ranges[n].lower:.4g} to {ranges[n].upper:.4g}", found.data.channels[n].unit) for n in names}
+    inputs = [f"{n} ({told[n]})" for n in names if n in limits.inputs]
+    outputs = [f"{n} ({told[n]})" for n in names if n not in limits.inputs]
+    kinds = [f"for {listed(inputs)}"] if inputs else []
+    kinds += [f"with {100 * WIDENED:.0f} % more either way for {listed(outputs)}"] if outputs else []
+    if kinds:
+        few = "No limits are" if len(names) == len(ranges) else "Not all limits are"
+        yield f"{few} given under [limits] on the card (in Python limits=): the recorded range was taken, {', '.join(kinds)}."
+
+
 def _beginning(found: DesignResult) -> Iterator[str]:
     """How it begins; where that is in motion, how to ask for a start at rest."""
-    moved = [f"{name} = {value:.3g}" for name, value in found.start.items() if name not in found.resting]
+    units = {s.name: s.unit for s in found.hypotheses[0].states}
+    moved = [
+        in_unit(f"{name} = {value:.3g}", units.get(name, ""))
+        for name, value in found.start.items()
+        if name not in found.resting
+    ]
     rest = [f"{listed(found.resting)} at rest"] if found.resting else []
     began = ", ".join([*rest, *moved])
     if found.limits.start:

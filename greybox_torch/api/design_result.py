@@ -13,7 +13,7 @@ from rich.text import Text
 
 from greybox_torch.api.design_files import CARD, FIGURE, INPUT, card_text, columns_of, csv_text, units_of
 from greybox_torch.api.design_groups import hypothesis_table, told_of_groups
-from greybox_torch.api.design_notes import design_notes
+from greybox_torch.api.design_notes import design_notes, recorded_as_limits
 from greybox_torch.api.expected import WANTED, Expected
 from greybox_torch.api.result import Result
 from greybox_torch.data import DataSet
@@ -174,7 +174,7 @@ class DesignResult(Result):
                 self.time, columns_of(self.inputs, self.set_points, self.follows), units_of(self.data, self.follows)
             ),
             folder / FIGURE: notebook.png(self.plot()),
-            folder / CARD: card_text(self.data, self.time, self.reference, folder),
+            folder / CARD: card_text(self.data, self.time, self.reference, folder, recorded_as_limits(self)),
         }
 
     def plot(self) -> Figure:

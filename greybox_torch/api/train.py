@@ -36,7 +36,7 @@ def train(
     model: GreyBoxModel | Any,
     data: DataSet,
     *,
-    net: str = "friction",
+    net: str | None = None,
     port: str | None = None,
     signals: Iterable[str] = (),
     network: Mapping[str, Any] | None = None,
@@ -56,8 +56,8 @@ def train(
             set's card, else the declared ones. It stays as it is; the result's ``model`` is a copy with the trained network.
         data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
         net: "friction" (a body's speed, and what else is asked for) or "residual" (any signals at any port), or "memory" (the
-            same with hidden states).
-        port: where it acts; by default the first body that the model declares.
+            same with hidden states). By default friction at a body, else residual.
+        port: where it acts; by default the first body that the model declares, and the first port of a model without bodies.
         signals: what it reads, by their names at the port; by default the usual ones of such a port.
         network: further arguments of :class:`FrictionNet`, :class:`ResidualNet` or :class:`MemoryNet`: units, odd, dissipative, memories.
         settings: of the training, its seed among them.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rich.console import Console
@@ -48,13 +48,15 @@ def band(explained: Explanation) -> str:
     return own if explained.members < 2 else f"{own}; and the differences of {explained.members} seeds"
 
 
-def print_explanation(console: Console, explained: Explanation, scores: Scores, *, judged: bool = True) -> None:
-    """The recommendation, which signals count, and the laws compared."""
+def print_explanation(
+    console: Console, explained: Explanation, scores: Scores, *, adds: str = "force", judged: bool = True
+) -> None:
+    """The recommendation, which signals count, and the laws compared; ``adds`` is what the network does, in words."""
     console.print(Text(f"\n{explained_sentence(explained, scores, judged=judged)}", style="bold"), soft_wrap=True)
     if not explained.curves:
         return
     shares = ", ".join(f"{curve.signal} {100 * curve.share:.0f} %" for curve in explained.curves)
-    console.print(Text(f"Share of the learned force that each signal alone explains: {shares}"), soft_wrap=True)
+    console.print(Text(f"Share of the learned {adds} that each signal alone explains: {shares}"), soft_wrap=True)
     if told := open_sign(explained.curves):
         console.print(Text(told), soft_wrap=True)
     rows = [_row(term) for term in explained.terms]
@@ -91,9 +93,15 @@ def open_sign(curves: Sequence[SignalCurve]) -> str:
 def _row(term: NamedTerm) -> list[str]:
     matched = "" if term.match is None else f"{100 * term.match:.0f} %"
     units = term.attachment.own({p.name: p.unit for p in term.problem.model.declared_parameters})
-    values = ", ".join(f"{name} {value:.4g} {units[name]}".rstrip() for name, value in term.parameters.items())
+    values = ", ".join(_value(name, value, units[name], term.bounds_reached) for name, value in term.parameters.items())
     told = f"without its effect: {values}" if term.absent else values
     return [term.attachment.mechanism.name, matched, _beside(term.lost), told]
+
+
+def _value(name: str, value: float, unit: str, bounds: Mapping[str, float]) -> str:
+    """A parameter as a table tells it, and whether it is at a bound, which 4e-13 means where it is zero."""
+    told = f"{name} {bounds.get(name, value):.4g} {unit}".rstrip()
+    return f"{told} (at its bound)" if name in bounds else told
 
 
 def _beside(lost: float) -> str:

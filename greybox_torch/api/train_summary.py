@@ -21,6 +21,11 @@ MOST_LOST = (
     "Run `greybox diagnose` first, and train beside the model that it recommends."
 )
 
+REFIT = (
+    "refit: the physics alone, estimated on whole records with each output weighed by its spread. All are begun with start states from the "
+    "first tenth of each experiment, where `greybox fit` has those of its estimate, so that its fits may differ."
+)
+
 
 def print_training(
     console: Console,
@@ -41,10 +46,11 @@ def print_training(
     print_table(console, columns, rows, prose=["description"])
     _print_choices(console, found)
     if explained is not None:
-        print_explanation(console, explained, scores, judged=not mostly_lost(found))
+        print_explanation(console, explained, scores, adds=found.hybrid.adds, judged=not mostly_lost(found))
     print_substeps(console, found.result.substeps)
     console.print()
     print_scores(console, data, scores)
+    console.print(Text(REFIT), soft_wrap=True)
     for line in advice:
         console.print(Text(line, style="yellow"), soft_wrap=True)
     console.print(Text(f"training took {found.seconds:.1f} s, {len(found.history)} epochs, seed {found.settings.seed}"))

@@ -31,6 +31,12 @@ MOVED = (
 )
 
 
+REFIT = (
+    "refit: the model without effects, estimated on whole records with each output weighed by the error that is left of it; `greybox fit` "
+    "weighs them by their spread, so that its fits may differ."
+)
+
+
 def print_verdict(console: Console, data: DataSet, title: str, verdict: Verdict) -> None:
     """The verdict in one sentence, the effects with their parameters, fit and error before and after."""
     console.print(Text(f"{data.name}: {title}", style="bold"))
@@ -45,7 +51,15 @@ def print_verdict(console: Console, data: DataSet, title: str, verdict: Verdict)
         print_table(console, columns, rows)
     console.print()
     print_scores(console, data, verdict_scores(verdict))
+    for line in which_refit(verdict):
+        console.print(Text(line), soft_wrap=True)
     console.print(Text(f"{verdict.seconds:.1f} s, seed {verdict.seed}"))
+
+
+def which_refit(verdict: Verdict) -> list[str]:
+    """How the refit of the table of scores differs from that of `greybox fit`, where it does: a sentence, or none."""
+    outputs = {score.output for score in verdict.scores["refit"]}
+    return [REFIT] if verdict.complete and len(outputs) > 1 else []
 
 
 def effect_table(verdict: Verdict) -> tuple[list[str], list[list[str | float]]]:

@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.console import Console
-from rich.text import Text
-
 from greybox_torch.api.fit import fit
 from greybox_torch.commands.options import Options
-from greybox_torch.commands.progress import news
+from greybox_torch.commands.progress import estimating
 from greybox_torch.commands.results_folder import nothing_written
 from greybox_torch.commands.task import load_task
 from greybox_torch.restored import load_beside
@@ -33,16 +30,16 @@ def run(
         model, data = task.model, task.data
         if checkpoint is not None:
             model, data = load_beside(checkpoint, model, data)
-        log = Console(stderr=True, highlight=False)
-        found = fit(
-            model,
-            data,
-            starts=starts,
-            seed=options.seed,
-            profiles=profiled,
-            device=task.device,
-            precision=task.precision,
-            progress=task.replacing.before(news(lambda line: log.print(Text(line), soft_wrap=True))),
-        )
+        with estimating() as tell:
+            found = fit(
+                model,
+                data,
+                starts=starts,
+                seed=options.seed,
+                profiles=profiled,
+                device=task.device,
+                precision=task.precision,
+                progress=task.replacing.before(tell),
+            )
     task.replacing.warn()
     options.finish(found, task.folder)

@@ -11,7 +11,10 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.text import Text
+
+from greybox_torch.commands.time_left import TimeLeft, told_left
 
 if TYPE_CHECKING:
     from greybox_torch.diagnosis.progress import Progress as Standing
@@ -73,6 +76,7 @@ def _findings(console: Console, first: str) -> Callable[[Standing], None]:
     return tell
 
 
+_ITERATION = re.compile(r", iteration \d+:")
 _LAST_NUMBER = re.compile(r"\d+(\.\d+(e[+-]?\d+)?|e[+-]?\d+)$")
 
 LINE_SECONDS = 5.0
@@ -87,7 +91,7 @@ def news(write: Callable[[str], None]) -> Callable[[str], None]:
 
     def tell(line: str) -> None:
         nonlocal before, due
-        said, now = _LAST_NUMBER.sub(_in_short, re.sub(r", iteration \d+:", "", line)), time.perf_counter()
+        said, now = _LAST_NUMBER.sub(_in_short, _ITERATION.sub("", line)), time.perf_counter()
         if said == before and now < due:
             return
         before, due = said, now + LINE_SECONDS
@@ -98,6 +102,23 @@ def news(write: Callable[[str], None]) -> Callable[[str], None]:
 
 def _in_short(number: re.Match[str]) -> str:
     return f"{float(number[0]):.3g}"
+
+
+@contextmanager
+def estimating() -> Iterator[Callable[[str], None]]:
+    """A function that is told the course of an estimation.
+
+    On a terminal its iterations are one line that changes and vanishes at the end; whatever else is said stays. Elsewhere see :func:`news`.
+    """
+    console = Console(stderr=True, highlight=False)
+    write: Callable[[str], None] = lambda line: console.print(Text(line), soft_wrap=True)  # noqa: E731
+    if not console.is_terminal:
+        yield news(write)
+        return
+    columns = SpinnerColumn(), TimeElapsedColumn(), TextColumn("{task.description}")
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("estimating")
+        yield lambda line: bar.update(task, description=escape(line)) if _ITERATION.search(line) else write(line)
 
 
 @contextmanager
@@ -112,28 +133,32 @@ def training(first: str) -> Iterator[Callable[[str, float, str], None]]:
         TimeElapsedColumn(),
         BarColumn(24),
         TextColumn("{task.description}"),
-        TimeRemainingColumn(),
+        TextColumn("{task.fields[left]}"),
     )
     with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(escape(first), total=1.0)
+        task, rate = bar.add_task(escape(first), total=1.0, left=""), TimeLeft()
         yield lambda stage, share, line: bar.update(
-            task, completed=share, description=escape(f"{stage}  {line}" if line else stage)
+            task,
+            completed=share,
+            description=escape(f"{stage}  {line}" if line else stage),
+            left=told_left(rate.after(time.perf_counter(), share)),
         )
 
 
 def _lines(console: Console, first: str) -> Callable[[str, float, str], None]:
     """A line at every new stage, and every few seconds within one, with the time left."""
     began = time.perf_counter()
-    before, due = "", 0.0
+    before, due, rate = "", 0.0, TimeLeft()
 
     def tell(stage: str, share: float, line: str) -> None:
         nonlocal before, due
         now = time.perf_counter() - began
+        left = told_left(rate.after(now, share))
         if stage == before and now < due:
             return
         before, due = stage, now + LINE_SECONDS
-        left = f"  about {now * (1.0 - share) / share:.0f} s left" if 0.0 < share < 1.0 else ""
-        console.print(f"{now:7.1f} s  {escape(stage)}{'  ' if line else ''}{escape(line)}{left}", soft_wrap=True)
+        said = "  ".join(part for part in (stage, line, left) if part)
+        console.print(f"{now:7.1f} s  {escape(said)}", soft_wrap=True)
 
     tell(first, 0.0, "")
     return tell

@@ -29,6 +29,10 @@ def others_model(folder: Path, command: str) -> str:
     )
 
 
+NOTHING_WRITTEN = "nothing is written"
+"""What Ctrl-C says of a command that leaves nothing behind."""
+
+
 class Replacing:
     """Warns once that another command's model is going to be replaced: when the work begins, as arguments that are refused replace nothing.
 
@@ -86,4 +90,4 @@ def nothing_written() -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        raise KeyboardInterrupt("nothing is written") from None
+        raise KeyboardInterrupt(NOTHING_WRITTEN) from None

@@ -8,14 +8,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-
 from greybox_torch.api.train import train
 from greybox_torch.commands.options import Options
 from greybox_torch.commands.progress import training
+from greybox_torch.commands.results_folder import NOTHING_WRITTEN, nothing_written
 from greybox_torch.commands.task import load_task
 from greybox_torch.training import Report, TrainingSettings
-from greybox_torch.training.hybrid import network_at
+from greybox_torch.training.hybrid import chosen_net, network_at
 from greybox_torch.training.tensorboard import tensorboard_log
 
 SNAPSHOT, LOG = "training.safetensors", "tensorboard"
@@ -23,12 +22,16 @@ SNAPSHOT, LOG = "training.safetensors", "tensorboard"
 
 @dataclass(frozen=True)
 class Choices:
-    """What the user asked for: which network reads which signals at which port, and how it is trained."""
+    """What the user asked for: which network reads which signals at which port, and how it is trained.
 
-    net: str = "friction"
+    ``network`` are options of every network, ``by_net`` those of one alone.
+    """
+
+    net: str | None = None
     port: str | None = None
     signals: Sequence[str] = ()
     network: Mapping[str, Any] = field(default_factory=dict)
+    by_net: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     training: Mapping[str, Any] = field(default_factory=dict)
     resume: bool = False
     tensorboard: bool = False
@@ -41,12 +44,15 @@ def run(dataset: Path, options: Options, choices: Choices) -> None:
 
     While it runs it keeps `training.safetensors`, which --resume takes up; that is left where it is.
     """
-    task = load_task(dataset, options, writes_model="train")
+    with nothing_written():
+        task = load_task(dataset, options, writes_model="train")
     settings = TrainingSettings(seed=options.seed, **choices.training)
     # refused before anything is said to be done
-    network_at(task.model, choices.net, choices.port, choices.signals, **choices.network)
+    net = chosen_net(task.model, choices.net, choices.port)
+    network = {**choices.network, **choices.by_net.get(net, {})}
+    network_at(task.model, net, choices.port, choices.signals, **network)
     with ExitStack() as together:
-        together.enter_context(_interruptible(task.folder / SNAPSHOT))
+        together.enter_context(_interruptible(task.folder / SNAPSHOT, choices.resume))
         log = together.enter_context(tensorboard_log(task.folder / LOG)) if choices.tensorboard else None
         tell = together.enter_context(training(f"training a hybrid of {task.data.name}"))
 
@@ -58,10 +64,10 @@ def run(dataset: Path, options: Options, choices: Choices) -> None:
         found = train(
             task.model,
             task.data,
-            net=choices.net,
+            net=net,
             port=choices.port,
             signals=choices.signals,
-            network=choices.network,
+            network=network,
             settings=settings,
             explain=choices.explain,
             ensemble=choices.ensemble,
@@ -76,15 +82,21 @@ def run(dataset: Path, options: Options, choices: Choices) -> None:
 
 
 @contextmanager
-def _interruptible(snapshot: Path) -> Iterator[None]:
-    """Says how to go on where the user stops a training."""
+def _interruptible(snapshot: Path, resumed: bool) -> Iterator[None]:
+    """What Ctrl-C says in the block: how to go on, or, where no epoch is kept yet, that nothing is written."""
+    before = _written(snapshot)
     try:
         yield
     except KeyboardInterrupt:
-        if snapshot.is_file():
-            Console(stderr=True, highlight=False).print(
-                f"stopped; the same command with --resume goes on from {snapshot}, which has the epochs on windows; "
-                "Gauss-Newton and what follows are done again",
-                soft_wrap=True,
-            )
-        raise
+        now = _written(snapshot)
+        kept = now is not None and (resumed or now != before)  # else it is of an earlier training
+        on = (
+            f"the same command with --resume goes on from {snapshot}, which has the epochs on windows; Gauss-Newton and what follows are "
+            "done again"
+        )
+        raise KeyboardInterrupt(on if kept else NOTHING_WRITTEN) from None
+
+
+def _written(file: Path) -> int | None:
+    """When a file was last written, ns; None where there is none."""
+    return file.stat().st_mtime_ns if file.is_file() else None

@@ -147,6 +147,12 @@ class Verdict:
         return bool(self.effects) or self.unexplained is not None
 
     @property
+    def could_not_say(self) -> bool:
+        """Whether something is missing, and the search was stopped before it could say what: no answer yet."""
+        found, no_other_reason = bool(self.effects), self.looked and not self.too_short
+        return self.mismatch and not found and not self.complete and no_other_reason
+
+    @property
     def shown_effects(self) -> tuple[Effect, ...]:
         """The effects as a reader is shown them, the largest first: they are found in another order. ``effects`` keeps that."""
         return tuple(sorted(self.effects, key=lambda e: -e.size if np.isfinite(e.size) else np.inf))

@@ -10,7 +10,7 @@ from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.termination import Outcome, Termination
 from greybox_torch.name_lists import listed
 
-_ROUNDED = 1e-9
+_ROUNDED, _ROUNDED_ZERO = 1e-9, 1e-13
 
 
 def notes(problem: Problem, unidentifiable: Sequence[Unidentifiable]) -> tuple[Outcome, ...]:
@@ -42,5 +42,14 @@ def at_bounds(problem: Problem) -> list[str]:
 
 
 def at_a_bound(value: float, lower: float, upper: float) -> bool:
-    """Whether a value is one of its bounds, but for rounding: 0.010000000000000004 is at 0.01."""
-    return any(math.isclose(value, bound, rel_tol=_ROUNDED) for bound in (lower, upper))
+    """Whether a value is one of its bounds, but for rounding: 0.010000000000000004 is at 0.01, and 4e-13 of 40 at most is at 0."""
+    return nearest_bound(value, lower, upper) is not None
+
+
+def nearest_bound(value: float, lower: float, upper: float) -> float | None:
+    """The bound that a value is at, but for rounding; None where it is at none. What is next to zero is told by the other bound."""
+    for bound, other in ((lower, upper), (upper, lower)):
+        near_zero = _ROUNDED_ZERO * abs(other) if bound == 0.0 and math.isfinite(other) else 0.0
+        if math.isclose(value, bound, rel_tol=_ROUNDED, abs_tol=near_zero):
+            return bound
+    return None

@@ -47,7 +47,8 @@ class Limits:
     """``inputs`` has a range for every input; ``outputs`` and ``states`` for those that are limited. ``seconds``: how long it may be.
 
     ``set_points`` has the range of the set point for every input that a loop drives, and ``begin`` where that begins, by input, in the
-    output's unit. ``start``: states that the recording is to begin with.
+    output's unit. ``start``: states that the recording is to begin with. ``recorded``: inputs and outputs that nothing is given for, whose
+    range is what was recorded.
     """
 
     seconds: float
@@ -57,6 +58,7 @@ class Limits:
     set_points: Mapping[str, Range] = field(default_factory=dict)
     start: Mapping[str, float] = field(default_factory=dict)
     begin: Mapping[str, float] = field(default_factory=dict)
+    recorded: tuple[str, ...] = ()
 
     @property
     def commanded(self) -> dict[str, Range]:
@@ -102,6 +104,7 @@ def limits_of(
         {n: _range(entry, f"{place} {n}", None) for n, entry in given.items() if n in own and n not in outputs},
         {n: _range(given.get(o), f"{place} {o}", _recorded(data, o, 0.0)) for n, o in (follows or {}).items()},
         {} if START in signals else _start(given.get(START, {}), sorted(own), f"{place} {START}"),
+        recorded=tuple(n for n in (*inputs, *outputs) if n not in given),
     )
 
 

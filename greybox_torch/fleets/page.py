@@ -109,6 +109,8 @@ def _headline(rows: Sequence[Row], courses: Sequence[History], counts: Counter[s
     parts = [f"{machines} machine{'s' * (machines != 1)}: in {missing} something is missing from the model"]
     if courses:
         parts.append(f"{sum(c.changed for c in courses)} of {len(courses)} recorded over time changed")
+    if counts["unfinished"]:
+        parts.append(f"{counts['unfinished']} data set{'s' * (counts['unfinished'] != 1)} without an answer yet")
     if counts["failed"]:
         parts.append(f"{counts['failed']} data set{'s' * (counts['failed'] != 1)} failed")
     return "; ".join(parts) + "."

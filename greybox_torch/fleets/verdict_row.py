@@ -47,7 +47,7 @@ def _answer(verdict: Verdict, leading: Effect | None) -> str:
     if leading is not None:
         return "unknown" if leading.mechanism in LEARNED else "named"
     if verdict.mismatch:
-        return "unknown"
+        return "unfinished" if verdict.could_not_say else "unknown"
     return "nothing" if verdict.complete and verdict.looked else "unfinished"
 
 

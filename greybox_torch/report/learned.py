@@ -37,7 +37,9 @@ def plot_learned(found: Trained, explained: Explanation, title: str) -> Figure:
         for axes, curve in zip(panels, curves, strict=True):
             _draw(axes, curve)
             axes.set_xlabel(with_unit(curve.signal, curve.unit))
-        panels[0].set_ylabel(with_unit(f"force at {network.port}", found.hybrid.surroundings[network.port].force_unit))
+        panels[0].set_ylabel(
+            with_unit(f"{found.hybrid.adds} at {network.port}", found.hybrid.surroundings[network.port].force_unit)
+        )
         if len(curves) == 1:
             _draw_laws(panels[0], curves[0], found, explained)
         panels[0].legend(fontsize=8)
@@ -49,7 +51,7 @@ def _draw(axes: Axes, curve: SignalCurve) -> None:
     axes.fill_between(curve.values, low, high, color="#0b6e99", alpha=0.2, linewidth=0, label="two deviations")
     axes.plot(curve.values, curve.force, color="#0b6e99", linewidth=1.6, label="learned")
     axes.axhline(0.0, color="black", linewidth=0.6)
-    told = f"{100 * curve.share:.0f} % of the learned force's variance is a function of {curve.signal} alone"
+    told = f"{100 * curve.share:.0f} % of the variance of what was learned is a function of {curve.signal} alone"
     if curve.zero_within > 0:
         told += f"\nzero lies within the band over {100 * curve.zero_within:.0f} % of what was visited"
     axes.set_title(told, fontsize=9)

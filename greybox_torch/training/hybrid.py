@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from inspect import signature
 
 import numpy as np
 
@@ -21,6 +22,15 @@ from greybox_torch.model.ports import driving_body
 
 NETWORKS: dict[str, type[Network]] = {"friction": FrictionNet, "residual": ResidualNet, "memory": MemoryNet}
 """By the name that users choose them by."""
+
+WHAT_IT_ADDS = {
+    "body": "force",
+    "coupling": "force",
+    "balance": "flow",
+    "actuator": "change of the input",
+    "sensor": "change of the output",
+}
+"""What a network adds, in words, by kind of port."""
 
 USUAL_SIGNALS = {
     "body": ("speed",),
@@ -45,6 +55,11 @@ class Hybrid:
         return self.attachments[-1]
 
     @property
+    def adds(self) -> str:
+        """What the network adds to the physics, in words."""
+        return WHAT_IT_ADDS[port_named(self.problem.model, self.network.port).kind]
+
+    @property
     def is_network(self) -> np.ndarray:
         """Which parameters (n_p,) are the network's."""
         return np.array([name.startswith(f"{self.network.prefix}.") for name in self.problem.names])
@@ -56,25 +71,31 @@ class Hybrid:
         return shrunk & self.is_network
 
 
-def default_port(model: GreyBoxModel, net: str) -> str:
-    """Where a network acts if nothing is said: the driving body, else (for a network that is not friction) the first port.
+def default_port(model: GreyBoxModel) -> str:
+    """Where a network acts if nothing is said: the driving body, else the first port."""
+    body = driving_body(model.ports)
+    return model.all_ports[0].name if body is None else body.name
+
+
+def chosen_net(model: GreyBoxModel, net: str | None, port: str | None) -> str:
+    """``net``; where nothing is said, "friction" at a body, and "residual" at any other port.
 
     Raises:
-        UserError: a friction network, and no body.
+        UserError: there is no such port.
     """
-    body = driving_body(model.ports)
-    if body is not None:
-        return body.name
-    if net == "friction":
-        raise ArgumentError("net", net, f'model {model.title} has no body; expected "residual" and a port')
-    return model.all_ports[0].name
+    if net is not None:
+        return net
+    return "friction" if port_named(model, port or default_port(model)).kind in FrictionNet.kinds else "residual"
 
 
 def network_at(
-    model: GreyBoxModel, net: str, port: str | None, signals: Sequence[str], **options: object
+    model: GreyBoxModel, net: str | None, port: str | None, signals: Sequence[str], **options: object
 ) -> tuple[Port, Network]:
-    """The port of ``model``, by default where such a network belongs, and the network for it; raises as the two functions below."""
-    site = port_named(model, port or default_port(model, net))
+    """The port of ``model``, and the network for it, as nothing is said by default; raises as the two functions below."""
+    net = chosen_net(model, net, port)
+    if port is None and net == "friction" and driving_body(model.ports) is None:
+        raise ArgumentError("net", net, f'model {model.title} has no body; expected the net "residual"')
+    site = port_named(model, port or default_port(model))
     return site, make_network(net, site, signals, **options)
 
 
@@ -82,11 +103,18 @@ def make_network(net: str, port: Port, signals: Sequence[str], **options: object
     """A network for ``port``: "friction", "residual" or "memory", reading ``signals`` (the usual ones of such a port where there are none).
 
     Raises:
-        UserError: no such network, or one that does not belong at such a port.
+        UserError: no such network, one that does not belong at such a port, or an option that it does not have.
     """
     if net not in NETWORKS:
         raise ArgumentError("net", net, f"unknown{did_you_mean(net, NETWORKS)}; expected one of {', '.join(NETWORKS)}")
     made = NETWORKS[net]
+    known = [name for name in signature(made).parameters if name != "inputs"]
+    for option in options:
+        if option not in known:
+            problem = (
+                f"a {net} network has no such option{did_you_mean(option, known)}; expected some of {', '.join(known)}"
+            )
+            raise ArgumentError("network", option, problem)
     if port.kind not in made.kinds:
         problem = f"a {net} network belongs at a {' or '.join(made.kinds)}, and this is a {port.kind}; "
         raise ArgumentError("port", port.name, f'{problem}expected another port, or the net "residual"')

@@ -25,7 +25,7 @@ from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 from greybox_torch.training.curriculum import Curriculum, descend
 from greybox_torch.training.gradients import make_gradient
 from greybox_torch.training.gradients.tangents import TangentsGradient
-from greybox_torch.training.hybrid import USUAL_SIGNALS, Hybrid, attach_network, check_signals, network_at
+from greybox_torch.training.hybrid import USUAL_SIGNALS, Hybrid, attach_network, check_signals, chosen_net, network_at
 from greybox_torch.training.keeper import Keeper
 from greybox_torch.training.physics import Physics, estimate_physics, training_problem, with_physics
 from greybox_torch.training.polish import Polished, polish
@@ -41,7 +41,7 @@ def train_hybrid(
     data: DataSet,
     model: GreyBoxModel,
     *,
-    net: str = "friction",
+    net: str | None = None,
     port: str | None = None,
     signals: Sequence[str] = (),
     network: dict[str, Any] | None = None,
@@ -58,8 +58,8 @@ def train_hybrid(
         data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
         model: the physics, without a network.
         net: "friction" (a body's speed, and what else is asked for) or "residual" (any signals at any port), or "memory" (the
-            same with hidden states).
-        port: where; the driving body by default.
+            same with hidden states); by default friction at a body, else residual.
+        port: where; the driving body by default, and the first port of a model without bodies.
         signals: what it reads, by their names at the port.
         network: further arguments of :class:`FrictionNet`, :class:`ResidualNet` or :class:`MemoryNet`: units, seed, odd, dissipative,
             memories.
@@ -76,6 +76,7 @@ def train_hybrid(
         NumericalError: the simulation overflows even over short windows.
     """
     began, settings, tell = time.perf_counter(), settings or TrainingSettings(), progress or (lambda report: None)
+    net = chosen_net(model, net, port)
     site, learner = network_at(model, net, port, signals, **{"seed": settings.seed, **(network or {})})
     problem = training_problem(data, model) if physics is None else physics.result.problem
     lengths = tuple(window_lengths(problem.records, settings))

@@ -8,6 +8,7 @@ import numpy as np
 
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.fit import Estimation, fit_records
+from greybox_torch.estimate.notes import nearest_bound
 from greybox_torch.estimate.problem import Problem, problem_for
 from greybox_torch.estimate.simulators import fine_enough
 from greybox_torch.mechanisms.attachment import Attachment
@@ -41,6 +42,13 @@ class NamedTerm:
     def parameters(self) -> dict[str, float]:
         """The law's own parameters, by the names that the law has for them, in their units."""
         return self.attachment.own(self.problem.values_by_name)
+
+    @property
+    def bounds_reached(self) -> dict[str, float]:
+        """Of the law's parameters that are at a bound, this bound."""
+        bounds = zip(self.problem.names, self.problem.values, self.problem.lower, self.problem.upper, strict=True)
+        reached = {name: nearest_bound(*placed) for name, *placed in bounds}
+        return self.attachment.own({name: bound for name, bound in reached.items() if bound is not None})
 
 
 def refitted_term(

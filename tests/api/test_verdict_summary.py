@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from greybox_torch.api.verdict_summary import SIZE, effect_table, moved_table, notes
+from greybox_torch.api.verdict_summary import REFIT, SIZE, effect_table, moved_table, notes, which_refit
 from greybox_torch.diagnosis.one_of import DECIDED_BY, Alternative, OneOf
 from greybox_torch.diagnosis.verdict import MOST_NAMED, STOPPED, Estimate, Left, NotTried
 from greybox_torch.estimate.notes import told_at_bound
@@ -31,6 +31,16 @@ def test_a_search_that_was_stopped_says_so_and_what_was_not_tried(effects) -> No
 @pytest.mark.parametrize("effects", [(), (BACKLASH,)])
 def test_a_whole_search_says_nothing_of_it(effects) -> None:
     assert not any("stopped" in line or "Not tried" in line for line in notes(verdict(*effects)))
+
+
+def test_of_several_outputs_it_is_said_which_refit_the_table_has() -> None:
+    """Seen: tables of `fit`, `diagnose` and `train` that all head "refit", with different numbers."""
+    one = verdict()
+    two = {name: (*own, replace(own[0], output="another")) for name, own in one.scores.items()}
+    assert (
+        which_refit(replace(one, scores=two)) == [REFIT] and which_refit(replace(one, scores=two, complete=False)) == []
+    )
+    assert which_refit(replace(one, scores={name: own[:1] for name, own in one.scores.items()})) == []
 
 
 def test_parameters_that_are_not_determined_are_told() -> None:

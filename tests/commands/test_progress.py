@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from greybox_torch.commands import progress
-from greybox_torch.commands.progress import news, training
+from greybox_torch.commands.progress import estimating, news, training
 
 
 def test_lines_with_the_time_left(capsys: pytest.CaptureFixture[str]) -> None:
@@ -21,7 +21,35 @@ def test_lines_with_the_time_left(capsys: pytest.CaptureFixture[str]) -> None:
         "windows of 40 samples  epoch 1  loss 0.7",
         "scoring",
     ]
-    assert "s left" in lines[1] and "left" not in lines[3]
+    assert "left" not in "".join(lines)
+
+
+def test_no_time_is_told_before_it_can_be(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seen: "epoch 1 … about 1040 s left" of a training of 6 s, as the estimate of the physics was counted to the first epoch."""
+    clock = iter([0.0, 0.0, 3.0, *(3.0 + 0.01 * k for k in range(1, 30)), 9.0])
+    monkeypatch.setattr(progress.time, "perf_counter", lambda: next(clock))
+    with training("training a hybrid") as tell:
+        for epoch in range(1, 31):
+            tell("windows of 20 samples", epoch / 300, f"epoch {epoch}")
+        tell("windows of 40 samples", 0.4, "epoch 1")  # the rest was not needed, and start states took long
+    lines = capsys.readouterr().err.splitlines()
+    assert "epoch 1" in lines[1] and "left" not in lines[1]
+    assert lines[-1].endswith("windows of 40 samples  epoch 1  about 2 s left for the epochs")
+
+
+def test_on_a_terminal_iterations_are_one_line(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Seen: more than thirty lines of descents that pushed away what had been said before them."""
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm")
+    with estimating() as tell:
+        tell("J and k: only their ratio is determined")
+        for iteration in range(1, 41):
+            tell(f"whole records, descent 5, iteration {iteration}: mean squared error {0.9**iteration:.3g}")
+    told = capsys.readouterr().err
+    assert "J and k: only their ratio is determined" in told
+    assert told.count("mean squared error") < 20
 
 
 def test_a_line_that_says_nothing_new_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,6 +17,7 @@ from typer.testing import CliRunner, Result
 
 from greybox_torch.checkpoint import load_checkpoint
 from greybox_torch.cli import app
+from greybox_torch.commands import train as train_command
 
 Make = Callable[..., Path]
 QUICK = ("--net", "residual", "--port", "actuator", "--units", "4", "--epochs", "5")
@@ -104,7 +105,7 @@ def test_summary(motor_folder: Make) -> None:
     result = train(folder, *QUICK)
     assert result.exit_code == 0, result.stderr
     assert "actuator.actuator_deadzone does what the network does" in result.stdout
-    assert "Share of the learned force that each signal alone explains: input" in result.stdout
+    assert "Share of the learned change of the input that each signal alone explains: input" in result.stdout
     assert "learned.png, named.safetensors, named.json" in result.stdout
     assert "With a network at actuator the mean squared error of the estimation experiments falls from" in result.stdout
     assert "residual_net at actuator: inputs input, units 4, seed 0" in result.stdout
@@ -200,3 +201,30 @@ def test_a_wrong_network_is_refused_before_training_is_said_to_begin(motor_folde
     result = train(motor_folder(), "--net", "frictoin")
     assert result.exit_code == 2
     assert result.stderr.startswith('error: --net frictoin: unknown (did you mean "friction"?)')
+
+
+@pytest.mark.parametrize(
+    ("epochs", "options", "told"),
+    [
+        (False, (), "nothing is written"),  # seen: "interrupted" alone, while the physics was estimated
+        (True, (), "the same command with --resume goes on from"),
+        (False, ("--resume",), "the same command with --resume goes on from"),
+    ],
+)
+def test_ctrl_c(
+    epochs: bool, options: tuple[str, ...], told: str, motor_folder: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One line, whether or not the folder has the snapshot of an earlier training."""
+
+    def stopped(*_: Any, snapshot: Path, **__: Any) -> None:
+        if epochs:
+            snapshot.write_bytes(b"new")
+        raise KeyboardInterrupt
+
+    folder = motor_folder()
+    (folder / "out").mkdir()
+    (folder / "out" / "training.safetensors").write_bytes(b"of an earlier training")
+    monkeypatch.setattr(train_command, "train", stopped)
+    result = train(folder, *options)
+    assert result.exit_code == 130
+    assert result.stderr.splitlines()[-1].startswith(f"interrupted; {told}") and "stopped" not in result.stderr

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,8 @@ import pytest
 
 import greybox_torch as gt
 from greybox_torch.api.design import _where_outputs_stand
+from greybox_torch.api.design_files import CARD
+from greybox_torch.data.card import read_card
 from greybox_torch.errors import UserError
 from greybox_torch.experiment_design.approach import begun_there
 from greybox_torch.experiment_design.beginning import beginning_of
@@ -43,16 +46,33 @@ def test_a_recording_that_begins_at_rest_is_preferred(undecided, speeds, like: s
     assert one.beginning(like, {}).start["speed"] == speeds[like == "more"]
 
 
+def test_limits_that_are_not_given_are_told_with_what_was_taken(undecided, tmp_path: Path) -> None:
+    found = gt.design(undecided, precision="J", seconds=0.5, limits={})
+    (told,) = [note for note in found.notes if "[limits]" in note and note.startswith("No limits")]
+    low, high = found.limits.inputs["voltage"].lower, found.limits.inputs["voltage"].upper
+    assert "No limits are given under [limits] on the card (in Python limits=): the recorded range was taken, " in told
+    assert (
+        f"for voltage ({low:.4g} to {high:.4g} V), with 10 % more either way for speed (" in told and " rad/s)" in told
+    )
+    found.save(tmp_path)
+    assert f"# {told}\n" in (tmp_path / CARD).read_text() and read_card(tmp_path / CARD)
+    some = gt.design(undecided, precision="J", seconds=0.5, limits={"voltage": {"lower": -3.0, "upper": 3.0}})
+    assert any(n.startswith("Not all limits are") and "for voltage" not in n for n in some.notes)
+    every = gt.design(undecided, precision="J", seconds=0.5)
+    assert not any("limits are given" in note for note in every.notes)
+
+
 def test_a_start_that_is_asked_for(undecided) -> None:
     moving = gt.design(undecided, precision="J", seconds=0.5)
     assert moving.moving == ("speed",) and moving.start == {"speed": 2.0}
     assert any("start = { speed = 0 }" in line for line in moving.notes)
+    assert "Begin as steps began: speed = 2 rad/s." in moving.notes, "seen: motor_angle = 0.00367, without its unit"
     noise = replace(moving, moving=(), resting=("speed",), start={"speed": -0.00394})
     assert "Begin as steps began: speed at rest." in noise.notes, "seen: speed = -0.00394"
     limits = {**undecided.data.limits, "start": {"speed": 0.0}}
     rest = gt.design(undecided, precision="J", seconds=0.5, limits=limits)
     assert rest.start == {"speed": 0.0} and rest.moving == () and abs(rest.outputs[0][0, 0]) < 1e-12
-    assert "Begin with speed = 0: speed as asked for, all else as steps began." in rest.notes
+    assert "Begin with speed = 0 rad/s: speed as asked for, all else as steps began." in rest.notes
 
 
 @pytest.mark.parametrize(

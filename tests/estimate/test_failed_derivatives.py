@@ -57,6 +57,9 @@ def test_the_numbers_are_blamed_and_not_the_data(experiments: list[Any], data_se
 
 def test_a_value_beside_its_bound_by_rounding_is_at_it() -> None:
     assert at_a_bound(0.010000000000000004, 0.01, np.inf) and at_a_bound(0.0, 0.0, 1.0) and at_a_bound(1.0, 0.0, 1.0)
+    assert at_a_bound(3.66e-13, 0.0, 39.0) and not at_a_bound(1e-6, 0.0, 39.0), (
+        "seen: a width of 3.66e-13 degC, without a remark"
+    )
     assert (
         not at_a_bound(0.0101, 0.01, np.inf)
         and not at_a_bound(1e-12, 0.0, 1.0)

@@ -69,6 +69,10 @@ def test_it_needs_no_network_and_escapes(html: str) -> None:
 def test_a_fleet_without_dates_or_verdicts(coulomb: Callable[..., Row]) -> None:
     text = text_of(render_fleet([coulomb("one", 0.3)], (), ()))
     assert "Over time" not in text and "Recorded" not in text and "in common" not in text
+    stopped = replace(coulomb("two", None), answer="unfinished")
+    assert "something is missing from the model; 1 data set without an answer yet." in text_of(
+        render_fleet([coulomb("one", 0.3), stopped], (), ())
+    )
     assert "0 machines: in 0 something is missing" in text_of(render_fleet([], (), ()))
 
 

@@ -94,7 +94,13 @@ def test_a_curve_has_no_key_parameter() -> None:
 
 @pytest.mark.parametrize(
     ("told", "answer"),
-    [({}, "nothing"), ({"complete": False}, "unfinished"), ({"unexplained": 5.0}, "unknown")],
+    [
+        ({}, "nothing"),
+        ({"complete": False}, "unfinished"),
+        ({"unexplained": 5.0}, "unknown"),
+        ({"unexplained": 5.0, "complete": False}, "unfinished"),  # seen: "something without a name"
+        ({"unexplained": 5.0, "complete": False, "too_short": "too short"}, "unknown"),
+    ],
 )
 def test_without_effects(told: dict[str, Any], answer: str) -> None:
     row = row_of_verdict(verdict(**told), {}, RECORDED)

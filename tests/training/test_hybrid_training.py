@@ -157,7 +157,7 @@ def test_nothing_to_resume(table_data, tmp_path: Path) -> None:
     [
         ({"net": "fiction"}, r"net: found 'fiction', unknown \(did you mean \"friction\"\?\)"),
         ({"port": "tabel"}, r'port: found .tabel., .*did you mean "table"'),
-        ({"port": "sensor"}, "port: found 'sensor', a friction network belongs at a body"),
+        ({"net": "friction", "port": "sensor"}, "port: found 'sensor', a friction network belongs at a body"),
         ({"signals": ("speed", "lode")}, "signals: found 'lode', there is no such signal at table"),
         ({"signals": ("position",)}, "expected the speed among them"),
     ],
