@@ -154,6 +154,8 @@ def _suspected(
     outputs = {channel.name: channel for channel in wanted}
     bodies = [(str(port.position), str(port.speed)) for port in model.ports if isinstance(port, Body)]
     pairs = [(outputs[a], outputs[b]) for a, b in bodies if a in outputs and b in outputs]
+    if clock.broken:
+        return {}
     if clock.column is not None:
         time = file.columns[clock.column] * SECONDS.get(clock.unit, 1.0)
     elif clock.sample_time is not None:
