@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from greybox_torch.data.readers.table import Table
     from greybox_torch.diagnosis.progress import Progress
     from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
-    from greybox_torch.errors import NumericalError, UserError
+    from greybox_torch.errors import ArgumentError, NumericalError, UserError
     from greybox_torch.evaluation import Evaluation, evaluate
     from greybox_torch.mechanisms.friction_net import FrictionNet
     from greybox_torch.mechanisms.library import register, unregister
@@ -61,6 +61,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "ArgumentError",
     "Balance",
     "Body",
     "CardResult",
@@ -136,6 +137,7 @@ __all__ = [
 ]
 
 _HOME_OF = {
+    "ArgumentError": "greybox_torch.errors",
     "Balance": "greybox_torch.model",
     "Body": "greybox_torch.model",
     "CardResult": "greybox_torch.api.card",

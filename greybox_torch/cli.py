@@ -29,6 +29,7 @@ from greybox_torch.commands.option_types import (
     Starts,
 )
 from greybox_torch.commands.options import Options
+from greybox_torch.commands.seconds import seconds
 
 app = typer.Typer(
     cls=Commands,
@@ -157,7 +158,9 @@ def diagnose(
     dataset: DataSetFile,
     time_limit: Annotated[
         float | None,
-        typer.Option(metavar="SECONDS", help="After this time the best answer so far is given."),
+        typer.Option(
+            metavar="SECONDS", parser=seconds("time_limit"), help="After this time the best answer so far is given."
+        ),
     ] = None,
     settings: Settings = None,
     model: Model = None,

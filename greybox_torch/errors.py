@@ -42,7 +42,8 @@ class ArgumentError(UserError):
 
     def __init__(self, argument: str, found: object, problem: str, option: str | None = None) -> None:
         shown = str(found) if isinstance(found, Kind) else repr(found)
-        super().__init__(f"{argument}: found {shown}, {problem}")
+        told = shown if argument == "found" else f"found {shown}"  # the argument of design, and not twice the word
+        super().__init__(f"{argument}: {told}, {problem}")
         self.argument, self.found, self.problem = argument, found, problem
         self.option = option or argument.replace("_", "-")
 

@@ -12,7 +12,7 @@ import torch
 
 from greybox_torch.checking.constant_channels import resting_at, rests
 from greybox_torch.data import DataSet
-from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
+from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean, quoted
 from greybox_torch.estimate.precision import PRECISIONS
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import GreyBoxModel
@@ -40,7 +40,8 @@ def check_model(model: Any, *, runs: bool = True) -> GreyBoxModel:
     if isinstance(model, type) and issubclass(model, GreyBoxModel):
         name = model.__name__
         raise ArgumentError("model", Kind(f"the class {name}"), f"expected an object of it: {name}()")
-    raise ArgumentError("model", Kind.of(model), "expected a model, or the result of fit or diagnose")
+    named = f", as load_model({quoted(model)}) gives one" if isinstance(model, str) else ""
+    raise ArgumentError("model", Kind.of(model), f"expected a model{named}, or the result of fit or diagnose")
 
 
 @once_per_model

@@ -19,6 +19,7 @@ from greybox_torch.checking.not_finite import not_finite_at_start, not_finite_wh
 from greybox_torch.checking.points import Points, start_of
 from greybox_torch.checking.recorded_points import recorded_points
 from greybox_torch.checking.source import source_of
+from greybox_torch.checking.start_states import unmeasured_starts
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.beliefs import beliefs_from_mapping
 from greybox_torch.diagnosis.settings import settings_from_mapping
@@ -58,7 +59,10 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
     name, given = _given(model)
     with users_code(_file(given), f"model {name}", "checking it"):
         examined = examine(given, None if data is None else partial(_starts, data))
-    findings, values = list(examined.findings), dict[str, float]()
+        findings, values = list(examined.findings), dict[str, float]()
+        if examined.model is not None and not any(f.level == "error" for f in findings):
+            given = () if data is None else {name for name, entry in data.initial.items() if entry.value is not None}
+            findings += unmeasured_starts(examined.model, source_of(examined.made), given)
     if data is not None:
         usable = None if any(f.level == "error" for f in findings) else examined.model
         if usable is not None:

@@ -9,6 +9,7 @@ import typer
 
 from greybox_torch.commands.option_types import Json, Model, Seed
 from greybox_torch.commands.options import Options
+from greybox_torch.commands.seconds import seconds as in_seconds
 
 
 def declare(app: typer.Typer) -> None:
@@ -27,7 +28,8 @@ def design(
         ),
     ] = None,
     seconds: Annotated[
-        float | None, typer.Option(min=1e-9, metavar="SECONDS", help="How long the recording may be.")
+        float | None,
+        typer.Option(metavar="SECONDS", parser=in_seconds("seconds"), help="How long the recording may be."),
     ] = None,
     model: Model = None,
     out: Annotated[
@@ -58,7 +60,10 @@ def export(
         str | None, typer.Option(metavar="NAME", help="Name of functions and files.", show_default="the model's")
     ] = None,
     step: Annotated[
-        float | None, typer.Option(metavar="SECONDS", help="Largest integration step.", show_default="as needed")
+        float | None,
+        typer.Option(
+            metavar="SECONDS", parser=in_seconds("step"), help="Largest integration step.", show_default="as needed"
+        ),
     ] = None,
     out: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Where to write.", show_default="beside the checkpoint")

@@ -9,6 +9,7 @@ import typer
 
 from greybox_torch.commands.option_types import Device, Json, Model, Pdf, Seed, Settings
 from greybox_torch.commands.options import Options
+from greybox_torch.commands.seconds import seconds
 
 
 def declare(app: typer.Typer) -> None:
@@ -61,7 +62,12 @@ def card(
     model: Model = None,
     sample_time: Annotated[
         float | None,
-        typer.Option(metavar="SECONDS", help="Sample time, where no column has time stamps.", show_default="guessed"),
+        typer.Option(
+            metavar="SECONDS",
+            parser=seconds("sample_time"),
+            help="Sample time, where no column has time stamps.",
+            show_default="guessed",
+        ),
     ] = None,
     out: Annotated[
         Path | None, typer.Option(metavar="CARD.toml", help="Where to write.", show_default="dataset.toml beside FILE")

@@ -9,6 +9,7 @@ import typer
 
 from greybox_torch.commands.option_types import Device, Json, Model, Seed, Settings
 from greybox_torch.commands.options import Options
+from greybox_torch.commands.seconds import seconds
 
 
 def declare(app: typer.Typer) -> None:
@@ -23,7 +24,11 @@ def fleet(
     ],
     time_limit: Annotated[
         float | None,
-        typer.Option(metavar="SECONDS", help="After this time the best answer so far is given, for each data set."),
+        typer.Option(
+            metavar="SECONDS",
+            parser=seconds("time_limit"),
+            help="After this time the best answer so far is given, for each data set.",
+        ),
     ] = None,
     workers: Annotated[
         int | None,

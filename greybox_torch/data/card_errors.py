@@ -83,6 +83,10 @@ def _table_of(location: Sequence[str | int], found: Any) -> str:
             return f'{{ column = {quoted(found)}, unit = "…" }}'
         case ["model", "parameters" | "initial", _] if isinstance(found, int | float):
             return f"{{ value = {quoted(found)} }}"
+        case ["model", "initial", _]:  # "measured" is an entry of the state, in the model
+            return '{ value = 0.0 }; to begin as measured, initial="measured" of the State in the model'
+        case ["model", "parameters", _]:
+            return "{ value = 1.0 }"
     return "{ key = value }"
 
 

@@ -14,6 +14,7 @@ from greybox_torch.data.asked_for import asked_for
 from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry
 from greybox_torch.data.checks import check_finite, check_length, check_time
+from greybox_torch.data.column_units import unit_in
 from greybox_torch.data.dataset import DataSet
 from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.expression import Expression
@@ -45,7 +46,7 @@ def load_dataset(path: str | PathLike[str]) -> DataSet:
         hold=card.hold,
         name=card.name or absolute(path).parent.name or "recordings",
         path=path,
-        channels={name: Channel(name, entry.unit) for name, entry in card.channels.items()},
+        channels={name: _channel(name, entry) for name, entry in card.channels.items()},
         model=_absolute_model(card.model.name, path),
         parameters=card.model.parameters,
         initial=card.model.initial,
@@ -54,6 +55,14 @@ def load_dataset(path: str | PathLike[str]) -> DataSet:
         controller=card.controller,
         beliefs=card.beliefs,
     )
+
+
+def _channel(name: str, entry: ChannelEntry) -> Channel:
+    column = entry.column or ""
+    plain = (
+        entry.derivative is None and "scale" not in entry.model_fields_set
+    )  # else the name tells the unit of something else
+    return Channel(name, entry.unit, column, entry.file_unit or (unit_in(column) if plain else ""))
 
 
 def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: Read) -> Recording:

@@ -17,10 +17,16 @@ from greybox_torch.errors import UserError
 
 @dataclass(frozen=True)
 class Channel:
-    """A measured signal: an input or an output of the model, by the model's name for it. `unit` may be empty."""
+    """A measured signal: an input or an output of the model, by the model's name for it. `unit` may be empty.
+
+    `column` is the one of the card that it comes from, `file_unit` the unit of its values there, as the card or the name of the column
+    says; both are empty where that is not known.
+    """
 
     name: str
     unit: str
+    column: str = field(default="", compare=False)
+    file_unit: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

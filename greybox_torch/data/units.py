@@ -61,9 +61,12 @@ def conversion(source: str, target: str, place: str) -> tuple[float, float]:
         raise
     except Exception as error:  # pint's parser raises what its tokenizer does
         hint = (meant(source, target) or meant(target, source)) if place else ""
+        unknown = [f'"{unit:.40}"' for unit in (source, target) if not is_unit(unit)]
+        why = f"{' and '.join(unknown)} is no unit that is known" if unknown else f"{' '.join(str(error).split()):.100}"
+        usual = usual_units(target if is_unit(target) else source) or ("deg/s", "rpm", "N cm")
+        such = ", ".join(f'"{unit}"' for unit in usual)
         raise UserError(
-            f'{place}: cannot convert "{source:.40}" to "{target:.40}": {" ".join(str(error).split()):.100}{hint}; '
-            'expected units such as "deg/s", "rpm" or "N cm", or a scale'
+            f'{place}: cannot convert "{source:.40}" to "{target:.40}": {why}{hint}; expected units such as {such}, or a scale'
         ) from None
     return float(one - zero) * of_hertz, float(zero)
 
@@ -97,6 +100,12 @@ def meant(unit: str, other: str, *, capitals: bool = False) -> str:
     quantity = _dimension(other)
     near = [usual for usual in USUAL if quantity is None or _dimension(usual) == quantity]
     return did_you_mean(unit, [usual for usual in near if not capitals or usual.lower() == unit.lower()])
+
+
+def usual_units(unit: str) -> tuple[str, ...]:
+    """Usual units of the quantity of ``unit``, the plain number left out; none where it is no unit that is known."""
+    quantity = _dimension(unit)
+    return tuple(usual for usual in USUAL if quantity and _dimension(usual) == quantity)
 
 
 def gravity(one: str, other: str) -> str:

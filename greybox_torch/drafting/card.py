@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from greybox_torch.data.gaps import Gap, pieces_around
-from greybox_torch.drafting.channels import Draft, Drafted, wanted_of
+from greybox_torch.drafting.channels import Draft, wanted_of
 from greybox_torch.drafting.clock import Clock, clock_of
+from greybox_torch.drafting.odd_cells import missing_of, to_be_mended, where_missing_of
 from greybox_torch.drafting.one_run import perhaps_one_run
 from greybox_torch.drafting.recorded import Recorded, recorded
 from greybox_torch.drafting.runs import Run, apart, names_of, runs_of
@@ -59,7 +60,7 @@ def draft_card(
         *_clock(first.clock),
         'hold = "zoh"                       # the input between samples: "zoh" constant, "foh" straight lines',
         "",
-        *_channels(first.table, model),
+        *_channels(runs, model),
         *_left_over(first),
         "",
         *_experiments(runs, folder),
@@ -69,11 +70,14 @@ def draft_card(
     if missing:  # what there is to them may be in a column that could not be read, or in another file
         missing += [fault for file in first.files for fault in _faults(file)]
         missing += filter(None, [apart(runs)])
+    missing += to_be_mended(runs)
+    missing[:0] = [f"time: {clock.broken}" for clock in clocks if clock.broken]
     if first.clock.column is None and first.clock.sample_time is None:
         missing.insert(0, f"sample_time: {first.clock.remark}")
     if what_to_do := perhaps_one_run(files, clocks, 2 if model is None else len(wanted_of(model))):
         missing.append(what_to_do)
-    return CardDraft("\n".join(lines) + "\n", files, runs, first.clock, first.table.channels, tuple(missing))
+    channels = tuple(_remarked(runs, draft) for draft in first.table.channels)
+    return CardDraft("\n".join(lines) + "\n", files, runs, first.clock, channels, tuple(missing))
 
 
 def _clock(clock: Clock) -> list[str]:
@@ -90,19 +94,27 @@ def _clock(clock: Clock) -> list[str]:
     return [f"# sample_time = 0.001              # s, to be filled in: {clock.remark}"]
 
 
-def _channels(table: Drafted, model: GreyBoxModel | None) -> list[str]:
+def _remarked(runs: Sequence[Run], draft: Draft) -> Draft:
+    """With what was taken for a missing sample."""
+    told = [remark for remark in (draft.remark, where_missing_of(runs, draft.name)) if remark]
+    return replace(draft, remark="; ".join(told))
+
+
+def _channels(runs: Sequence[Run], model: GreyBoxModel | None) -> list[str]:
     told = (
         "# name = { column = …, unit = … }; file value * scale = value in unit, or file_unit = … to convert"
         if model is not None
         else "# no model was named: call channels as the model's inputs and outputs are called"
     )
-    return ["[channels]", told, *(_channel(draft) for draft in table.channels)]
+    drafts = [(_remarked(runs, draft), missing_of(runs, draft.name)) for draft in runs[0].table.channels]
+    return ["[channels]", told, *(_channel(*draft) for draft in drafts)]
 
 
-def _channel(draft: Draft) -> str:
+def _channel(draft: Draft, missing: str) -> str:
     column = f"column = {toml_text(draft.column if draft.column is not None else '…')}"
     entry = [f"expr = {toml_text(draft.expr)}" if draft.expr else column, f"unit = {toml_text(draft.unit)}"]
     entry += [f"file_unit = {toml_text(draft.file_unit)}"] if draft.file_unit else []
+    entry += [missing] if missing else []
     line = f"{toml_key(draft.name)} = {{ {', '.join(entry)} }}" + (f"    # {draft.remark}" if draft.remark else "")
     return line if draft.column is not None else f"# {line}"
 
@@ -118,8 +130,9 @@ def _left_over(run: Run) -> list[str]:
 
 
 def _faults(file: Recorded) -> list[str]:
-    """The columns that hold something else than numbers, with what that is and where."""
-    return [f'column "{name}" of {file.path.name}, {fault}' for name, fault in file.faults.items()]
+    """The columns that were left out as they hold something else than numbers, with what that is and where."""
+    faults = {name: fault for name, fault in file.faults.items() if name not in file.columns}
+    return [f'column "{name}" of {file.path.name}, {fault}' for name, fault in faults.items()]
 
 
 def _experiments(runs: Sequence[Run], folder: Path) -> list[str]:

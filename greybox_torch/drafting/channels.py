@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from greybox_torch.data.column_units import unit_in, without_ending, without_unit
 from greybox_torch.data.counts import ends_in_counts, in_turns, is_angle, is_count, named_as_count
 from greybox_torch.data.understood_units import understood
 from greybox_torch.data.units import slip
 from greybox_torch.data.unwrapping import turn_within, unwrapped
 from greybox_torch.drafting.clock import SECONDS, Clock
-from greybox_torch.drafting.column_units import unit_in, without_ending, without_unit
 from greybox_torch.drafting.likened import likened
 from greybox_torch.drafting.magnitudes import slips
 from greybox_torch.drafting.matching import Wanted, letter_unit, matched, words
@@ -154,6 +154,8 @@ def _suspected(
     outputs = {channel.name: channel for channel in wanted}
     bodies = [(str(port.position), str(port.speed)) for port in model.ports if isinstance(port, Body)]
     pairs = [(outputs[a], outputs[b]) for a, b in bodies if a in outputs and b in outputs]
+    if clock.broken:
+        return {}
     if clock.column is not None:
         time = file.columns[clock.column] * SECONDS.get(clock.unit, 1.0)
     elif clock.sample_time is not None:

@@ -44,7 +44,7 @@ class Clock:
     """Either ``column`` (None: there is none) with its unit, or ``sample_time`` in seconds (None: not known).
 
     ``remark`` says what the guess is from; ``uneven`` the step in s of an even grid where the steps differ, but for gaps, else empty;
-    ``gap`` is the longest gap.
+    ``gap`` is the longest gap. ``broken`` says where the column does not rise and the file is to be mended, else it is empty.
     """
 
     column: str | None = None
@@ -53,6 +53,7 @@ class Clock:
     remark: str = ""
     uneven: str = ""
     gap: Gap | None = None
+    broken: str = ""
 
 
 def clock_of(file: Recorded) -> Clock:
@@ -68,17 +69,25 @@ def clock_of(file: Recorded) -> Clock:
             return Clock(sample_time=value, remark=f"{name} = {value:g} in {file.path.name}")
         if value > 0 and _RATE.match(last):
             return Clock(sample_time=1.0 / value, remark=f"1 / {name}, {name} = {value:g} in {file.path.name}")
-    return Clock(remark=f"{_none_rises(file)}, and no number is called Ts, dt or fs")
+    return _broken(file) or Clock(remark="no column rises from sample to sample, and no number is called Ts, dt or fs")
 
 
-def _none_rises(file: Recorded) -> str:
-    """Why there is no clock; where a column was likely meant, from where on it is none."""
+def _broken(file: Recorded) -> Clock | None:
+    """The column that was likely meant, where it rises but for a few samples; one of dates that rises nowhere near that is told."""
     for name, values in file.columns.items():
         falls = np.flatnonzero(~(np.diff(values) > 0))
-        nearly = named_like_a_clock(name) and len(falls) < _SOME * len(values)
-        if len(falls) and (name in file.stamps or nearly):
-            return f'column "{name}" does not rise everywhere: {file.where(int(falls[0]) + 1)} is no later than the one before'
-    return "no column rises from sample to sample"
+        nearly = len(falls) < _SOME * len(values)
+        if not len(falls) or not (name in file.stamps or (nearly and named_like_a_clock(name))):
+            continue
+        line = f"{file.where(int(falls[0]) + 1)} is no later than the one before"
+        told = f'column "{name}" does not rise everywhere: {line}'
+        if not nearly:
+            return Clock(remark=f"{told}, and no number is called Ts, dt or fs")
+        told = f'column "{name}", {file.faults[name]}' if name in file.faults else told
+        unit, _ = _unit(name, values[np.isfinite(values)], file.units.get(name, ""))
+        broken = f"{told}; to be mended in {file.path.name}"
+        return Clock(name, unit or "s", remark=broken, broken=broken)
+    return None
 
 
 def _comes_first(column: str, file: Recorded) -> bool:

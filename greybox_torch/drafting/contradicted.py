@@ -9,11 +9,11 @@ from pathlib import Path
 
 from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry
+from greybox_torch.data.column_units import unit_in
 from greybox_torch.data.counts import ends_in_counts, in_turns, is_angle
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.time_units import SPELLINGS
 from greybox_torch.data.units import conversion, dimensionality, per_minute
-from greybox_torch.drafting.column_units import unit_in
 from greybox_torch.errors import UserError
 from greybox_torch.files import toml_text
 

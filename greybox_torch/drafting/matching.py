@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 
+from greybox_torch.data.column_units import without_ending
 from greybox_torch.data.counts import is_angle, is_count, named_as_count
 from greybox_torch.data.units import conversion
-from greybox_torch.drafting.column_units import without_ending
 from greybox_torch.errors import UserError
 
 _WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")

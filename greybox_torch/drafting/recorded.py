@@ -11,8 +11,13 @@ from numpy.typing import NDArray
 
 from greybox_torch.data.columns import columns_of
 from greybox_torch.data.readers import read_table
-from greybox_torch.data.readers.table import Table
+from greybox_torch.data.readers.table import BadCell, Table
 from greybox_torch.errors import UserError
+
+_FEW = 5
+"""Texts that stand among the numbers of a column, at most; a column with more of them is text."""
+_MOST_LOST = 0.5
+"""Share of samples that are missing, below which a column with such texts is one of numbers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,7 +25,8 @@ class Recorded:
     """A file: columns (N,) of numbers by name, units by column where the file says them, single numbers by name.
 
     ``left_out`` are columns that hold another number of samples than most, ``faults`` those that hold something else than numbers,
-    with what was found and where. ``stamps`` are columns of dates or times of day. ``lines`` has the line of every
+    with what was found and where: here and there, those samples are missing in ``columns``; else they are not among them. ``marks`` has by
+    column such texts as may stand for missing samples. ``stamps`` are columns of dates or times of day. ``lines`` has the line of every
     sample, where there are lines.
     """
 
@@ -30,6 +36,7 @@ class Recorded:
     numbers: Mapping[str, float]
     left_out: tuple[str, ...] = ()
     faults: Mapping[str, str] = field(default_factory=dict)
+    marks: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     stamps: frozenset[str] = frozenset()
     lines: Sequence[int] | None = None
 
@@ -45,7 +52,7 @@ class Recorded:
 def recorded(path: Path) -> Recorded:
     """All that can be read of a file. Raises UserError as the readers do, and where no column holds numbers."""
     listing = columns_of(path)
-    table, faults = _read(path, listing.names)
+    table, faults, marks = _read(path, listing.names)
     lengths = [len(values) for values in table.columns.values()]
     if not lengths and listing.names:
         read_table(path, listing.names[:1])  # says what is wrong with it
@@ -54,29 +61,47 @@ def recorded(path: Path) -> Recorded:
     usual = max(set(lengths), key=lambda n: (lengths.count(n), n))
     kept = {name: values for name, values in table.columns.items() if len(values) == usual}
     other = tuple(name for name in table.columns if name not in kept)
-    return Recorded(path, kept, table.units, listing.numbers, other, faults, table.stamps, table.lines)
+    return Recorded(path, kept, table.units, listing.numbers, other, faults, marks, table.stamps, table.lines)
 
 
-def _read(path: Path, names: Sequence[str]) -> tuple[Table, dict[str, str]]:
-    """All columns at once, or where one of them cannot be read, each that can, and what is wrong with the others."""
+def _read(path: Path, names: Sequence[str]) -> tuple[Table, dict[str, str], dict[str, tuple[str, ...]]]:
+    """All columns at once, or where one of them cannot be read, each that can; what is wrong with the others, and marks in them."""
     if not names:
-        return Table(path, {}), {}
+        return Table(path, {}), {}, {}
     try:
-        return read_table(path, names), {}
+        return read_table(path, names), {}, {}
     except UserError:
         pass
     columns: dict[str, NDArray[np.float64]] = {}
     units: dict[str, str] = {}
     stamps: frozenset[str] = frozenset()
-    lines, faults = None, {}
+    lines, faults, marks = None, dict[str, str](), dict[str, tuple[str, ...]]()
     for name in names:
-        try:
-            one = read_table(path, (name,))
-        except UserError as error:
-            faults[name] = str(error).removeprefix(f"{path}, ").replace(f', column "{name}"', "")
+        one, odd = _column(path, name)
+        if odd:
+            faults[name] = str(odd[0]).removeprefix(f"{path}, ").replace(f', column "{name}"', "")
+        if one is None:
             continue
+        if found := tuple(e.cell for e in odd if isinstance(e, BadCell) and e.mark):
+            marks[name] = found
         columns |= one.columns
         units |= one.units
         stamps |= one.stamps
         lines = one.lines
-    return Table(path, columns, lines, units, stamps=stamps), faults
+    return Table(path, columns, lines, units, stamps=stamps), faults, marks
+
+
+def _column(path: Path, name: str) -> tuple[Table | None, list[UserError]]:
+    """A column, and what is wrong with it; where a few texts stand among its numbers, as if these samples were missing."""
+    odd: list[UserError] = []
+    while True:
+        cells = [(name, error.cell) for error in odd if isinstance(error, BadCell)]
+        try:
+            table = read_table(path, (name,), cells)
+        except UserError as error:
+            odd.append(error)
+            if not isinstance(error, BadCell) or len(odd) > _FEW:
+                return None, odd[:1]
+            continue
+        lost = np.isnan(table.columns[name]).mean() if odd else 0.0
+        return (table, odd) if lost < _MOST_LOST else (None, odd[:1])

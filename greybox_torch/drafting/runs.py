@@ -99,7 +99,9 @@ def _by_logger(runs: Sequence[Run], model: GreyBoxModel | None) -> list[list[Run
 
 
 def _may_be_joined(loggers: Sequence[Sequence[Run]], model: GreyBoxModel | None) -> bool:
-    """Whether all have as many files, time stamps in a column of one name, in one unit, and columns that the others lack."""
+    """Whether all have as many files, sound time stamps in a column of one name, in one unit, and columns that the others lack."""
+    if any(run.clock.broken for of_one in loggers for run in of_one):
+        return False
     clocks = {(run.clock.column, run.clock.unit) for of_one in loggers for run in of_one}
     if len({len(of_one) for of_one in loggers}) > 1 or len(clocks) > 1 or next(iter(clocks))[0] is None:
         return False

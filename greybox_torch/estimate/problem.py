@@ -10,7 +10,7 @@ import torch
 
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.errors import UserError, did_you_mean
-from greybox_torch.estimate.measured_states import measured_at
+from greybox_torch.estimate.measured_states import check_measured, measured_at
 from greybox_torch.model import GreyBoxModel, Parameter, Signals, State
 from greybox_torch.simulation.records import Records, make_records
 
@@ -228,10 +228,11 @@ def _initial_fixed(state: State, dataset: DataSet) -> bool:
 def _start_states(dataset: DataSet, model: GreyBoxModel, records: Records) -> np.ndarray:
     """Start states (E, n_x): the card's, else the model's, measured where the model says so."""
     rows = np.zeros((len(records.first), len(model.states)))
+    given = {name: entry.value for name, entry in dataset.initial.items() if entry.value is not None}
+    check_measured(model.plain, [s for s in model.states if s.initial == "measured" and s.name not in given])
     for i, state in enumerate(model.states):
-        entry = dataset.initial.get(state.name)
-        if entry is not None and entry.value is not None:
-            rows[:, i] = entry.value
+        if state.name in given:
+            rows[:, i] = given[state.name]
         elif state.initial == "measured":
             rows[:, i] = measured_at(model.plain, state, records, records.first)
         else:

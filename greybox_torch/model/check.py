@@ -12,6 +12,7 @@ import torch
 
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.model.greybox_model import GreyBoxModel
+from greybox_torch.model.missing_names import advice_for
 from greybox_torch.model.ports import Port
 from greybox_torch.model.random_numbers import Draw, watched
 from greybox_torch.model.signals import Signals
@@ -152,7 +153,7 @@ def _what_happened(model: GreyBoxModel, error: Exception, outside: bool) -> str:
     """What the equations raised; ``outside`` of them where they could not even be called."""
     if any(words in str(error) for words in ("Boolean value of Tensor", "to Scalar", "to Python scalar")):
         return NEEDS_A_VALUE
-    hint = "; use functions of torch instead" if "numpy" in str(error) else ""
+    hint = advice_for(model, error)
     if outside and isinstance(error, TypeError) and "positional argument" in str(error):
         name, arguments = ("output", "x, u, p") if ".output()" in str(error) else ("derivative", "x, u, p, port")
         hint = f"; expected def {name}(self, {arguments})"

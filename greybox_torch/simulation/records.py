@@ -10,11 +10,12 @@ import numpy as np
 
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.steps import steps_of
-from greybox_torch.data.units import conversion, dimensionality, gravity, meant, written_alike
+from greybox_torch.data.units import written_alike
 from greybox_torch.errors import UserError
 from greybox_torch.files import toml_key
 from greybox_torch.model import GreyBoxModel, Input, Output
 from greybox_torch.simulation.driven_inputs import check_controller
+from greybox_torch.simulation.units_of_channels import other_unit
 
 Found = TypeVar("Found")
 
@@ -111,7 +112,7 @@ def check_channels(dataset: DataSet, model: GreyBoxModel) -> None:
         if unit and signal.unit and not written_alike(unit, signal.unit):
             raise UserError(
                 f"{dataset.place('[channels]')} {name}: unit is '{unit}', model {model.title} expects '{signal.unit}'; "
-                f"{_other_unit(dataset, name, unit, signal.unit)}"
+                f"{other_unit(dataset, dataset.channels[name], signal.unit)}"
             )
     strange = [name for name in dataset.channels if name not in declared]
     if strange:
@@ -135,32 +136,6 @@ def _missing(dataset: DataSet, signal: Input | Output, model: GreyBoxModel) -> s
         line = f'a line such as {toml_key(signal.name)} = {{ column = "…", unit = "{signal.unit}" }}'
     without_sensor = "; an output that no sensor shows is left out of the model's outputs"
     return line + (without_sensor if any(o.name == signal.name for o in model.outputs) else "")
-
-
-def _other_unit(dataset: DataSet, name: str, found: str, wanted: str) -> str:
-    """What is expected of a channel in another unit than the model's: converted values, or another column where none can be converted."""
-    try:
-        of_one_quantity = dimensionality(found) == dimensionality(wanted)
-    except ValueError:  # a unit of the user's own
-        of_one_quantity = True
-    if not of_one_quantity:
-        return (
-            f"{found} cannot be converted to {wanted}{gravity(found, wanted)}; expected a column whose values are in {wanted}, "
-            "or in a unit of that quantity"
-        )
-    if dataset.path is None:
-        return _by_hand(name, found, wanted)
-    return f'expected unit = "{wanted}" with file_unit = "{found}", or with a scale, to convert the values of the file'
-
-
-def _by_hand(name: str, found: str, wanted: str) -> str:
-    """How to convert values of Python, where nothing converts them."""
-    try:
-        factor, offset = conversion(found, wanted, "")
-    except UserError:  # turns or radians, for example
-        return f"expected values and unit of the model{meant(found, wanted)}"
-    added = f" and add {offset:.9g}" if offset else ""
-    return f'expected values in it: multiply those of "{name}" by {factor:.9g}{added}, and write units={{"{name}": "{wanted}"}}'
 
 
 def _held(values: np.ndarray) -> np.ndarray:

@@ -30,7 +30,7 @@ from tests.api.motor import Motor
         (lambda m, d: gt.fit(m, d, profiles="J"), "profiles: found 'J', expected a list of names, such as [\"J\"]"),
         (lambda m, d: gt.fit(m, d, profiles=["k"]), "profiles: found 'k', this parameter is fixed; expected one of"),
         (lambda m, d: gt.simulate(Motor, d), "model: found the class Motor, expected an object of it: Motor()"),
-        (lambda m, d: gt.simulate("robot_arm", d), "model: found an object of type str, expected a model, or the result"),
+        (lambda m, d: gt.fit("a.py:A", d), 'model: found an object of type str, expected a model, as load_model("a.py:A") gives one, or'),
         (lambda m, d: gt.simulate(m, "card.toml"), "data: found an object of type str, expected a DataSet"),
         (lambda m, d: gt.inspect("card.toml"), "data: found an object of type str, expected a DataSet, as load_dataset()"),
         (lambda m, d: gt.inspect(d, Motor), "model: found the class Motor, expected an object of it: Motor()"),

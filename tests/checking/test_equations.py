@@ -65,6 +65,33 @@ def test_a_fault_is_told_at_its_line(tmp_path: Path, machines: Path, fault: str)
     assert finding.line == next(k for k, one in enumerate(text.splitlines(), 1) if line in one)
 
 
+@pytest.mark.parametrize(
+    ("rate", "write"),
+    [
+        (
+            "sin(x.speed)",
+            "torch.sin, with import torch at the top of the file: functions of math and numpy cannot take",
+        ),
+        ("pi * x.speed", "torch.pi, with import torch at the top of the file"),
+        (
+            "np.pi * x.speed",
+            "functions of torch (import torch), such as torch.sin: those of math and numpy cannot take",
+        ),
+        ("b * x.speed", "p.b"),
+        ("rotor_friction(x.speed)", "`rotor_friction` imported or defined at the top of the file"),
+        ("torch.tahn(x.speed)", 'a function of torch (did you mean "tan'),
+        ("__import__('no_such_module').f(x.speed)", "a module that is installed here; or functions of torch"),
+    ],
+)
+def test_a_name_that_is_not_there_is_told_with_what_to_write(
+    tmp_path: Path, machines: Path, rate: str, write: str
+) -> None:
+    """Seen: "equations that raise nothing, whatever values the states and inputs have", of a name that was not imported."""
+    motor(tmp_path, machines, "", rate)
+    (finding,) = examine(model_class(f"{tmp_path / 'motor.py'}:Motor")).findings
+    assert finding.line and write in finding.write
+
+
 def test_random_numbers_are_refused_where_the_model_is_loaded(tmp_path: Path, machines: Path) -> None:
     motor(tmp_path, machines, "", "p.b * torch.rand(1) * x.speed")
     with pytest.raises(

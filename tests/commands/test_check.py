@@ -65,7 +65,7 @@ SENSOR = 'a line such as speed = { column = "…", unit = "rad/s" }; an output t
         ("speed = {", "wheel = {", "[channels] has no 'speed', which model Motor needs; found: voltage, wheel", SENSOR),
         ('unit = "V"', 'unit = "A"', "A cannot be converted to V", "a column whose values are in V"),
         ('unit = "V"', 'unit = "mV"', "unit is 'mV'", 'unit = "V" with file_unit = "mV"'),
-        ('unit = "V"', 'unit = "digits"', "unit is 'digits'", 'file_unit = "digits", or with a scale'),
+        ('unit = "V"', 'unit = "digits"', "unit is 'digits'", "where the file is in another unit"),
     ],
 )
 def test_a_wrong_card_is_told_what_to_write(

@@ -46,7 +46,10 @@ def test_nothing_to_estimate_from(motor_folder: Make) -> None:
 
 @pytest.mark.parametrize("limit", ["0", "-3", "soon"])
 def test_time_limits_that_are_none(motor_folder: Make, limit: str) -> None:
-    assert diagnose(motor_folder(), "--time-limit", limit).exit_code == 2
+    """Seen: a line of progress before the error, and "unable to parse string as a number"."""
+    refused = diagnose(motor_folder(), "--time-limit", limit)
+    assert refused.exit_code == 2
+    assert refused.stderr == f"error: --time-limit {limit}: expected seconds, a number above 0\n"
 
 
 def test_a_time_limit_may_be_less_than_a_second(motor_folder: Make) -> None:

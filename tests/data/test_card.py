@@ -55,6 +55,10 @@ def test_defaults(tmp_path: Path) -> None:
             TOP + CHANNELS + EXPERIMENT + "[model.parameters]\nJ = 0.012\n",
             "[model.parameters], J: found 0.012, expected a table, like { value = 0.012 }",
         ),
+        (
+            TOP + CHANNELS + EXPERIMENT + '[model.initial]\nw = "measured"\n',
+            '[model.initial], w: found "measured", expected a table, like { value = 0.0 }; to begin as measured, initial="measured"',
+        ),
         (TOP + "[channels]\n" + EXPERIMENT, "expected a table [channels] with an entry for every input and output"),
         (TOP + EXPERIMENT, '"channels" is missing; expected a table [channels]'),
         (TOP + CHANNELS, '"experiment" is missing; expected one table [[experiment]]'),

@@ -32,8 +32,12 @@ def test_a_column_of_dates_is_the_clock_whatever_is_lost(tmp_path: Path, name: s
 def test_dates_that_stand_still_are_told_with_the_line(tmp_path: Path) -> None:
     stamps = dates()
     stamps[40] = stamps[39]
-    (told,) = drafted(tmp_path, "Wann", stamps).open
-    assert 'column "Wann" does not rise everywhere: line 42 is no later than the one before' in told
+    card = drafted(tmp_path, "Wann", stamps)
+    (told,) = card.open
+    assert (
+        'column "Wann" does not rise everywhere: line 42 is no later than the one before; to be mended in run' in told
+    )
+    assert 'time = "Wann"    # column "Wann" does not rise' in card.text
     seconds = [str(k) for k in range(60)]
     seconds[40] = "39"
     assert "line 42" in drafted(tmp_path, "time", seconds).open[0]
@@ -78,5 +82,28 @@ def test_the_line_of_an_odd_cell_is_told(tmp_path: Path) -> None:
     rows = [f"{k},{k if k != 20 else 'OVER'}" for k in range(60)]
     (tmp_path / "p.csv").write_text("\n".join(["t,y", *rows]))
     card = gt.card(tmp_path / "p.csv", Box())
-    fault = 'column "y" of p.csv, line 22: found "OVER", expected a number'
+    taken = '"OVER" in line 22 of p.csv is taken for a missing sample'
+    assert f'y = {{ column = "y", unit = "", missing = "OVER" }}    # {taken}' in card.text and not card.open
+    card.save()
+    assert gt.load_dataset(tmp_path / "dataset.toml").channels
+    (tmp_path / "p.csv").write_text("\n".join(["t,y", *rows]).replace("OVER", "2.1.3"))
+    assert (
+        gt.card(tmp_path / "p.csv", Box())
+        .open[0]
+        .startswith('[channels] y: column "y" of p.csv, line 22: found "2.1.3"')
+    )
+    (tmp_path / "p.csv").write_text("\n".join(["t,y", *(f"{k},{'OK' if k % 3 else 1}" for k in range(60))]))
+    card = gt.card(tmp_path / "p.csv", Box())
+    fault = 'column "y" of p.csv, line 3: found "OK", expected a number'
     assert f"# left out: {fault}" in card.text and card.open[1].startswith(fault)
+
+
+@pytest.mark.parametrize("odd", ["1.0", "02.03.2026 05:00:00"])
+def test_a_column_of_dates_is_kept_where_a_line_is_to_be_mended(tmp_path: Path, odd: str) -> None:
+    """Seen: the column was left out, and "no column rises from sample to sample, and no number is called Ts, dt or fs"."""
+    stamps = dates()
+    stamps[60] = odd
+    card = drafted(tmp_path, "Time", stamps)
+    (told,) = card.open
+    assert told.startswith("time: ") and "line 62" in told and told.endswith("to be mended in run.csv")
+    assert card.text.splitlines()[1].startswith('time = "Time"    # column "Time"')

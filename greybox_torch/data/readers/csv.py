@@ -19,7 +19,7 @@ import numpy as np
 
 from greybox_torch.data.readers.clean_rows import clean_rows
 from greybox_torch.data.readers.missing_marks import is_missing
-from greybox_torch.data.readers.table import Table
+from greybox_torch.data.readers.table import BadCell, Table
 from greybox_torch.data.readers.text_layout import Layout, encoding_of, layout_of
 from greybox_torch.data.readers.text_rows import UnreadableRow
 from greybox_torch.data.readers.time_stamps import TimeStamps
@@ -83,7 +83,8 @@ def _seconds(path: Path, line: int, column: str, cell: str, stamps: TimeStamps) 
         return stamps.seconds(cell) if cell else float("nan")
     except ValueError as error:
         _refuse_names(path, line, column, cell)
-        raise UserError(f'{path}, line {line}, column "{column}": found "{cell:.60}": {error}') from None
+        message = f'{path}, line {line}, column "{column}": found "{cell:.60}": {error}'
+        raise BadCell(message, cell, mark=False) from None
 
 
 def _number(path: Path, line: int, column: str, cell: str, decimal: str) -> float:
@@ -99,11 +100,14 @@ def _number(path: Path, line: int, column: str, cell: str, decimal: str) -> floa
         pass
     _refuse_names(path, line, column, cell)
     sign = "; decimals have a comma in this file" if decimal == "," else ""
-    if not any(character.isdigit() for character in cell):
+    mark = not any(character.isdigit() for character in cell)
+    if mark:
         sign += f"; if this is another one, missing = {toml_text(cell[:60])} in the channel's line on the card"
-    raise UserError(
+    raise BadCell(
         f'{path}, line {line}, column "{column}": found "{cell:.60}", expected a number '
-        f"(missing samples are empty cells, NaN, or marks such as --- and N/A{sign})"
+        f"(missing samples are empty cells, NaN, or marks such as --- and N/A{sign})",
+        cell,
+        mark=mark,
     ) from None
 
 

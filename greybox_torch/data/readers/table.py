@@ -27,6 +27,16 @@ class NoSuchColumn(UserError):
         self.column = column
 
 
+class BadCell(UserError):
+    """A cell of a file of text is no number, or no time stamp where the others are: ``cell`` is its text, ``mark`` whether that may stand
+    for a missing sample.
+    """
+
+    def __init__(self, message: str, cell: str, *, mark: bool) -> None:
+        super().__init__(message)
+        self.cell, self.mark = cell, mark
+
+
 @dataclass(frozen=True, eq=False)
 class Table:
     """Columns of a file as float64 arrays of shape (N,), and where the format has lines, the line of every sample.
