@@ -27,9 +27,9 @@ from greybox_torch.commands.option_types import (
     Seed,
     Settings,
     Starts,
+    TimeLimit,
 )
 from greybox_torch.commands.options import Options
-from greybox_torch.commands.seconds import seconds
 
 app = typer.Typer(
     cls=Commands,
@@ -156,12 +156,7 @@ def residuals(
 @app.command()
 def diagnose(
     dataset: DataSetFile,
-    time_limit: Annotated[
-        float | None,
-        typer.Option(
-            metavar="SECONDS", parser=seconds("time_limit"), help="After this time the best answer so far is given."
-        ),
-    ] = None,
+    time_limit: TimeLimit = None,
     settings: Settings = None,
     model: Model = None,
     out: Out = None,

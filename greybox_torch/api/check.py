@@ -61,8 +61,10 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
         examined = examine(given, None if data is None else partial(_starts, data))
         findings, values = list(examined.findings), dict[str, float]()
         if examined.model is not None and not any(f.level == "error" for f in findings):
-            given = () if data is None else {name for name, entry in data.initial.items() if entry.value is not None}
-            findings += unmeasured_starts(examined.model, source_of(examined.made), given)
+            on_card = (
+                None if data is None else {name for name, entry in data.initial.items() if entry.value is not None}
+            )
+            findings += unmeasured_starts(examined.model, source_of(examined.made), on_card)
     if data is not None:
         usable = None if any(f.level == "error" for f in findings) else examined.model
         if usable is not None:

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from greybox_torch.commands.seconds import seconds
+
 DataSetFile = Annotated[Path, typer.Argument(metavar="DATASET.toml", help="The data card beside the recordings.")]
 Model = Annotated[
     str | None,
@@ -42,6 +44,12 @@ Starts = Annotated[
         metavar="N",
         help="How many start values to try, drawn around those given.",
         show_default="those given; many where they are poor",
+    ),
+]
+TimeLimit = Annotated[
+    float | None,
+    typer.Option(
+        metavar="SECONDS", parser=seconds("time_limit"), help="After this time the best answer so far is given."
     ),
 ]
 Pdf = Annotated[bool, typer.Option("--pdf", help="Also write the report for print, report.pdf.")]
