@@ -22,7 +22,8 @@ class TimeLeft:
     def after(self, now: float, share: float) -> float | None:
         """Seconds left at the time ``now`` (s), with ``share`` of the work done; None where that cannot be told."""
         before = self._before
-        self._before = (now, share)
+        if before is None or share != before[1]:
+            self._before = (now, share)
         if before is not None and share < before[1]:  # begun anew
             self._rates = []
         elif before is not None and 0.0 < before[1] < share < 1.0:

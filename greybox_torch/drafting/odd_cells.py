@@ -14,7 +14,7 @@ def _odd(runs: Sequence[Run], channel: str) -> Iterator[tuple[Recorded, str]]:
     for run in runs:
         column = run.table.columns.get(channel)
         for file in run.files:
-            if column in file.faults and column in file.columns:
+            if column in file.columns and (column in file.faults or column in file.marks):
                 yield file, column
 
 
@@ -31,16 +31,16 @@ def where_missing_of(runs: Sequence[Run], channel: str) -> str:
     """Where the first of them is, for the remark of the channel; "" where there is none."""
     for file, column in _odd(runs, channel):
         if column in file.marks:
-            line = file.faults[column].partition(":")[0]
-            return f"{toml_text(file.marks[column][0])} in {line} of {file.path.name} is taken for a missing sample"
+            text, where = toml_text(file.marks[column][0]), file.marked_at[column]
+            return f"{text} in {where} of {file.path.name} is taken for a missing sample"
     return ""
 
 
 def to_be_mended(runs: Sequence[Run]) -> list[str]:
-    """The texts that are no marks, by channel."""
+    """The texts that are no marks, the first of each channel and file."""
     return [
         f'[channels] {draft.name}: column "{column}" of {file.path.name}, {file.faults[column]}; to be mended in the file'
         for draft in runs[0].table.channels
         for file, column in _odd(runs, draft.name)
-        if column not in file.marks
+        if column in file.faults
     ]

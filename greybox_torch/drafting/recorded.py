@@ -26,8 +26,8 @@ class Recorded:
 
     ``left_out`` are columns that hold another number of samples than most, ``faults`` those that hold something else than numbers,
     with what was found and where: here and there, those samples are missing in ``columns``; else they are not among them. ``marks`` has by
-    column such texts as may stand for missing samples. ``stamps`` are columns of dates or times of day. ``lines`` has the line of every
-    sample, where there are lines.
+    column such texts as may stand for missing samples, which are no faults, and ``marked_at`` where the first of them is. ``stamps`` are
+    columns of dates or times of day. ``lines`` has the line of every sample, where there are lines.
     """
 
     path: Path
@@ -37,6 +37,7 @@ class Recorded:
     left_out: tuple[str, ...] = ()
     faults: Mapping[str, str] = field(default_factory=dict)
     marks: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    marked_at: Mapping[str, str] = field(default_factory=dict)
     stamps: frozenset[str] = frozenset()
     lines: Sequence[int] | None = None
 
@@ -52,7 +53,7 @@ class Recorded:
 def recorded(path: Path) -> Recorded:
     """All that can be read of a file. Raises UserError as the readers do, and where no column holds numbers."""
     listing = columns_of(path)
-    table, faults, marks = _read(path, listing.names)
+    table, odd = _read(path, listing.names)
     lengths = [len(values) for values in table.columns.values()]
     if not lengths and listing.names:
         read_table(path, listing.names[:1])  # says what is wrong with it
@@ -61,34 +62,47 @@ def recorded(path: Path) -> Recorded:
     usual = max(set(lengths), key=lambda n: (lengths.count(n), n))
     kept = {name: values for name, values in table.columns.items() if len(values) == usual}
     other = tuple(name for name in table.columns if name not in kept)
-    return Recorded(path, kept, table.units, listing.numbers, other, faults, marks, table.stamps, table.lines)
+    return Recorded(
+        path, kept, table.units, listing.numbers, other, odd.faults, odd.marks, odd.marked_at, table.stamps, table.lines
+    )
 
 
-def _read(path: Path, names: Sequence[str]) -> tuple[Table, dict[str, str], dict[str, tuple[str, ...]]]:
+@dataclass(frozen=True)
+class _Odd:
+    """See :class:`Recorded`."""
+
+    faults: dict[str, str] = field(default_factory=dict)
+    marks: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    marked_at: dict[str, str] = field(default_factory=dict)
+
+
+def _read(path: Path, names: Sequence[str]) -> tuple[Table, _Odd]:
     """All columns at once, or where one of them cannot be read, each that can; what is wrong with the others, and marks in them."""
     if not names:
-        return Table(path, {}), {}, {}
+        return Table(path, {}), _Odd()
     try:
-        return read_table(path, names), {}, {}
+        return read_table(path, names), _Odd()
     except UserError:
         pass
     columns: dict[str, NDArray[np.float64]] = {}
     units: dict[str, str] = {}
     stamps: frozenset[str] = frozenset()
-    lines, faults, marks = None, dict[str, str](), dict[str, tuple[str, ...]]()
+    lines, all_odd = None, _Odd()
     for name in names:
         one, odd = _column(path, name)
-        if odd:
-            faults[name] = str(odd[0]).removeprefix(f"{path}, ").replace(f', column "{name}"', "")
+        marks = [e for e in odd if isinstance(e, BadCell) and e.mark and one is not None]
+        if wrong := [e for e in odd if e not in marks]:
+            all_odd.faults[name] = str(wrong[0]).removeprefix(f"{path}, ").replace(f', column "{name}"', "")
         if one is None:
             continue
-        if found := tuple(e.cell for e in odd if isinstance(e, BadCell) and e.mark):
-            marks[name] = found
+        if marks:
+            all_odd.marks[name] = tuple(e.cell for e in marks)
+            all_odd.marked_at[name] = str(marks[0]).removeprefix(f"{path}, ").partition(", column")[0]
         columns |= one.columns
         units |= one.units
         stamps |= one.stamps
         lines = one.lines
-    return Table(path, columns, lines, units, stamps=stamps), faults, marks
+    return Table(path, columns, lines, units, stamps=stamps), all_odd
 
 
 def _column(path: Path, name: str) -> tuple[Table | None, list[UserError]]:

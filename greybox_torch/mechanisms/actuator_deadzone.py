@@ -38,11 +38,12 @@ class ActuatorDeadzone(ByDirection):
         self.soft = soft
 
     def described_here(self) -> str:
+        if self.soft:
+            by_direction = "; w is (1 + asymmetry) half_width above zero and (1 − asymmetry) half_width below"
+            w, told = ("w", by_direction) if self.by_direction else ("half_width", "")
+            return f"A part 1 − (1 + |u / {w}|^n)^(−1/n) of the input u acts, n = 1 / softness{told}"
         ends = "above (1 + asymmetry) half_width and below −(1 − asymmetry) half_width"
-        corners = "; its corners are round: a part 1 − (1 + |u / half_width|^n)^(−1/n) of it acts, n = 1 / softness"
-        return (
-            f"The input acts only {ends if self.by_direction else 'beyond ±half_width'}{corners if self.soft else ''}"
-        )
+        return f"The input acts only {ends if self.by_direction else 'beyond ±half_width'}"
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         reach = around.ranges["input"].reach

@@ -28,6 +28,7 @@ def attachment_json(attachment: Attachment, around: Surroundings) -> dict[str, A
         "label": attachment.label,
         "position": attachment.position,
         "shifted_state": attachment.shifted_state,
+        **({"substeps": attachment.substeps} if attachment.substeps > 1 else {}),
         "surroundings": {
             "ranges": {name: asdict(r) for name, r in around.ranges.items()},
             "unmeasured": sorted(around.unmeasured),
@@ -81,6 +82,7 @@ def _with_layer(base: GreyBoxModel, attachments: Sequence[Mapping[str, Any]]) ->
                 label=entry.get("label", ""),
                 position=entry["position"],
                 shifted_state=entry["shifted_state"],
+                substeps=int(entry.get("substeps", 1)),
             )
         )
         around = entry["surroundings"]

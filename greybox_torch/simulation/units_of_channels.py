@@ -27,13 +27,22 @@ def _on_the_card(channel: Channel, wanted: str) -> str:
     if own and written_alike(own, wanted):
         said = f', as column "{channel.column}" is in it' if channel.column else ""
         return f'{unknown}expected unit = "{wanted}" without file_unit{said}'
-    if is_unit(own) and is_unit(wanted) and dimensionality(own) == dimensionality(wanted):
+    if own and _converted(own, wanted):
         return f'{unknown}expected unit = "{wanted}" with file_unit = "{own}", which converts the values of the file'
     if unknown or not is_unit(wanted):  # which no file_unit can be, nor be converted to
         known = ", ".join(f'"{unit}"' for unit in usual_units(wanted))
         such = f"with file_unit, a known unit such as {known}, or " if known else "with "
-        return f'{unknown}expected unit = "{wanted}", and where the file is in another unit {such}a scale'
+        return f'{unknown}expected unit = "{wanted}", and, where the file is in another unit, {such}a scale'
     return f'expected unit = "{wanted}" with file_unit = "{found}", or with a scale, to convert the values of the file'
+
+
+def _converted(found: str, wanted: str) -> bool:
+    """Whether values in one unit can be converted to another, and anybody can tell the factor."""
+    try:
+        conversion(found, wanted, "")
+    except UserError:
+        return False
+    return True
 
 
 def _by_hand(name: str, found: str, wanted: str) -> str:

@@ -114,7 +114,10 @@ def _stand(by_it: Judgement) -> bool:
 def free_runs_of(study: Study, state: SearchState, others: HeldOut | None, judged: Judgement) -> Judgement:
     """The free runs of a state, its hypothesis fitted to whole records, beside the plain refit of ``judged``."""
     final = finish(state.current, study.settings, study.budget, study.recorded)
-    return judged.having(final) if others is None else judged.having(final, others.places(state.current))
+    if others is None:
+        return judged.having(final)
+    others.fits(state.current)  # which tell where positions begin that no sensor shows
+    return judged.having(final, others.places(state.current))
 
 
 def judged_anew(

@@ -125,7 +125,7 @@ def _better_by_windows(
 
     Where every free run is lost, whole records say nothing of the values.
     """
-    by_windows = judged.having(as_windows_have_it(state.current, study.recorded), places)
+    by_windows = judged.having(as_windows_have_it(state.current, study.settings, study.recorded), places)
     better = by_windows.better_than(judged) or (judged.by_windows_alone and by_windows.holds)
     return by_windows if better and _empty(study, state, by_windows.augmented, gains) is None else None
 

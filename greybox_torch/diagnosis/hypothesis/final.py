@@ -118,11 +118,14 @@ def from_longest_windows(hypothesis: Hypothesis) -> Final:
     return Final(from_windows(hypothesis.fits[-1]), None)
 
 
-def as_windows_have_it(hypothesis: Hypothesis, records: Records | None = None) -> Final:
-    """The values of the longest windows, with the uncertainty that they have there.
+def as_windows_have_it(
+    hypothesis: Hypothesis, settings: DiagnosisSettings = DiagnosisSettings(), records: Records | None = None
+) -> Final:
+    """The values of the longest windows, with the uncertainty that they have there, and in the steps of :func:`finish`.
 
     Where they are asked for, whole records are no measure of the values: a run that is lost says nothing of what its error depends on.
     """
+    hypothesis = in_steps_for_whole_records(hypothesis, settings)
     problem = from_windows(hypothesis.fits[-1])
     run = whole_runs(hypothesis, [problem])[0] if records is None else _on_all(hypothesis, records, problem)
     return Final(run.at(run.start), _over_windows(hypothesis))

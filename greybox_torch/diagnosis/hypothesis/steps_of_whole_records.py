@@ -25,13 +25,13 @@ def in_steps_for_whole_records(hypothesis: Hypothesis, settings: DiagnosisSettin
     """A hypothesis with its newest effect in as many steps per sample as its free runs ask for, where those change a part of the error
     that counts (``settings.part_of_steps``); else as it is, as every pass takes as many times as long.
     """
-    if not isinstance(hypothesis.model, AugmentedModel):
+    if not hypothesis.effects or not isinstance(hypothesis.model, AugmentedModel):
         return hypothesis
     problem, simulator = from_windows(hypothesis.fits[-1]), hypothesis.simulator
     asked = fine_enough(simulator, problem)
     if asked.substeps <= simulator.substeps or not _changes(problem, simulator, asked, settings.part_of_steps):
         return hypothesis
-    *others, newest = hypothesis.model.attachments
+    *others, newest = hypothesis.effects
     effects = (*others, replace(newest, substeps=asked.substeps))
     model = AugmentedModel(hypothesis.model.base, effects, hypothesis.model.surroundings)
     fits = tuple(replace(f, problem=replace(f.problem, model=model)) for f in hypothesis.fits)

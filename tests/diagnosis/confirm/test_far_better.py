@@ -47,7 +47,7 @@ def test_of_several_effects_the_weakest_goes_where_free_runs_are_much_better_wit
     alone = judgement(stub, without)
     judged = judgement(stub, left, alone)
     monkeypatch.setattr(module, "take_back_weakest", lambda *args: fewer)
-    others = stub(places=lambda hypothesis: {})
+    others = stub(places=lambda hypothesis: {}, fits=lambda hypothesis: ())
     found = far_better(study, state, others, {}, judged)
     assert found == ((fewer, {"friction": SURE}, alone) if taken else None)
     assert far_better(study, fewer, others, {}, judged) is None, "one is left as it is"
@@ -73,7 +73,7 @@ def test_names_go_before_a_curve_that_free_runs_follow_far_less(
 
     monkeypatch.setattr(module, "drop_superfluous", compared)
     named = judgement(stub, by_names)
-    found = far_better(study, state, stub(places=lambda h: {}), {}, judgement(stub, left, named))
+    found = far_better(study, state, stub(places=lambda h: {}, fits=lambda h: ()), {}, judgement(stub, left, named))
     if not taken:
         assert found is None
         return
@@ -88,7 +88,15 @@ def test_what_windows_do_not_bear_out_stands_in_no_place(monkeypatch, stub, stud
     monkeypatch.setattr(module, "take_back_weakest", lambda *args: fewer)
     monkeypatch.setattr(module, "held_out_gains", lambda state, others: {"friction": Gain(-0.13, 0.07)})
     judged = judgement(stub, 0.43, judgement(stub, 0.02))
-    assert far_better(study, state, stub(places=lambda hypothesis: {}), {}, judged) is None
+    assert far_better(study, state, stub(places=lambda hypothesis: {}, fits=lambda hypothesis: ()), {}, judged) is None
+
+
+def test_free_runs_begin_where_windows_have_the_positions_that_no_sensor_shows(monkeypatch, stub, study) -> None:
+    """Which are known once the hypothesis is fitted to them."""
+    known: list[str] = []
+    others = stub(fits=known.append, places=lambda hypothesis: {"place": hypothesis} if hypothesis in known else {})
+    judged = stub(having=lambda final, places: (final, places))
+    assert module.free_runs_of(study, stub(current="ripple"), others, judged) == ("ripple", {"place": "ripple"})
 
 
 def test_without_held_out_experiments_nothing_stands_in_the_place_of_what_was_found(stub, study) -> None:
@@ -110,7 +118,9 @@ def test_where_all_effects_remove_too_little_it_is_enough_that_fewer_remove_more
     fewer = stub(effects=("lag",), compared_without=True, current="lag", has_curve=False)
     alone = judgement(stub, without)
     monkeypatch.setattr(module, "take_back_weakest", lambda *args: fewer)
-    found = far_better(study, state, stub(places=lambda hypothesis: {}), {}, judgement(stub, left, alone))
+    found = far_better(
+        study, state, stub(places=lambda hypothesis: {}, fits=lambda hypothesis: ()), {}, judgement(stub, left, alone)
+    )
     assert found == ((fewer, {"friction": SURE}, alone) if taken else None)
 
 
@@ -123,5 +133,5 @@ def test_curves_stand_in_the_place_of_several_names_where_free_runs_leave_far_le
     curves = stub(effects=("unknown 1", "unknown 2"), compared_without=True, current="curves", has_curve=True)
     monkeypatch.setattr(module, "curves_for_names", lambda *args: curves)
     drawn = judgement(stub, by_curves)
-    found = far_better(study, state, stub(places=lambda h: {}), {}, judgement(stub, left, drawn))
+    found = far_better(study, state, stub(places=lambda h: {}, fits=lambda h: ()), {}, judgement(stub, left, drawn))
     assert found == ((curves, {"friction": SURE}, drawn) if taken else None)

@@ -86,7 +86,7 @@ def test_where_whole_records_lead_astray_the_values_of_the_windows_may_stand(mon
         having=lambda final, places: by_windows,
         without_effects=lambda: "plain",
     )
-    monkeypatch.setattr(holding, "as_windows_have_it", lambda hypothesis, records: hypothesis)
+    monkeypatch.setattr(holding, "as_windows_have_it", lambda hypothesis, settings, records: hypothesis)
     monkeypatch.setattr(holding, "_empty", lambda *args: None)
     monkeypatch.setattr(holding, "_undone", lambda *args: None)
     monkeypatch.setattr(holding, "take_back_weakest", lambda *args: stub(effects=()))
@@ -113,7 +113,7 @@ def test_values_that_hold_on_some_experiments_give_way_to_better_ones_and_are_no
         return by_windows
 
     judged = stub(holds=True, unstable={"run 2"}, augmented="records", having=having, by_windows_alone=False)
-    monkeypatch.setattr(holding, "as_windows_have_it", lambda hypothesis, records: hypothesis)
+    monkeypatch.setattr(holding, "as_windows_have_it", lambda hypothesis, settings, records: hypothesis)
     monkeypatch.setattr(holding, "_empty", lambda *args: None)
     monkeypatch.setattr(holding, "_undone", lambda *args: None)
     left, gains, kept, told, whole = holding.holding(stub(settings=None, recorded=None), state, None, {}, judged)

@@ -55,7 +55,7 @@ def judged(stub, left: float, then: float = 1.0, holds: bool = True):
 def test_what_completes_the_model_is_asked_of_the_held_out_experiments(stub, study, drag) -> None:
     """Seen: a stage's drag (0.2 of the mismatch left, worse in one free run) and a small constant force: an unknown curve was told."""
     state = refusing(drag, candidate(stub, drag, "curve"), candidate(stub, drag, "bias"))
-    found = with_one_more(study, state, stub(places=lambda h: {}), judged(stub, 0.2, 0.005))
+    found = with_one_more(study, state, stub(places=lambda h: {}, fits=lambda h: ()), judged(stub, 0.2, 0.005))
     assert found is not None
     more, gains, by_it = found
     assert more.prefixes == {"drag", "bias"} and gains == {"drag": SURE, "bias": SURE}
@@ -64,17 +64,19 @@ def test_what_completes_the_model_is_asked_of_the_held_out_experiments(stub, stu
     step = more.step_of("bias")
     assert step is not None and step.taken is state.steps[-1].ranked[1]
     again = more.at(drag.current)
-    assert with_one_more(study, again, stub(places=lambda h: {}), judged(stub, 0.2, 0.005)) is None, "once"
+    assert (
+        with_one_more(study, again, stub(places=lambda h: {}, fits=lambda h: ()), judged(stub, 0.2, 0.005)) is None
+    ), "once"
 
 
 @pytest.mark.parametrize("what", [{"gain": 0.0}, {"completes": False}, {"sound": False}])
 def test_what_pays_nothing_completes_nothing_or_says_nothing_is_not_asked(stub, study, drag, what) -> None:
     state = refusing(drag, candidate(stub, drag, "bias", **what))
-    assert with_one_more(study, state, stub(places=lambda h: {}), judged(stub, 0.2, 0.005)) is None
+    assert with_one_more(study, state, stub(places=lambda h: {}, fits=lambda h: ()), judged(stub, 0.2, 0.005)) is None
 
 
 def test_free_runs_and_windows_have_to_bear_it_out(stub, study, drag, monkeypatch) -> None:
-    state, others = refusing(drag, candidate(stub, drag, "bias")), stub(places=lambda h: {})
+    state, others = refusing(drag, candidate(stub, drag, "bias")), stub(places=lambda h: {}, fits=lambda h: ())
     assert with_one_more(study, state, None, judged(stub, 0.2, 0.005)) is None, "nothing is held out"
     assert with_one_more(study, state, others, judged(stub, 0.2, 0.15)) is None, "no far better"
     assert with_one_more(study, state, others, judged(stub, 3.0, 0.8)) is None, "no far better than without any effect"
@@ -84,7 +86,7 @@ def test_free_runs_and_windows_have_to_bear_it_out(stub, study, drag, monkeypatc
 
 
 def test_only_beside_the_effects_that_are_left_and_none_beside_a_curve(stub, study, drag) -> None:
-    others, free = stub(places=lambda h: {}), judged(stub, 0.2, 0.005)
+    others, free = stub(places=lambda h: {}, fits=lambda h: ()), judged(stub, 0.2, 0.005)
     before = refusing(SearchState(drag.plain, drag.plain), candidate(stub, drag, "bias"))
     assert with_one_more(study, before.at(drag.current), others, free) is None, "that step had no drag"
     curve = SearchState(drag.plain, hypothesis(stub, "curve"))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from greybox_torch.diagnosis.hypothesis.steps_of_whole_records import in_steps_f
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.friction import CoulombFriction
+from greybox_torch.mechanisms.stored import restored_model, stored_effects
 
 from ..conftest import STEP, Begun, turned
 
@@ -59,3 +62,16 @@ def test_steps_that_change_little_stay_as_they_are(data_set, motor, begun) -> No
 def test_the_model_as_it_stands_keeps_its_steps(motor_data, motor, begun) -> None:
     plain = begun(motor_data(), motor).plain
     assert in_steps_for_whole_records(plain, DiagnosisSettings()) is plain
+
+
+def test_effects_that_the_model_came_with_are_the_models(data_set, motor, begun) -> None:
+    found = with_friction(data_set, motor, begun, 0.02).state.current
+    given = replace(found, effects=())
+    assert in_steps_for_whole_records(given, DiagnosisSettings()) is given
+
+
+def test_a_stored_effect_keeps_its_steps(data_set, motor, begun) -> None:
+    search = with_friction(data_set, motor, begun, 0.02)
+    finer = in_steps_for_whole_records(search.state.current, search.study.settings)
+    again = restored_model(motor, stored_effects(finer.model))
+    assert again.least_substeps == finer.model.least_substeps > 1
