@@ -25,7 +25,7 @@ class Kiln(gt.GreyBoxModel):
         ("Heat [kW]", 'unit = "W", scale = 1000.0', 'expected unit = "kW" with file_unit = "W"'),
         (
             "Heat", 'unit = "kWatt"',
-            "'kWatt' is no unit that is known; expected unit = \"kW\", and where the file is in another unit "
+            "'kWatt' is no unit that is known; expected unit = \"kW\", and, where the file is in another unit, "
             'with file_unit, a known unit such as "W", "kW", "MW", or a scale',
         ),
         ("Heat [kW]", 'unit = "kWatt"', "'kWatt' is no unit that is known; expected unit = \"kW\" without"),
