@@ -7,7 +7,7 @@ from typing import Any
 
 import torch
 
-from greybox_torch.mechanisms.by_direction import ByDirection
+from greybox_torch.mechanisms.by_direction import ByDirection, larger_forms
 from greybox_torch.mechanisms.degenerate import too_long
 from greybox_torch.mechanisms.lag import Lag
 from greybox_torch.mechanisms.linear_law import LinearLaw, Of, Per
@@ -172,9 +172,7 @@ class TorqueSaturation(ByDirection):
 
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
         """With limits that differ by direction, with limited power, whose base speed begins as it is declared, and with both."""
-        forms = ((True, False), (False, True), (True, True))
-        own = (self.by_direction, self.limited_power)
-        further = [f for f in forms if f != own and f[0] >= own[0] and f[1] >= own[1]]
+        further = larger_forms((self.by_direction, self.limited_power))
         return [(TorqueSaturation(*f), {**({"asymmetry": 0.0} if f[0] else {}), **values}) for f in further]
 
     def acts_beyond(self, values: Mapping[str, float]) -> tuple[float | None, float | None] | None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import torch
 
-from greybox_torch.mechanisms.by_direction import ByDirection
+from greybox_torch.mechanisms.by_direction import ByDirection, larger_forms
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.soft_limit import log_of_limited
 from greybox_torch.mechanisms.transmission import dead_zone
@@ -71,10 +71,7 @@ class ActuatorDeadzone(ByDirection):
 
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
         """With ends that differ by direction, with round corners, and with both."""
-        forms = ((True, False), (False, True), (True, True))
-        own = (self.by_direction, self.soft)
-        further = [f for f in forms if f != own and f[0] >= own[0] and f[1] >= own[1]]
-        begun = {"asymmetry": 0.0, "softness": FIRST_SOFTNESS}
+        begun, further = {"asymmetry": 0.0, "softness": FIRST_SOFTNESS}, larger_forms((self.by_direction, self.soft))
         return [
             (ActuatorDeadzone(*f), {**{n: begun[n] for n, has in zip(begun, f, strict=True) if has}, **values})
             for f in further

@@ -45,6 +45,12 @@ class ByDirection(Mechanism):
         return type(self)(plainly_not_odd(signals["input"].numpy(), force, weight))
 
 
+def larger_forms(own: tuple[bool, bool]) -> list[tuple[bool, bool]]:
+    """Of a law with two options, the pairs in which no option of its ``own`` is lost and another one joins, the first option first."""
+    forms = ((True, False), (False, True), (True, True))
+    return [form for form in forms if form != own and form[0] >= own[0] and form[1] >= own[1]]
+
+
 def plainly_not_odd(signal: np.ndarray, change: np.ndarray, weight: np.ndarray) -> bool:
     """Whether a curve (N,) over a signal (N,), points counting by weight (N,), is not odd; False where it was on one side of zero only."""
     order = np.argsort(signal)

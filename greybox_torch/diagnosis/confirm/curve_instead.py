@@ -40,10 +40,11 @@ def curve_instead(study: Study, state: SearchState, others: HeldOut | None, judg
         steps=(*state.steps, SelectionStep(step.screened, step.parent, tuple(drawn), best)),
         without={best.candidate.attachment.prefix: state.plain},
     )
-    than = judged if state.effects else None
-    return leaving_far_less(
-        study, curve, others, judged, lambda by_it: by_it.mismatch(False) if than is None else than.mismatch(True)
-    )
+
+    def left(by_it: Judgement) -> float:
+        return judged.mismatch(True) if state.effects else by_it.mismatch(False)
+
+    return leaving_far_less(study, curve, others, judged, left)
 
 
 def curves_of(study: Study, step: SelectionStep) -> list[RankedCandidate]:
