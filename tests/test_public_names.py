@@ -50,6 +50,17 @@ def test_import_is_light(module: str, heavy: tuple[str, ...]) -> None:
     assert result.stdout.strip() == "[]"
 
 
+def test_columns_that_tell_no_unit_load_no_unit_registry() -> None:
+    """It is a twentieth of the time that a fit takes."""
+    card = Path(greybox_torch.__file__).parent / "demo" / "dataset.toml"
+    program = (
+        "import sys; from pathlib import Path; from greybox_torch.drafting.contradicted import contradictions; "
+        f"print(contradictions(Path({str(card)!r})), 'pint' in sys.modules)"
+    )
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert result.stdout.strip() == "[] False"
+
+
 def test_no_public_name_is_hidden_by_a_package() -> None:
     """A package `greybox_torch.NAME` would replace the public NAME as soon as anything imports it."""
     home = Path(greybox_torch.__file__).parent

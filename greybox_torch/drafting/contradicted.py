@@ -87,7 +87,7 @@ def _of_channel(place: str, column: str, entry: ChannelEntry, columns: set[str])
         )
         yield Contradiction(place, column, "counts", said, write)
     rate = "" if entry.derivative is None or entry.file_unit else "/s"
-    told, sure = _unit_of(column, columns, _dimension(said) == _TEMPERATURE)
+    told, sure = _unit_of(column, columns, said)
     if not (told and said and _differ(told + rate, said)):
         return
     if sure or _dimension(told + rate) == _dimension(said):
@@ -97,12 +97,15 @@ def _of_channel(place: str, column: str, entry: ChannelEntry, columns: set[str])
         yield Contradiction(place, column, told, said, f"{write}; or, if the name is wrong, scale = 1.0")
 
 
-def _unit_of(column: str, columns: set[str], of_temperature: bool) -> tuple[str, bool]:
-    """The unit that a name tells, and whether it can mean nothing else."""
+def _unit_of(column: str, columns: set[str], said: str) -> tuple[str, bool]:
+    """The unit that a name tells beside what the card says, and whether it can mean nothing else.
+
+    The unit registry, which takes its time to load, is asked only where a letter may mean a temperature.
+    """
     told, bracketed = unit_in(column), column.rstrip().endswith(("]", ")"))
     if bracketed:
         degrees = _DEGREES.fullmatch(told)
-        if degrees and (len(told) > 1 or of_temperature):
+        if degrees and (len(told) > 1 or _dimension(said) == _TEMPERATURE):
             told = f"deg{degrees[1]}"
         known = all(_KNOWN.fullmatch(word) for word in re.findall(r"[^\W\d_]+", told.replace("min", "")))
         alone = told in ("deg", "°", "min", "degrees", "K")  # of a temperature, or the least, or a gain
