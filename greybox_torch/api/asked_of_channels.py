@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from greybox_torch.api.exchanged import exchanged
 from greybox_torch.api.rescaled import rescaled
 from greybox_torch.api.short_refits import beginnings
+from greybox_torch.api.turned_in_one import turned_in_one
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Score, held_out_scores, mean_fit
 from greybox_torch.model import GreyBoxModel
@@ -27,8 +28,8 @@ def asked_where_poor(
     simulator: Callable[[], Simulator],
     progress: Callable[[str], None],
 ) -> str | None:
-    """The question of :func:`exchanged`, or else of :func:`rescaled`, where the re-estimated model, with the scores ``refit``, is poor on
-    the validation experiments.
+    """The question of :func:`exchanged`, else of :func:`turned_in_one`, else of :func:`rescaled`, where the re-estimated model, with the
+    scores ``refit``, is poor on the validation experiments.
 
     Args:
         simulator: makes the one that is needed then.
@@ -40,7 +41,8 @@ def asked_where_poor(
         "The validation fit is poor: trying short refits with channels exchanged, of the other sign, or of another scale"
     )
     made, achieved = simulator(), mean_fit(held_out_scores(refit))
-    question = exchanged(data, model, made, achieved) or rescaled(data, model, made, achieved)
+    ways = (exchanged, turned_in_one, rescaled)
+    question = next((asked for way in ways if (asked := way(data, model, made, achieved))), None)
     progress(FAR_BETTER_SO if question else NOTHING_CHANGED)
     return question
 

@@ -5,19 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import combinations
 
-import numpy as np
-
-from greybox_torch.api.short_refits import (
-    AS_GOOD,
-    REFITTED,
-    Change,
-    beginnings,
-    far_better,
-    fit_after,
-    judging,
-)
+from greybox_torch.api.short_refits import REFITTED, Change, asked_of, beginnings, far_better, fit_after
 from greybox_torch.data import DataSet
-from greybox_torch.diagnosis.digits import digits
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.name_lists import listed
 from greybox_torch.simulation.simulator import Simulator
@@ -41,18 +30,7 @@ def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved
         return None
     by_start = {k: fit_after(short, model, simulator, change, refitted=False) for k, change in enumerate(changes)}
     tried = [changes[k] for k in sorted(sorted(by_start, key=lambda k: -by_start[k])[:REFITTED])]
-    found = far_better(short, model, simulator, tried, achieved)
-    if found is None:
-        return None
-    left, lefts = found
-    least = min(lefts)
-    asked = [change.question for change, one in zip(tried, lefts, strict=True) if one <= AS_GOOD * least]
-    question = ", or ".join(asked)
-    as_it_is = f" ({digits(100.0 - left, 3)} % as it is)" if np.isfinite(left) else ""
-    return (
-        f"{question[0].upper()}{question[1:]}? So changed, a short refit reaches a mean fit of {100.0 - least:.3g} % on "
-        f"{judging(data)}{as_it_is}. If so, mend the card's columns or scale; if not, disregard this"
-    )
+    return asked_of(tried, far_better(short, model, simulator, tried, achieved), data, "the card's columns or scale")
 
 
 def _changes(model: GreyBoxModel) -> Iterator[Change]:

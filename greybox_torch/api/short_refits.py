@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from greybox_torch.data import DataSet, Recording
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.comparison import compare, held_out_scores, mean_fit
 from greybox_torch.estimate.fit import fit_records
@@ -36,15 +37,18 @@ AS_GOOD = 1.2
 @dataclass(frozen=True)
 class Change:
     """A channel by which another is read instead, by name, and how a reader is asked; ``factor`` by which its values are multiplied, −1
-    where its sign is turned.
+    where its sign is turned; ``only`` the experiment that is changed, all where it is empty.
     """
 
     read: Mapping[str, str]
     question: str
     factor: float = 1.0
+    only: str = ""
 
     def of(self, recording: Recording) -> Recording:
         """A recording with the change."""
+        if self.only not in ("", recording.name):
+            return recording
         changed = {name: self.factor * recording.signals[other] for name, other in self.read.items()}
         between = {name: recording.between[other] for name, other in self.read.items() if other in recording.between}
         kept = {name: marked for name, marked in recording.between.items() if name not in self.read}
@@ -74,9 +78,14 @@ def beginnings(data: DataSet) -> DataSet | None:
 def fit_after(
     data: DataSet, model: GreyBoxModel, simulator: Simulator, change: Change, *, refitted: bool = True
 ) -> float:
-    """The mean fit (%) on the validation experiments after a change, of a short refit or of the start values; -inf where none simulates."""
+    """The mean fit (%) on the validation experiments after a change, of a short refit or of the start values; -inf where none simulates.
+
+    That of the start values after a change of one experiment is told of that experiment.
+    """
     runs = [change.of(recording) for recording in data.recordings]
     judged = [recording for recording in runs if recording.role == "validation"] or runs
+    if change.only and not refitted:
+        judged = [recording for recording in runs if recording.name == change.only]
     try:
         values = None
         if refitted:
@@ -105,6 +114,22 @@ def far_better(
     lefts = [100.0 - fit_after(short, model, simulator, change) for change in tried]
     least = min(lefts, default=np.inf)
     return (left, lefts) if least < min(FAR_BETTER * left, 100.0 - FOLLOWS) else None
+
+
+def asked_of(tried: Sequence[Change], found: tuple[float, list[float]] | None, data: DataSet, mend: str) -> str | None:
+    """The question whether the best of the changes that were refitted is so, or one that is as good; None where :func:`far_better` has
+    found none. ``mend``: what to do then.
+    """
+    if found is None:
+        return None
+    left, lefts = found
+    asked = [change.question for change, one in zip(tried, lefts, strict=True) if one <= AS_GOOD * min(lefts)]
+    question = ", or ".join(asked)
+    as_it_is = f" ({digits(100.0 - left, 3)} % as it is)" if np.isfinite(left) else ""
+    return (
+        f"{question[0].upper()}{question[1:]}? So changed, a short refit reaches a mean fit of {100.0 - min(lefts):.3g} % on "
+        f"{judging(data)}{as_it_is}. If so, mend {mend}; if not, disregard this"
+    )
 
 
 def judging(data: DataSet) -> str:

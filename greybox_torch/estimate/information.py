@@ -70,7 +70,8 @@ class Information:
         diagonal, own = np.diag(self.hessian), np.abs(self.z)
         energy = max(energy_of(self.run), 1e-300)
         parameter = np.arange(len(self.z)) < self.run.n_parameters
-        unseen = parameter & (own > 0) & (own**2 * diagonal < UNSEEN[self.precision] * energy)
+        moved = own * np.sqrt(np.maximum(diagonal, 0.0))  # not squared: what ran away would overflow
+        unseen = parameter & (own > 0) & (moved < np.sqrt(UNSEEN[self.precision] * energy))
         return np.flatnonzero(unseen | (diagonal <= 0)).tolist()
 
     def flat_directions(self) -> list[np.ndarray]:

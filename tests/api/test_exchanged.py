@@ -78,6 +78,19 @@ def test_a_slip_among_the_channels_is_asked_for(read: dict[str, str], sign: dict
     assert f"{found.question}." in found._advice
 
 
+@pytest.mark.parametrize("channel", ["P1", "T2"])
+@pytest.mark.parametrize("where", ["first", "second", "held out"])
+def test_a_sign_that_is_turned_in_one_experiment_is_asked_for(channel: str, where: str) -> None:
+    """Seen: a current sensor mounted the other way round in one of three recordings, and not a word."""
+    roles = {"first": "estimation", "second": "estimation", "held out": "validation"}
+    runs = [
+        replace(recorded(role, k, {}, {channel: -1.0} if name == where else {}), name=name)
+        for k, (name, role) in enumerate(roles.items())
+    ]
+    question = gt.fit(Plate(), gt.DataSet(runs)).question
+    assert question is not None and f"the sign of {channel} turned in {where} alone" in question
+
+
 def test_nothing_is_asked_where_the_fit_is_good() -> None:
     assert fitted().question is None and MOST_SAMPLES >= COUNT
 
@@ -140,7 +153,8 @@ def test_the_log_says_what_came_of_it(found: str | None, monkeypatch: pytest.Mon
     """Seen: "The validation fit is poor: short refits with channels exchanged, or of the other sign", and no more of it."""
     told: list[str] = []
     monkeypatch.setattr(asked_of_channels, "exchanged", lambda *given: found)
-    monkeypatch.setattr(asked_of_channels, "rescaled", lambda *given: None)
+    for other in ("rescaled", "turned_in_one"):
+        monkeypatch.setattr(asked_of_channels, other, lambda *given: None)
     data = gt.DataSet([recorded(role, k, {}, {}) for k, role in enumerate(("estimation", "validation"))])
     poor = [Score("1", "validation", "T1", 20.0, 1.0)]
     assert asked_of_channels.asked_where_poor(data, Plate(), poor, lambda: None, told.append) == found  # pyright: ignore
