@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from greybox_torch.checking.clipped_outputs import clipped_outputs
 from greybox_torch.checking.constant_channels import constant_channels
 from greybox_torch.checking.joined_files import joined_files
 from greybox_torch.checking.late_sensors import late_sensors
@@ -11,6 +12,7 @@ from greybox_torch.checking.lone_samples import lone_samples
 from greybox_torch.checking.missing_inputs import missing_inputs
 from greybox_torch.checking.shared_rows import shared_rows
 from greybox_torch.checking.short_records import short_records
+from greybox_torch.checking.stuck_sensors import stuck_sensors
 from greybox_torch.checking.time_stamps import odd_time_stamps
 from greybox_torch.checking.wrapped_channels import wrapped_channels
 from greybox_torch.data import DataSet
@@ -47,6 +49,8 @@ def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning
         *shared_rows(data),
         *constant_channels(data, model),
         *lone_samples(data, joined),
+        *stuck_sensors(data, model),
+        *(clipped_outputs(data, model) if model is not None else ()),
         *wrapped_channels(data),
         *(missing_inputs(data, model) if model is not None else ()),
         *(late_sensors(data, model) if model is not None else ()),

@@ -9,16 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from greybox_torch.checking.as_in_the_file import as_in_the_file
 from greybox_torch.checking.joined_files import JoinedFiles
-from greybox_torch.data import DataSet, Recording
-from greybox_torch.data.card import TIME, read_card
+from greybox_torch.data import DataSet
 from greybox_torch.data.data_warning import InASentence
-from greybox_torch.data.error_values import without_error_values
-from greybox_torch.data.over_files import over_files
-from greybox_torch.data.readers import read_table
 from greybox_torch.data.readers.table import Table
-from greybox_torch.data.source import source_of
-from greybox_torch.errors import UserError
 
 _ODD = 0.05
 """Share of the samples at either end that the range leaves out, so that the error values themselves do not widen it."""
@@ -82,7 +77,7 @@ def lone_samples(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterator[L
             if lone.size:
                 k = int(lone[np.argmax(distance)])
                 here, before, after = (int(known[i]) for i in (k, k - 1, k + 1))
-                place, column = (own.place(here), None) if own else _read_again(data, recording, name, here)
+                place, column = (own.place(here), None) if own else as_in_the_file(data, recording, name, here)
                 shown = values if column is None else column
                 yield LoneSample(
                     recording.name,
@@ -142,33 +137,3 @@ def _least_where_smooth(values: NDArray[np.float64], doubted: NDArray[np.bool_])
     extent = float(np.ptp(rest))
     smooth = 0.0 < float(np.abs(np.diff(rest)).max()) <= _SMOOTH * extent
     return _RANGES_OF_SMOOTH * extent if smooth else math.inf
-
-
-def _read_again(data: DataSet, recording: Recording, name: str, sample: int) -> tuple[str, NDArray[np.float64] | None]:
-    """Where a sample stands, and the samples as the file has them; None where the channel is not a column of one."""
-    try:
-        found = _in_its_file(data, recording, name, sample)
-    except (UserError, KeyError):  # the card or the file was replaced meanwhile
-        found = None
-    return found or (f"sample {sample} (the first is 0)", None)
-
-
-def _in_its_file(data: DataSet, recording: Recording, name: str, sample: int) -> tuple[str, NDArray[np.float64]] | None:
-    if data.path is None or recording.source is None:
-        return None
-    card = read_card(data.path)
-    said = {f"{entry.name}{end}": entry for entry in card.experiment for end in ("", " (held out)")}.get(recording.name)
-    if said is None or card.decimate or card.resample or card.channels[name].derivative:
-        return None
-    formula = card.channels[name].expression(said.columns.get(name))
-    columns = formula.columns
-    if len(columns) != 1:
-        return None
-    clock = said.columns.get(TIME, card.time.column) if card.time else None
-    needed = [*columns, clock] if clock and said.join == "time" and clock not in columns else columns
-    files = [data.path.parent / file for file in said.file]
-    read = without_error_values(over_files(files, said.join, read_table), card.channels, {name: formula})
-    source = source_of(files, said.join, needed, clock, read)
-    start, stop = recording.rows
-    values = source.columns[columns[0]][start:stop]
-    return (source.place(columns[0], start + sample), values) if len(values) == len(recording.time) else None
