@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.checking.as_in_the_file import as_in_the_file
+from greybox_torch.checking.error_codes import far_off
 from greybox_torch.checking.sensor_noise import LONG, Runs, noise_of
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.data_warning import InASentence
@@ -82,10 +83,13 @@ def _plateaus(values: NDArray[np.float64]) -> Iterator[tuple[bool, list[tuple[in
         largest: (of_run == end) & (runs.lengths >= _PLATEAU) for largest, end in ends.items() if _often(runs, end)
     }
     noise = noise_of(runs, np.isin(of_run, list(ends.values())) | (runs.lengths >= LONG)) if found else None
+    away = (
+        [float(values[at[0]]) for at in far_off(values)] if noise else []
+    )  # the range of a sensor ends where it measures
     for largest, flat in found.items():
         pairs = zip(runs.starts[flat].tolist(), runs.lengths[flat].tolist(), strict=True)
         plateaus = [(start, start + length) for start, length in pairs]
-        if noise is not None and any(noise.beside(*one) for one in plateaus):
+        if noise is not None and ends[largest] not in away and any(noise.beside(*one) for one in plateaus):
             yield largest, plateaus
 
 

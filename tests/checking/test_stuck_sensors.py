@@ -202,6 +202,11 @@ def test_a_million_samples_take_little_time(rotor: GreyBoxModel) -> None:
     assert time.perf_counter() - begin < 3.0
 
 
+def test_an_error_code_is_no_end_of_a_range(rotor: GreyBoxModel) -> None:
+    (one,) = told(rotor, np.where(TIME % 7.0 < 2.0, -9999.0, WAVE + NOISE))
+    assert "found -9999 before" in one
+
+
 def test_inspect_tells_it(rotor: GreyBoxModel) -> None:
     run = Recording.from_arrays("run", {"voltage": STEPS, "speed": held(WAVE + NOISE, 700, 1000)}, sample_time=0.01)
     (one,) = gt.inspect(DataSet([run], held_out_by_default=False), rotor).warnings
