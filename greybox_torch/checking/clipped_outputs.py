@@ -83,9 +83,8 @@ def _plateaus(values: NDArray[np.float64]) -> Iterator[tuple[bool, list[tuple[in
         largest: (of_run == end) & (runs.lengths >= _PLATEAU) for largest, end in ends.items() if _often(runs, end)
     }
     noise = noise_of(runs, np.isin(of_run, list(ends.values())) | (runs.lengths >= LONG)) if found else None
-    away = (
-        [float(values[at[0]]) for at in far_off(values)] if noise else []
-    )  # the range of a sensor ends where it measures
+    # the range of a sensor ends where it measures, and not at an error code
+    away = [float(values[at[0]]) for at in far_off(values)] if noise else []
     for largest, flat in found.items():
         pairs = zip(runs.starts[flat].tolist(), runs.lengths[flat].tolist(), strict=True)
         plateaus = [(start, start + length) for start, length in pairs]
