@@ -12,6 +12,7 @@ import numpy as np
 
 from greybox_torch.api.check_result import CheckResult
 from greybox_torch.api.data_warnings import all_warnings
+from greybox_torch.api.refused_tables import RefusedTable, found_and_expected
 from greybox_torch.checking.examine import examine
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.checking.negative_masses import negative_masses
@@ -21,11 +22,9 @@ from greybox_torch.checking.recorded_points import recorded_points
 from greybox_torch.checking.source import source_of
 from greybox_torch.checking.start_states import unmeasured_starts
 from greybox_torch.data import DataSet
-from greybox_torch.diagnosis.beliefs import beliefs_from_mapping
-from greybox_torch.diagnosis.settings import settings_from_mapping
+from greybox_torch.data.data_warning import DataWarning
 from greybox_torch.errors import ArgumentError, Kind, UserError
 from greybox_torch.estimate.problem import Problem, make_problem
-from greybox_torch.experiment_design.limits import limits_of
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.systems import model_class
 from greybox_torch.systems.user_code import users_code
@@ -71,7 +70,7 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
             told = {f.line for f in findings if f.topic == "numbers"}
             more, values = _with_data(data, usable, told)
             findings += more
-        findings += [Finding("warning", "card", one.found, one.write, data.path) for one in all_warnings(data, usable)]
+        findings += [_warned(one, data) for one in all_warnings(data, usable)]
     return CheckResult(
         name, replace(examined, findings=in_order(findings)), in_order(findings), values, data is not None
     )
@@ -111,7 +110,11 @@ def _with_data(
     recorded = () if starts else not_finite_where_recorded(model, *recorded_points(problem), source)
     lost = [*starts, *(f for f in recorded if f.line not in told)]
     of_values = [*lost, *negative_masses(model, source, values)]
-    return [*of_values, *_tables(data, model)], values
+    return of_values, values
+
+
+def _warned(one: DataWarning, data: DataSet) -> Finding:
+    return Finding("error" if isinstance(one, RefusedTable) else "warning", "card", one.found, one.write, data.path)
 
 
 def _starts(data: DataSet, model: GreyBoxModel) -> list[Points]:
@@ -131,21 +134,5 @@ def _begun(problem: Problem) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     return {name: (x, u) for name, x, u in starts}
 
 
-def _tables(data: DataSet, model: GreyBoxModel) -> list[Finding]:
-    """What `greybox diagnose` and `greybox design` would refuse of the card's tables for them."""
-    found = []
-    for read in (
-        partial(beliefs_from_mapping, data.beliefs, model, data.place("[beliefs]")),
-        partial(settings_from_mapping, data.diagnosis, data.place("[diagnosis]")),
-        partial(limits_of, data, model, data.limits, data.place("[limits]")),
-    ):
-        try:
-            read()
-        except UserError as error:
-            found.append(_of_the_card(error, data))
-    return found
-
-
 def _of_the_card(error: UserError, data: DataSet) -> Finding:
-    found, _, write = str(error).removeprefix(f"{data.path}: ").partition("; expected ")
-    return Finding("error", "card", found, write or "what fits the model", data.path)
+    return Finding("error", "card", *found_and_expected(error, data), data.path)

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from greybox_torch.api.refused_tables import refused_tables
+from greybox_torch.checking.clipped_outputs import clipped_outputs
 from greybox_torch.checking.constant_channels import constant_channels
 from greybox_torch.checking.joined_files import joined_files
 from greybox_torch.checking.late_sensors import late_sensors
 from greybox_torch.checking.lone_samples import lone_samples
 from greybox_torch.checking.missing_inputs import missing_inputs
+from greybox_torch.checking.shared_columns import shared_columns
 from greybox_torch.checking.shared_rows import shared_rows
 from greybox_torch.checking.short_records import short_records
+from greybox_torch.checking.stuck_sensors import stuck_sensors
 from greybox_torch.checking.time_stamps import odd_time_stamps
 from greybox_torch.checking.wrapped_channels import wrapped_channels
 from greybox_torch.data import DataSet
@@ -34,7 +38,8 @@ class NothingToEstimateFrom(InASentence):
 def all_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning]:
     """Those of :func:`data_warnings`, and before them what other commands refuse: for those that look at data before anything is done."""
     refused = () if data.estimation() else (NothingToEstimateFrom(),)
-    return [*refused, *data_warnings(data, model)]
+    tables = () if model is None else refused_tables(data, model)
+    return [*refused, *tables, *data_warnings(data, model)]
 
 
 def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning]:
@@ -44,9 +49,12 @@ def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning
         *contradictions(data.path),
         *contradicted_steps(data),
         *odd_time_stamps(data, joined),
+        *shared_columns(data),
         *shared_rows(data),
         *constant_channels(data, model),
         *lone_samples(data, joined),
+        *stuck_sensors(data, model),
+        *(clipped_outputs(data, model) if model is not None else ()),
         *wrapped_channels(data),
         *(missing_inputs(data, model) if model is not None else ()),
         *(late_sensors(data, model) if model is not None else ()),

@@ -1,4 +1,4 @@
-"""Single samples far away from their neighbours on both sides, as a logger writes -9999 where it has no value."""
+"""Error codes such as -9999, and single samples far away from both neighbours: what loggers write where they have no value."""
 
 from __future__ import annotations
 
@@ -9,16 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from greybox_torch.checking.as_in_the_file import as_in_the_file
+from greybox_torch.checking.error_codes import far_off, is_error_code
 from greybox_torch.checking.joined_files import JoinedFiles
-from greybox_torch.data import DataSet, Recording
-from greybox_torch.data.card import TIME, read_card
+from greybox_torch.data import DataSet
 from greybox_torch.data.data_warning import InASentence
-from greybox_torch.data.error_values import without_error_values
-from greybox_torch.data.over_files import over_files
-from greybox_torch.data.readers import read_table
 from greybox_torch.data.readers.table import Table
-from greybox_torch.data.source import source_of
-from greybox_torch.errors import UserError
 
 _ODD = 0.05
 """Share of the samples at either end that the range leaves out, so that the error values themselves do not widen it."""
@@ -31,25 +27,26 @@ channel that rests otherwise leaves its range far behind, but is seldom that far
 _RANGES_OF_STEPS = 100.0
 """In ranges, where most samples lie between their neighbours exactly and there is no noise to measure with: an encoder at rest may flicker,
 an input in steps may have a single pulse. -9999 is that far away wherever a channel moves within less than 100 units."""
-_SMOOTH = 0.05
+_SMOOTH = 0.1
 """Share of its range up to which a channel moves in one sample where it is smooth, as a position is (both without the samples in doubt)."""
 _RANGES_OF_SMOOTH = 1.5
-"""In such ranges: what is smooth elsewhere does not go that far and come back at once, in 30 times its fastest step at least. Seen: an
-angle of 360° where a knee moves within 123°."""
+"""In such ranges: what is smooth elsewhere does not go that far and come back at once, in 15 times its fastest step at least. Seen: an
+angle of 360° where a knee moves within 123°, 5000 rpm where a pump runs with up to 2740."""
 
 
 @dataclass(frozen=True)
 class LoneSample(InASentence):
-    """The farthest of ``count`` such samples of a channel in an experiment; ``place`` is its line and column where a file has it,
-    ``on_card`` whether the values are those of the file, as a card would name them.
+    """One of ``count`` such samples of a channel in an experiment; ``place`` is its line and column where a file has it,
+    ``on_card`` whether the values are those of the file, as a card would name them. ``before`` and ``after`` are the nearest other samples,
+    None where it begins or ends the recording.
     """
 
     experiment: str
     channel: str
     place: str
     value: float
-    before: float
-    after: float
+    before: float | None
+    after: float | None
     count: int
     on_card: bool = False
 
@@ -58,9 +55,15 @@ class LoneSample(InASentence):
         """What is there, in a sentence."""
         others = f" (and {self.count - 1} more such sample{'s' * (self.count > 2)})" if self.count > 1 else ""
         return (
-            f'[[experiment]] "{self.experiment}", channel "{self.channel}": {self.place}: found {self.value:.6g} between '
-            f"{self.before:.6g} and {self.after:.6g}{others}, as loggers write where a value is missing"
+            f'[[experiment]] "{self.experiment}", channel "{self.channel}": {self.place}: found {self.value:.6g} {self._among}'
+            f"{others}, as loggers write where a value is missing"
         )
+
+    @property
+    def _among(self) -> str:
+        if self.before is not None and self.after is not None:
+            return f"between {self.before:.6g} and {self.after:.6g}"
+        return f"before {self.after:.6g}" if self.before is None else f"behind {self.before:.6g}"
 
     @property
     def write(self) -> str:
@@ -70,7 +73,11 @@ class LoneSample(InASentence):
 
 
 def lone_samples(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterator[LoneSample]:
-    """Of every channel of every experiment the farthest such sample, if there is one; ``joined`` are by recording."""
+    """Of every channel of every experiment the first sample with an error code, or else the farthest lone one, if there is one.
+
+    Args:
+        joined: by recording.
+    """
     for recording in data.recordings:
         for name, signal in recording.signals.items():
             # where a file was joined in time, its samples: in between, straight lines spread an error value over several
@@ -79,21 +86,27 @@ def lone_samples(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterator[L
             values = signal if own is None else own.values
             known = np.flatnonzero(~np.isnan(values))
             lone, distance = _lone(values[known])
-            if lone.size:
-                k = int(lone[np.argmax(distance)])
-                here, before, after = (int(known[i]) for i in (k, k - 1, k + 1))
-                place, column = (own.place(here), None) if own else _read_again(data, recording, name, here)
+            doubted = [(known[at], True) for at in far_off(values[known])]
+            doubted += [(known[lone[np.argsort(-distance, kind="stable")]], False)] if lone.size else []
+            for at, if_code in doubted:
+                here = int(at[0])
+                place, column = (own.place(here), None) if own else as_in_the_file(data, recording, name, here)
                 shown = values if column is None else column
+                if if_code and not is_error_code(float(shown[here])):
+                    continue
+                others = known[values[known] != values[here]]
+                before, after = others[others < here][-1:], others[others > here][:1]
                 yield LoneSample(
                     recording.name,
                     name,
                     place,
                     float(shown[here]),
-                    float(shown[before]),
-                    float(shown[after]),
-                    len(lone),
+                    float(shown[before[0]]) if before.size else None,
+                    float(shown[after[0]]) if after.size else None,
+                    len(at),
                     own is not None or column is not None,
                 )
+                break
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,33 +155,3 @@ def _least_where_smooth(values: NDArray[np.float64], doubted: NDArray[np.bool_])
     extent = float(np.ptp(rest))
     smooth = 0.0 < float(np.abs(np.diff(rest)).max()) <= _SMOOTH * extent
     return _RANGES_OF_SMOOTH * extent if smooth else math.inf
-
-
-def _read_again(data: DataSet, recording: Recording, name: str, sample: int) -> tuple[str, NDArray[np.float64] | None]:
-    """Where a sample stands, and the samples as the file has them; None where the channel is not a column of one."""
-    try:
-        found = _in_its_file(data, recording, name, sample)
-    except (UserError, KeyError):  # the card or the file was replaced meanwhile
-        found = None
-    return found or (f"sample {sample} (the first is 0)", None)
-
-
-def _in_its_file(data: DataSet, recording: Recording, name: str, sample: int) -> tuple[str, NDArray[np.float64]] | None:
-    if data.path is None or recording.source is None:
-        return None
-    card = read_card(data.path)
-    said = {f"{entry.name}{end}": entry for entry in card.experiment for end in ("", " (held out)")}.get(recording.name)
-    if said is None or card.decimate or card.resample or card.channels[name].derivative:
-        return None
-    formula = card.channels[name].expression(said.columns.get(name))
-    columns = formula.columns
-    if len(columns) != 1:
-        return None
-    clock = said.columns.get(TIME, card.time.column) if card.time else None
-    needed = [*columns, clock] if clock and said.join == "time" and clock not in columns else columns
-    files = [data.path.parent / file for file in said.file]
-    read = without_error_values(over_files(files, said.join, read_table), card.channels, {name: formula})
-    source = source_of(files, said.join, needed, clock, read)
-    start, stop = recording.rows
-    values = source.columns[columns[0]][start:stop]
-    return (source.place(columns[0], start + sample), values) if len(values) == len(recording.time) else None

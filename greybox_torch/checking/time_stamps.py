@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from greybox_torch.checking.as_in_the_file import rows_on_the_card
 from greybox_torch.checking.joined_files import JoinedFiles
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.data_warning import InASentence
@@ -34,7 +35,7 @@ def odd_time_stamps(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterato
     for recording in data.recordings:
         gap = longest_gap(recording.time)
         if gap is not None:
-            yield _gap(recording, gap, _rows_on_the_card(data, recording))
+            yield _gap(recording, gap, rows_on_the_card(data, recording))
     of_step: dict[str, list[tuple[Recording, tuple[Lost, ...]]]] = {}
     for recording in data.recordings:
         if lost := lost_samples(recording.time):
@@ -53,15 +54,6 @@ def odd_time_stamps(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterato
     for recording in whole:
         if first is not None and _thousands(recording.sample_time / first.sample_time):
             yield _unit(recording, first)
-
-
-def _rows_on_the_card(data: DataSet, recording: Recording) -> tuple[int, int]:
-    """The rows of the experiment that the card has, where its last quarter was held out as a recording of its own."""
-    if not data.held_out_by_default:
-        return recording.rows
-    place = data.recordings.index(recording)
-    first = place - place % 2  # two parts of every experiment, one after the other
-    return data.recordings[first].rows[0], data.recordings[first + 1].rows[1]
 
 
 def _gap(recording: Recording, gap: Gap, rows: tuple[int, int]) -> OddTime:

@@ -183,6 +183,11 @@ def per_minute(unit: str) -> bool:
     return bool(_TURNS.fullmatch(unit.strip("[]() ")))
 
 
+def turns_per_time(unit: str) -> bool:
+    """Whether a unit counts turns by their name: "U/min", "rev/s"."""
+    return bool(_NAMED_TURNS.fullmatch(unit))
+
+
 def in_base_units(unit: str) -> float | None:
     """What a difference of one in a unit is in base units of the SI; None where it is not known."""
     try:

@@ -9,17 +9,17 @@ from pathlib import Path
 
 from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry
-from greybox_torch.data.column_units import unit_in
+from greybox_torch.data.column_units import is_set_apart, parts_of, unit_in
 from greybox_torch.data.counts import ends_in_counts, in_turns, is_angle
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.time_units import SPELLINGS
-from greybox_torch.data.units import conversion, dimensionality, per_minute
+from greybox_torch.data.units import conversion, dimensionality, per_minute, turns_per_time
 from greybox_torch.errors import UserError
 from greybox_torch.files import toml_text
 
 _KNOWN = re.compile(
     "s|ms|us|µs|ns|h|m|mm|cm|km|um|µm|kg|N|kN|mN|Nm|kNm|mNm|rad|mrad|deg|degrees|degC|degF|K|V|mV|kV|A|mA|W|kW|MW|mW|J|kJ|Pa|hPa|kPa|MPa|bar|mbar|psi|"
-    "Hz|kHz|rpm|rev|Ohm|l|ml"
+    "Hz|kHz|rpm|rev|Ohm|l|L|ml"
 )
 """What is a unit in a name, and nothing else: [t], (k), (in), (est) are units as well, and hardly ever meant as such."""
 _DEGREES = re.compile(r"(?:°|deg)?\s*([CF])")
@@ -102,17 +102,18 @@ def _unit_of(column: str, columns: set[str], said: str) -> tuple[str, bool]:
 
     The unit registry, which takes its time to load, is asked only where a letter may mean a temperature.
     """
-    told, bracketed = unit_in(column), column.rstrip().endswith(("]", ")"))
-    if bracketed:
+    told = unit_in(column)
+    if is_set_apart(column):
         degrees = _DEGREES.fullmatch(told)
         if degrees and (len(told) > 1 or _dimension(said) == _TEMPERATURE):
             told = f"deg{degrees[1]}"
-        known = all(_KNOWN.fullmatch(word) for word in re.findall(r"[^\W\d_]+", told.replace("min", "")))
+        words = re.findall(r"[^\W\d_]+", told.replace("min", ""))
+        known = turns_per_time(told) or all(_KNOWN.fullmatch(word) for word in words)
         alone = told in ("deg", "°", "min", "degrees", "K")  # of a temperature, or the least, or a gain
         return (told, not alone) if known else ("", False)
-    stem, _, last = column.rpartition("_")
+    stem, separator, last = parts_of(column)
     if last in _OF_QUANTITY and _OF_QUANTITY[last].match(stem):
-        phases = {other for other in columns if re.fullmatch(re.escape(stem) + "_[A-Za-z]", other)}
+        phases = {other for other in columns if re.fullmatch(re.escape(stem + separator) + "[A-Za-z]", other)}
         return (last, True) if len(phases) == 1 else ("", False)
     return told, told in _SURE or last in _AS_WRITTEN
 
@@ -128,7 +129,7 @@ def time_in(column: str) -> str:
 
 def _differ(told: str, said: str) -> bool:
     """Whether two units differ in scale or dimension; False where the card's is unknown."""
-    if told == said or _dimension(said) is None or (told == "rpm" and per_minute(said)):
+    if told == said or _dimension(said) is None or all(unit == "rpm" or per_minute(unit) for unit in (told, said)):
         return False
     try:
         factor, offset = conversion(told, said, "")

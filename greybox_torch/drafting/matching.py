@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 
-from greybox_torch.data.column_units import without_ending
+from greybox_torch.data.column_units import parts_of, without_ending
 from greybox_torch.data.counts import is_angle, is_count, named_as_count
 from greybox_torch.data.units import conversion
 from greybox_torch.errors import UserError
@@ -87,7 +87,7 @@ def _may_be(column: str, unit: str, wanted: str) -> bool:
 def _score(channel: Wanted, column: str, unit: str, wanted: Sequence[Wanted]) -> float:
     """From 0 to 1.5: how well a column fits a channel."""
     if not unit and (unit := letter_unit(column, channel.unit)):
-        column = column.rpartition("_")[0]
+        column, _, _ = parts_of(column)
     one, other = channel.name.lower(), column.lower()
     if one == other:
         return 1.5
@@ -109,9 +109,9 @@ def _score(channel: Wanted, column: str, unit: str, wanted: Sequence[Wanted]) ->
 
 
 def letter_unit(column: str, wanted: str) -> str:
-    """The unit that the letter behind the last underscore of a name stands for, if that is of the ``wanted`` unit's quantity; else ""."""
-    head, _, letter = column.rpartition("_")
-    if not head or not wanted:
+    """The unit that a letter at the end of a name stands for, if that is of the ``wanted`` unit's quantity; else ""."""
+    _, _, letter = parts_of(column)
+    if not letter or not wanted:
         return ""
     if letter == _GRAVITY:
         return "g0" if fits("g0", wanted) else ""

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.data import DataSet
-from greybox_torch.errors import UserError, did_you_mean
+from greybox_torch.errors import UserError, did_you_mean, quoted
 from greybox_torch.model import GreyBoxModel
 
 SECONDS, START = "seconds", "start"
@@ -131,7 +131,9 @@ def _range(entry: Any, place: str, default: Range | None) -> Range:
         assert default is not None
         return default
     if not isinstance(entry, Mapping) or not set(entry) <= {"lower", "upper", "rate"}:
-        raise UserError(f"{place}: found {entry!r}, expected {{ lower = …, upper = …, rate = … }}")
+        raise UserError(
+            f"{place}: found {quoted(entry)}; expected {{ lower = …, upper = …, rate = … }}, or some of these"
+        )
     lower = _number(entry.get("lower", -math.inf if default is None else default.lower), f"{place}, lower")
     upper = _number(entry.get("upper", math.inf if default is None else default.upper), f"{place}, upper")
     if not lower < upper:

@@ -61,10 +61,39 @@ def test_an_error_value_within_a_few_ranges_of_a_smooth_channel(decimals: int) -
     assert "(and 1 more such sample), as" in both
 
 
+RPM: np.ndarray = np.round(1400.0 + 1350.0 * np.sin(2.0 * TIME) + 300.0 * NOISE, 1)
+
+
+@pytest.mark.parametrize("value", [-9999.0, 9999.0, -9999.9, 32767.0, 1e30])
+def test_an_error_code_within_a_few_ranges_by_its_value(value: float) -> None:
+    """Seen: -9999 among speeds from -20 to 2740 rpm was not told, nor are several one after the other far from their neighbours."""
+    assert told(RPM) == []
+    for at in ([150], [150, 151, 152], [0], [399], [0, 1, 150]):
+        (one,) = told(changed(RPM, at, value))
+        assert f"sample {at[0]} (the first is 0): found {value:.6g} b" in one
+    assert "found -9999 before " in told(changed(RPM, [0, 1], -9999.0))[0]
+    assert "found -9999 behind " in told(changed(RPM, [398, 399], -9999.0))[0]
+
+
+def test_an_error_code_is_one_of_the_file(tmp_path: Path) -> None:
+    """In the channel's unit -9999 rpm are -1047 rad/s, and -9999 rad/s may be measured."""
+    (tmp_path / "dataset.toml").write_text(CARD.replace('"m"', '"rad/s"').replace('"mm"', '"rpm"'))
+    for value, count in ((-9999.0, 1), (-9999.0 * 60 / (2 * np.pi), 0)):
+        values = changed(RPM if count else 8 * RPM, [150, 151], value)
+        (tmp_path / "run.csv").write_text("a\n" + "".join(f"{one}\n" for one in values))
+        warnings = [str(one) for one in lone_samples(load_dataset(tmp_path / "dataset.toml"), {})]
+        assert len(warnings) == count
+        assert not count or "found -9999 between " in warnings[0]
+        assert not count or "missing = -9999 in the channel's line" in warnings[0]
+
+
 @pytest.mark.parametrize(
     "values",
     [
         np.sin(TIME) + NOISE,
+        np.repeat([0.0, 999.0, 300.0, 0.0], 100),  # commanded levels
+        np.round(9000.0 + 999.0 * np.sin(TIME)),  # 9999 within what is measured
+        changed(RPM, [150, 151], -8000.0),
         STEPS,
         changed(np.repeat([0.0, 2.0, -1.0, 1.0], 100) + 0.01 * NOISE, [150], 8.0),  # an input in steps with one pulse
         changed(NOISE, [150], 4.0),  # a blow to what rests

@@ -95,22 +95,31 @@ def test_a_wrong_card_is_told_what_to_write(
             '[limits] voltag: no input, output or state is named so (did you mean "voltage"?)',
         ),
         ("[limits]\nvoltage = { lower = 5, upper = -5 }", "[limits] voltage: lower = 5 is not below upper = -5"),
+        (
+            "[limits]\nvoltage = { range = [-5, 5] }",
+            '[limits] voltage: found {"range": [-5, 5]}, which `greybox design` refuses\n'
+            "    write: { lower = …, upper = …, rate = … }, or some of these",
+        ),
         ('[beliefs]\n"roter/*" = 0.0', '[beliefs]: "roter/*": model Motor has no port "roter" (did you mean "rotor"?)'),
         (
             '[beliefs]\n"rotor/*" = 1.0',
-            "[beliefs]: \"rotor/*\": found 1.0\n    write: 'unlikely', 'likely', or a probability from 0 (excluded) to below 1",
+            '[beliefs]: "rotor/*": found 1.0, which `greybox diagnose` refuses\n'
+            "    write: 'unlikely', 'likely', or a probability from 0 (excluded) to below 1",
         ),
         ("[diagnosis]\nleast_gian = 0.1", '[diagnosis]: "least_gian" is not a setting (did you mean "least_gain"?)'),
     ],
 )
 def test_what_later_commands_would_refuse_of_the_card(motor_folder: Callable[..., Path], table: str, told: str) -> None:
-    """Seen: [limits] with a misspelt input; nothing said so until the next recording was designed."""
+    """Seen: [limits] with a misspelt input; nothing said so until the next recording was designed. `inspect` tells the same."""
     card = motor_folder() / "dataset.toml"
     card.write_text(f"{card.read_text()}\n{table}\n")
     done = CliRunner().invoke(app, ["check", str(card)])
     assert done.exit_code == 2
     assert f"error: dataset.toml: {told}" in done.stdout
     assert "dataset.toml does not fit my_motor.py:Motor, which itself can be used: 1 error." in done.stdout
+    looked = CliRunner().invoke(app, ["inspect", str(card), "--out", str(card.parent / "looked")])
+    assert looked.exit_code == 0
+    assert f"{card}: {told}".replace("\n    write: ", "; write: ") in looked.stdout
 
 
 def test_a_wrong_model_cannot_be_used(

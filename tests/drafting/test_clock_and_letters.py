@@ -69,7 +69,21 @@ def test_units_of_one_letter(tmp_path: Path) -> None:
         ("a_g", "m/s^2", "g0"),
         ("A", "A", ""),
         ("i_A", "", ""),
+        ("Strom/A", "mA", "A"),
+        ("i A", "mA", "A"),
     ],
 )
 def test_a_letter_is_a_unit_where_one_of_its_quantity_is_wanted(column: str, wanted: str, unit: str) -> None:
     assert letter_unit(column, wanted) == unit
+
+
+@pytest.mark.parametrize("length", ["Ventilhub/mm", "Ventilhub / mm", "LI101 mm", "Hub in mm"])
+def test_units_below_a_quantity_behind_in_and_behind_a_space(tmp_path: Path, length: str) -> None:
+    """Seen: "no column fits; left over: Ventilhub/mm, Strom in A" of the only length and the only current, and of "LI101 mm"."""
+    rows = np.column_stack([np.arange(60.0), np.ones(60), np.ones(60), np.ones(60)])
+    header = f"t_s,{length},Strom in A,p"
+    np.savetxt(tmp_path / "run.csv", rows, "%.9g", ",", header=header, comments="")
+    (tmp_path / "stage.py").write_text(MODEL.replace('Output("acc", "m/s^2")', 'Output("acc", "mm")'))
+    text = gt.card([tmp_path / "run.csv"], f"{tmp_path / 'stage.py'}:Stage").text
+    assert f'acc = {{ column = "{length}", unit = "mm" }}' in text
+    assert 'current = { column = "Strom in A", unit = "A" }' in text

@@ -1,0 +1,58 @@
+"""Channels that are made of the same column: one of them is another signal than the model takes it for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+
+from greybox_torch.data import DataSet
+from greybox_torch.data.card import Card, read_card
+from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry
+from greybox_torch.data.data_warning import InASentence
+from greybox_torch.in_unit import in_unit
+
+
+@dataclass(frozen=True)
+class SharedColumn(InASentence):
+    """Two ``channels`` with their units, and the ``column``; ``experiment`` is empty where all share it."""
+
+    channels: tuple[str, str]
+    column: str
+    experiment: str
+    write: str = "the column of each; or scale = 1.0 in one of the two lines, if both are meant to be it"
+
+    @property
+    def found(self) -> str:
+        """What is there, in a sentence."""
+        where = f'[[experiment]] "{self.experiment}", columns: ' if self.experiment else "[channels] "
+        one, other = self.channels
+        return f'{where}{one} and {other} are both read from "{self.column}"'
+
+
+def shared_columns(data: DataSet) -> Iterator[SharedColumn]:
+    """Of every two channels that are the same column, or computed from columns in the same way; none where data are from memory."""
+    if data.path is None or not data.path.is_file():
+        return
+    card, told = read_card(data.path), set[tuple[str, str]]()
+    for experiment in card.experiment:
+        for one, other in combinations(card.channels, 2):
+            column = _shared(card, experiment, one, other)
+            if column and (one, other) not in told:
+                told.add((one, other))
+                own = {one, other} & set(experiment.columns)
+                names = _named(one, card.channels[one]), _named(other, card.channels[other])
+                yield SharedColumn(names, column, experiment.name if own else "")
+
+
+def _shared(card: Card, experiment: ExperimentEntry, one: str, other: str) -> str:
+    """The column that two channels share in an experiment; else "". A derivative is another signal; a factor is meant."""
+    entries = card.channels[one], card.channels[other]
+    texts = [e.expression(experiment.columns.get(name)).text for e, name in zip(entries, (one, other), strict=True)]
+    scaled = any("scale" in entry.model_fields_set for entry in entries)
+    alike = texts[0] == texts[1] and entries[0].derivative == entries[1].derivative
+    return texts[0] if alike and not scaled else ""
+
+
+def _named(name: str, entry: ChannelEntry) -> str:
+    return in_unit(f'"{name}"', f"[{entry.unit}]" if entry.unit not in ("", "1") else "")
