@@ -26,11 +26,13 @@ from greybox_torch.diagnosis.settings import settings_from_mapping
 from greybox_torch.errors import ArgumentError, Kind, UserError
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.experiment_design.limits import limits_of
+from greybox_torch.keywords import names_checked
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.systems import model_class
 from greybox_torch.systems.user_code import users_code
 
 
+@names_checked
 def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None = None) -> CheckResult:
     """Look for what is wrong with a model: names, code that cannot be compiled, units, and what moves no output.
 

@@ -30,6 +30,7 @@ from greybox_torch.experiment_design.judged import judged_at_estimates
 from greybox_torch.experiment_design.limits import Limits, limits_of
 from greybox_torch.experiment_design.search import MOST_SAMPLES, frequencies, sampled, search
 from greybox_torch.experiment_design.simulated import predictions, within
+from greybox_torch.keywords import names_checked
 from greybox_torch.linear_algebra import on_one_thread
 from greybox_torch.name_lists import listed
 
@@ -37,6 +38,7 @@ RANDOM = 5
 """Random multisines of the same power that the best input (or set point) is compared with."""
 
 
+@names_checked
 @on_one_thread
 def design(
     found: DiagnosisResult | str | Path,
